@@ -5,7 +5,7 @@
 
 namespace rcme {
 
-Vector9d LinearModelOf(const RelativePose& pose) {
+Vector9d ComputeLinearModel(const RelativePose& pose) {
   return Vectorize(EssentialFromPose(pose)) / std::sqrt(2.0);
 }
 

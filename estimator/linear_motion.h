@@ -20,7 +20,7 @@ struct LinearMotion {
 };
 
 // The unit vector f of a motion, f = vec([t]x R) / sqrt(2), up to its sign.
-Vector9d LinearModelOf(const RelativePose& pose);
+Vector9d ComputeLinearModel(const RelativePose& pose);
 
 // From all matches of the problem. Nothing if they are degenerate: they determine no f, or no direction of
 // translation.

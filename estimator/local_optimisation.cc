@@ -50,7 +50,7 @@ std::vector<int> FindWithUncertainty(const MotionProblem& problem, const Relativ
   return found;
 }
 
-const Supported& BetterOf(const Supported& a, const Supported& b) {
+const Supported& ChooseBetter(const Supported& a, const Supported& b) {
   return b.inliers.size() > a.inliers.size() ? b : a;
 }
 
@@ -73,7 +73,7 @@ Supported OptimiseByInnerRansac(const MotionProblem& problem, const Supported& s
       const Supported wide = WithSupport(problem, motion->cam2_from_cam1, scale * scale * threshold);
       motion = FitTo(problem, wide.inliers, motion->cam2_from_cam1);
     }
-    if (motion) best = BetterOf(best, WithSupport(problem, motion->cam2_from_cam1, threshold));
+    if (motion) best = ChooseBetter(best, WithSupport(problem, motion->cam2_from_cam1, threshold));
   }
   return best;
 }
@@ -91,7 +91,7 @@ Supported OptimiseByUncertainty(const MotionProblem& problem, const Supported& s
     motion = *refined;
     fitted = std::move(support);
   }
-  return BetterOf(start, WithSupport(problem, motion.cam2_from_cam1, threshold));
+  return ChooseBetter(start, WithSupport(problem, motion.cam2_from_cam1, threshold));
 }
 
 }  // namespace rcme

@@ -41,7 +41,7 @@ void RefuseByMotionTests(const Matches& matches, const RansacOptions& options, M
     if (test.explains_matches) return KeepRotationAlone(test, estimate);
   }
   const Eigen::Matrix2d direction_cov = estimate->pose_cov.bottomRightCorner<2, 2>();
-  const auto inliers = matches.SetOf(estimate->inliers);
+  const auto inliers = matches.MakeSet(estimate->inliers);
   RefuseNoisyDirection(
       NoiseShareOfDirection(direction_cov, matches.SumDirectionNoise(inliers, pose, direction_cov)),
       estimate);

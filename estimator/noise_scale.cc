@@ -4,8 +4,8 @@
 
 namespace rcme {
 
-std::vector<double> NoiseScaleOf(std::vector<double> sigmas) {
-  const double median = MedianOf(sigmas);
+std::vector<double> ComputeNoiseScale(std::vector<double> sigmas) {
+  const double median = ComputeMedian(sigmas);
   for (double& sigma : sigmas) sigma /= median;
   return sigmas;
 }

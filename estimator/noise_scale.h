@@ -18,11 +18,11 @@ inline double NoiseScaleAt(const MotionProblem& problem, size_t i) {
 // Of matches whose own standard deviations somebody states (any unit, all above 0; empty: nobody does): each
 // over their median. Only their relation is kept: how large noise is in all is assumed (sigma_px) or
 // estimated.
-std::vector<double> NoiseScaleOf(std::vector<double> sigmas);
+std::vector<double> ComputeNoiseScale(std::vector<double> sigmas);
 
 // The problem with these of its matches, in this order; `which` holds indices.
 template <typename Indices>
-MotionProblem PartOf(const MotionProblem& problem, const Indices& which) {
+MotionProblem SelectPart(const MotionProblem& problem, const Indices& which) {
   MotionProblem part{{}, problem.camera1, problem.camera2, problem.sigma_px};
   for (const auto index : which) {
     const auto i = static_cast<size_t>(index);

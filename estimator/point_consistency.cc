@@ -36,7 +36,7 @@ ConstraintSpread SpreadOfConstraint(const UncertainFundamental& model, const Epi
 
 // Some L with L L' = cov. Cholesky's where it exists; eigenvectors also take a covariance that is singular to
 // within rounding, such as zero for a known motion. Nothing if it is not positive semi-definite.
-std::optional<Matrix5d> SquareRootOf(const Matrix5d& cov) {
+std::optional<Matrix5d> ComputeSquareRoot(const Matrix5d& cov) {
   const Eigen::LLT<Matrix5d> llt(cov);
   if (llt.info() == Eigen::Success) return llt.matrixL();
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(cov);
@@ -47,7 +47,7 @@ std::optional<Matrix5d> SquareRootOf(const Matrix5d& cov) {
 
 // 4x3 orthonormal basis of the complement of the unit vector u: the last columns of the Householder
 // reflection that takes u to the first axis.
-Eigen::Matrix<double, 4, 3> ComplementOf(const Eigen::Vector4d& u) {
+Eigen::Matrix<double, 4, 3> ComputeComplement(const Eigen::Vector4d& u) {
   Eigen::Vector4d h = u;
   h(0) += u(0) < 0.0 ? -1.0 : 1.0;
   const Eigen::Matrix4d reflection =
@@ -82,7 +82,7 @@ UncertainFundamental FundamentalWith(const std::array<Eigen::Matrix3d, 5>& dE, c
 std::optional<std::array<Eigen::Matrix3d, 5>> WhitenedTangent(const RelativePose& pose,
                                                               const Matrix5d& pose_cov) {
   if (!pose_cov.allFinite()) return std::nullopt;
-  const std::optional<Matrix5d> root = SquareRootOf(pose_cov);
+  const std::optional<Matrix5d> root = ComputeSquareRoot(pose_cov);
   if (!root) return std::nullopt;
   return TangentAlong(pose, *root);
 }
@@ -137,7 +137,7 @@ double AsPrintedTest::Distance(const Correspondence& match, PointResidual* resid
   const ConstraintSpread spread = SpreadOfConstraint(model_, c, sigma2_, H_, point_noise_, match);
   const double n2 = c.squared_gradient(), n = std::sqrt(n2);
   const Eigen::Vector4d u = c.gradient / n;
-  const Eigen::Matrix<double, 4, 3> W = ComplementOf(u);
+  const Eigen::Matrix<double, 4, 3> W = ComputeComplement(u);
   const Eigen::Vector4d Qu = spread.Q * u;
   const Eigen::Vector3d r = W.transpose() * (c.g * Qu - n * spread.a);
   const Eigen::LLT<Eigen::Matrix3d> llt(W.transpose() * spread.Q * W);

@@ -27,7 +27,7 @@ void RequireCovariance(const Matrix5d& covariance) {
 }
 
 // Of the block's eigenvalues; what rounding leaves below 0 is 0.
-double LevelOf(const Eigen::Vector3d& eigenvalues, double tail) {
+double ComputeLevel(const Eigen::Vector3d& eigenvalues, double tail) {
   return std::min(std::numbers::pi, GaussianNormQuantile(eigenvalues.cwiseMax(0.0), tail));
 }
 
@@ -53,7 +53,8 @@ ProtectionLevels ComputeProtectionLevels(const MotionEstimate& estimate, double 
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> direction(covariance.bottomRightCorner<2, 2>(),
                                                                  Eigen::EigenvaluesOnly);
   const Eigen::Vector2d of_direction = direction.eigenvalues();
-  return {LevelOf(rotation.eigenvalues(), tail), LevelOf({of_direction(0), of_direction(1), 0.0}, tail)};
+  return {ComputeLevel(rotation.eigenvalues(), tail),
+          ComputeLevel({of_direction(0), of_direction(1), 0.0}, tail)};
 }
 
 }  // namespace rcme

@@ -30,9 +30,9 @@ class ReferenceMatches {
   Eigen::Matrix2d SumDirectionNoise(const Set& set, const RelativePose& pose,
                                     const Eigen::Matrix2d& direction_cov) const;
   Set Intersect(const Set& a, const Set& b) const;
-  Set SetOf(const std::vector<int>& indices) const { return indices; }
+  Set MakeSet(const std::vector<int>& indices) const { return indices; }
   Set All() const;
-  const std::vector<int>& IndicesOf(const Set& set) const { return set; }
+  const std::vector<int>& ListIndices(const Set& set) const { return set; }
   int Count(const Set& set) const { return static_cast<int>(set.size()); }
 
  private:

@@ -45,10 +45,10 @@ concept MatchSets = requires(const T matches, const typename T::Set& set, const 
   // motion_chance.h, observability.h
   { matches.ChanceOfAgreement(pose, threshold) } -> std::same_as<double>;
   { matches.SumDirectionNoise(set, pose, direction_cov) } -> std::same_as<Eigen::Matrix2d>;
-  { matches.SetOf(sorted_indices) } -> std::convertible_to<typename T::Set>;
+  { matches.MakeSet(sorted_indices) } -> std::convertible_to<typename T::Set>;
   { matches.All() } -> std::convertible_to<typename T::Set>;
   { matches.Intersect(set, set) } -> std::same_as<typename T::Set>;
-  { matches.IndicesOf(set) } -> std::convertible_to<std::vector<int>>;
+  { matches.ListIndices(set) } -> std::convertible_to<std::vector<int>>;
   { matches.Count(set) } -> std::same_as<int>;
 };
 
@@ -107,7 +107,7 @@ Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis<So
   PropagateCovariance(matches.problem(), winner);
   std::vector<int> sample(winner->id.sample.begin(), winner->id.sample.end());
   std::sort(sample.begin(), sample.end());
-  return {{true, winner->pose, winner->pose_cov, 0}, matches.SetOf(sample)};
+  return {{true, winner->pose, winner->pose_cov, 0}, matches.MakeSet(sample)};
 }
 
 std::string DivergenceMessage(int num_support, int num_fitted);
@@ -142,7 +142,7 @@ void RefineWinner(const Matches& matches, const RansacOptions& options,
   estimate->cam2_from_cam1 = refined.cam2_from_cam1;
   estimate->pose_cov = refined.pose_cov;
   estimate->inliers =
-      matches.IndicesOf(matches.FindAgreeing(refined, fit.fitted, options.significance_level));
+      matches.ListIndices(matches.FindAgreeing(refined, fit.fitted, options.significance_level));
   const double threshold = ConsistencyThreshold(options.significance_level);
   estimate->num_consistent_before = matches.CountConsistent(support, winner.pose, threshold);
   estimate->num_consistent_after = matches.CountConsistent(support, refined.cam2_from_cam1, threshold);

@@ -163,7 +163,7 @@ const Parameter& FindParameter(const std::vector<Parameter>& parameters, const s
                                fmt::join(names, ", ")));
 }
 
-Settings ValuesOf(const std::vector<Parameter>& parameters) {
+Settings ListValues(const std::vector<Parameter>& parameters) {
   Settings values;
   for (const Parameter& parameter : parameters) values.emplace_back(parameter.name(), parameter.Value());
   return values;

@@ -68,7 +68,7 @@ class Parameter {
 const Parameter& FindParameter(const std::vector<Parameter>& parameters, const std::string& name);
 
 // Every parameter with its present value.
-Settings ValuesOf(const std::vector<Parameter>& parameters);
+Settings ListValues(const std::vector<Parameter>& parameters);
 
 // The whole of `text` as a finite number; false otherwise.
 bool ParseReal(const std::string& text, double* value);

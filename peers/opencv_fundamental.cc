@@ -43,8 +43,8 @@ std::optional<PeerAnswer> AskFindFundamentalMat(const MotionProblem& problem,
   std::vector<int> order(problem.matches.size());
   std::iota(order.begin(), order.end(), 0);
   rng.Shuffle(std::span(order));
-  const MotionProblem reordered = PartOf(problem, order);
-  const CvPoints points = PixelsOf(reordered);
+  const MotionProblem reordered = SelectPart(problem, order);
+  const CvPoints points = ListPixels(reordered);
   cv::Mat mask;
   const cv::Mat Fs =
       cv::findFundamentalMat(points.image1, points.image2, options.method, ThresholdPx(options, problem),

@@ -56,7 +56,7 @@ class OpenCvUsac : public MotionEstimator {
     params.isParallel = false;
     params.randomGeneratorState = static_cast<int>(rng.Next32() >> 2);  // its parts add small numbers to it
     SetLocalSamples(&params);
-    const CvPoints points = PixelsOf(problem);
+    const CvPoints points = ListPixels(problem);
     cv::Mat mask;
     const cv::Mat E =
         cv::findEssentialMat(points.image1, points.image2, CvMatrix(problem.camera1.K()),

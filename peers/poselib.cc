@@ -16,16 +16,16 @@ struct PoseLibOptions {
   int max_iterations = 100000;
 };
 
-poselib::Camera CameraOf(const Camera& camera) {
+poselib::Camera MakePoseLibCamera(const Camera& camera) {
   return {"PINHOLE", {camera.fx, camera.fy, camera.cx, camera.cy}, camera.width, camera.height};
 }
 
 // The type of the options of estimate_relative_pose: RansacOptions (and BundleOptions after it) up to 2.0.5,
 // later RelativePoseOptions, which hold both.
 template <typename Points, typename PoseLibCamera, typename Options, typename... Rest>
-Options OptionsOf(poselib::RansacStats (*)(const Points&, const Points&, const PoseLibCamera&,
-                                           const PoseLibCamera&, const Options&, Rest...));
-using CallOptions = decltype(OptionsOf(&poselib::estimate_relative_pose));
+Options DeduceOptions(poselib::RansacStats (*)(const Points&, const Points&, const PoseLibCamera&,
+                                               const PoseLibCamera&, const Options&, Rest...));
+using CallOptions = decltype(DeduceOptions(&poselib::estimate_relative_pose));
 
 // PoseLib compares with the threshold the Sampson distance in pixels of the mean focal length, whose standard
 // deviation is sigma.
@@ -77,8 +77,8 @@ class PoseLib : public MotionEstimator {
     poselib::CameraPose pose;
     std::vector<char> is_inlier;
     const auto options = OptionsFor<CallOptions>(options_, problem.sigma_px, rng.Next32());
-    const auto stats = Call(options, &pose, &is_inlier, points1, points2, CameraOf(problem.camera1),
-                            CameraOf(problem.camera2));
+    const auto stats = Call(options, &pose, &is_inlier, points1, points2, MakePoseLibCamera(problem.camera1),
+                            MakePoseLibCamera(problem.camera2));
     if (stats.num_inliers == 0) return std::nullopt;
     PeerAnswer answer{{pose.R(), pose.t.normalized()}, {}};
     for (size_t i = 0; i < is_inlier.size(); ++i) {

@@ -4,7 +4,7 @@
 
 namespace rcme {
 
-CvPoints PixelsOf(const MotionProblem& problem) {
+CvPoints ListPixels(const MotionProblem& problem) {
   CvPoints points;
   for (const Correspondence& match : problem.matches) {
     points.image1.emplace_back(match.x1_px.x(), match.x1_px.y());

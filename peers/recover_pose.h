@@ -15,7 +15,7 @@ namespace rcme {
 struct CvPoints {
   std::vector<cv::Point2d> image1, image2;
 };
-CvPoints PixelsOf(const MotionProblem& problem);
+CvPoints ListPixels(const MotionProblem& problem);
 
 cv::Matx33d CvMatrix(const Eigen::Matrix3d& matrix);
 

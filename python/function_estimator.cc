@@ -72,9 +72,10 @@ class FunctionEstimator : public MotionEstimator {
   OutsideAnswer Ask(const MotionProblem& problem, std::uint32_t seed) const {
     const py::gil_scoped_acquire lock;
     try {
-      return AnswerIn((*function_)(PointsOf(problem.matches, &Correspondence::x1_px),
-                                   PointsOf(problem.matches, &Correspondence::x2_px), DictOf(problem.camera1),
-                                   DictOf(problem.camera2), problem.sigma_px, ScalesOrNone(problem), seed));
+      return AnswerIn((*function_)(MakePoints(problem.matches, &Correspondence::x1_px),
+                                   MakePoints(problem.matches, &Correspondence::x2_px),
+                                   MakeDict(problem.camera1), MakeDict(problem.camera2), problem.sigma_px,
+                                   ScalesOrNone(problem), seed));
     } catch (const py::error_already_set& error) {
       throw NoOutsideAnswer(MotionStatus::kLibraryError, error.what());
     } catch (const py::cast_error& error) {
@@ -129,7 +130,7 @@ EstimatorSpec SpecOfFunction(const std::string& name, const std::string& code) {
   return spec;
 }
 
-py::object PointsOf(const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*point) {
+py::object MakePoints(const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*point) {
   py::array_t<double> points(std::vector<py::ssize_t>{static_cast<py::ssize_t>(matches.size()), 2});
   auto numbers = points.mutable_unchecked<2>();
   for (size_t i = 0; i < matches.size(); ++i) {
@@ -143,10 +144,11 @@ py::object PointsOf(const std::vector<Correspondence>& matches, Eigen::Vector2d 
 py::object ScalesOrNone(const MotionProblem& problem) {
   const std::vector<double>& scales = problem.noise_scale;
   if (scales.empty()) return py::none();
-  return ArrayOf(Eigen::Map<const Eigen::VectorXd>(scales.data(), static_cast<Eigen::Index>(scales.size())));
+  return MakeArray(
+      Eigen::Map<const Eigen::VectorXd>(scales.data(), static_cast<Eigen::Index>(scales.size())));
 }
 
-py::dict DictOf(const Camera& camera) {
+py::dict MakeDict(const Camera& camera) {
   py::dict dict;
   dict["model"] = "PINHOLE";
   dict["width"] = camera.width;
@@ -155,7 +157,7 @@ py::dict DictOf(const Camera& camera) {
   return dict;
 }
 
-py::object ArrayOf(const Eigen::MatrixXd& matrix) {
+py::object MakeArray(const Eigen::MatrixXd& matrix) {
   if (matrix.cols() == 1) {
     py::array_t<double> array(matrix.rows());
     for (Eigen::Index i = 0; i < matrix.rows(); ++i) array.mutable_at(i) = matrix(i, 0);

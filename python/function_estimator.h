@@ -40,9 +40,10 @@ EstimatorSpec SpecOfFunction(const std::string& name, const std::string& code);
 
 // What functions of Python get, and what `simulate` gives: N x 2 arrays (px), and a camera as a dict of
 // PoseLib and pycolmap {model, width, height, params}.
-pybind11::object PointsOf(const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*point);
-pybind11::dict DictOf(const Camera& camera);
-pybind11::object ArrayOf(const Eigen::MatrixXd& matrix);
+pybind11::object MakePoints(const std::vector<Correspondence>& matches,
+                            Eigen::Vector2d Correspondence::*point);
+pybind11::dict MakeDict(const Camera& camera);
+pybind11::object MakeArray(const Eigen::MatrixXd& matrix);
 pybind11::object ScalesOrNone(const MotionProblem& problem);  // None: all matches are alike
 
 }  // namespace rcme

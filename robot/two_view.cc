@@ -197,7 +197,7 @@ TwoViewMotion TwoViewInitializer::Estimate(const std::vector<cv::Point2f>& point
     MotionProblem problem{{}, setup_->camera1, setup_->camera2, setup_->sigma_px};
     for (size_t i = 0; i < points1.size(); ++i)
       problem.matches.push_back({{points1[i].x, points1[i].y}, {points2[i].x, points2[i].y}});
-    problem.noise_scale = NoiseScaleOf(sigmas);
+    problem.noise_scale = ComputeNoiseScale(sigmas);
     RandomStream rng({.seed = setup_->seed});
     return MotionFrom(problem, setup_->estimator->Estimate(problem, rng),
                       setup_->greatest_failure_probability, setup_->integrity_risk, setup_->is_conformed);

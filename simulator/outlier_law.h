@@ -42,7 +42,7 @@ inline constexpr int kMaxOutlierDraws = 10'000;
 
 // What the noise law has added to a point's match (px), for laws that put the match elsewhere and keep its
 // noise. To be asked before the match is changed.
-inline Correspondence NoiseOf(const MatchedScene& matched, std::uint32_t point) {
+inline Correspondence ComputeMatchNoise(const MatchedScene& matched, std::uint32_t point) {
   const Correspondence& exact = matched.exact[point];
   return {matched.matches[point].x1_px - exact.x1_px, matched.matches[point].x2_px - exact.x2_px};
 }

@@ -121,7 +121,7 @@ double SceneGenerator::MeanParallaxDeg(const StreamName& pilot) const {
     try {
       const Scene scene = Generate(std::min(num_matches_, kPilotMatches), rng);
       std::vector<double> angles_deg = ParallaxesDeg(scene, scene.points_in_cam1);
-      sum_deg += QuantileOf(angles_deg, 0.5);
+      sum_deg += ComputeQuantile(angles_deg, 0.5);
     } catch (const InputError&) {
       if (++num_refused > kMaxRefusedPilots) throw;
     }

@@ -34,8 +34,8 @@ double ShareBelow(const std::vector<double>& sorted, double x) {
          static_cast<double>(sorted.size());
 }
 
-Placements PlacementsOf(const std::vector<double>& scores, const std::vector<double>& sorted_others,
-                        bool is_positive) {
+Placements ComputePlacements(const std::vector<double>& scores, const std::vector<double>& sorted_others,
+                             bool is_positive) {
   Placements placements;
   for (const double score : scores) {
     const double below = ShareBelow(sorted_others, score);
@@ -84,8 +84,8 @@ Interval LogOddsInterval(double area, double variance, double degrees_of_freedom
   return {1.0 / (1.0 + std::exp(half - log_odds)), 1.0 / (1.0 + std::exp(-half - log_odds))};
 }
 
-Interval IntervalOf(double area, const std::vector<Placements>& positives,
-                    const std::vector<Placements>& negatives, double confidence) {
+Interval ComputeAreaInterval(double area, const std::vector<Placements>& positives,
+                             const std::vector<Placements>& negatives, double confidence) {
   const ClusterMean p(positives, 0.5), n(negatives, 0.5);
   const double least = std::min(p.num_clusters, n.num_clusters);  // one more than there are
   if (least < 3.0) return {0.0, 1.0};
@@ -110,8 +110,8 @@ AreaUnderCurve MeasureClusteredAreaUnderCurve(const std::vector<ScoreCluster>& c
   const std::vector<double> all_positives = SortedScores(clusters, &ScoreCluster::positives);
   std::vector<Placements> positives, negatives;
   for (const ScoreCluster& cluster : clusters) {
-    positives.push_back(PlacementsOf(cluster.positives, all_negatives, true));
-    negatives.push_back(PlacementsOf(cluster.negatives, all_positives, false));
+    positives.push_back(ComputePlacements(cluster.positives, all_negatives, true));
+    negatives.push_back(ComputePlacements(cluster.negatives, all_positives, false));
   }
   const ClusterMean p(positives, 0.0), n(negatives, 0.0);
   AreaUnderCurve area;
@@ -119,7 +119,7 @@ AreaUnderCurve MeasureClusteredAreaUnderCurve(const std::vector<ScoreCluster>& c
   const double variance =
       p.variance + n.variance + 2.0 * ComputePlacementCovariance(positives, negatives, p, n);
   area.standard_error = std::sqrt(variance < 0.0 ? 0.0 : variance);  // below zero by rounding only
-  area.interval = IntervalOf(area.value, positives, negatives, confidence);
+  area.interval = ComputeAreaInterval(area.value, positives, negatives, confidence);
   return area;
 }
 

@@ -38,7 +38,7 @@ struct Bin {
 };
 
 // Of bins that are filled but for the events.
-double ErrorOf(const std::vector<Bin>& bins, double n) {
+double ComputeBinnedError(const std::vector<Bin>& bins, double n) {
   double error = 0.0;
   for (const Bin& bin : bins) error += std::abs(bin.sum - bin.num_happened) / n;
   return error;
@@ -91,7 +91,7 @@ MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forec
   SetOutcomes(
       numbers, [&](size_t i) { return forecasts[i].happened; }, &bins);
   MeasuredCalibrationError error;
-  error.value = ErrorOf(bins, n);
+  error.value = ComputeBinnedError(bins, n);
   const std::vector<std::int64_t> clusters = NumberedClusters(forecasts);
   std::vector<double> errors;
   int num_as_great = 0;
@@ -99,7 +99,7 @@ MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forec
     const std::vector<bool> outcomes = DrawOutcomes(forecasts, clusters, rng);
     SetOutcomes(
         numbers, [&](size_t i) { return outcomes[i]; }, &bins);
-    errors.push_back(ErrorOf(bins, n));
+    errors.push_back(ComputeBinnedError(bins, n));
     num_as_great += errors.back() >= error.value - 1e-12 ? 1 : 0;  // equal but for rounding
   }
   error.p_value = (1.0 + num_as_great) / (1.0 + num_samples);

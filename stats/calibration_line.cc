@@ -69,7 +69,7 @@ CalibrationLine FitCalibrationLine(std::span<const Forecast> forecasts, double c
     const double p = ClippedProbability(forecast.probability, clip);
     log_odds.push_back(std::log(p) - std::log1p(-p));
   }
-  const std::vector<std::int64_t> clusters = ClustersOf(forecasts);
+  const std::vector<std::int64_t> clusters = ListClusters(forecasts);
   const std::optional<Line> line = MostLikelyLine(log_odds, forecasts);
   CalibrationLine result;
   if (!line) {

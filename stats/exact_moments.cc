@@ -37,7 +37,7 @@ double Ratio(const cpp_int& numerator, const cpp_int& denominator, int exponent)
 }
 
 // Digits of a whole number that is not negative.
-std::vector<std::int64_t> DigitsOf(cpp_int number) {
+std::vector<std::int64_t> ListDigits(cpp_int number) {
   std::vector<std::int64_t> digits(kNumDigits, 0);
   for (size_t i = 0; i < kNumDigits && number != 0; ++i, number >>= 32)
     digits[i] = static_cast<std::int64_t>(cpp_int(number & 0xffffffffu));
@@ -128,7 +128,7 @@ ExactSum ExactSum::FromText(const std::string& text) {
   const int exponent = ParsedInteger<int>(text.substr(end + 1));
   if (exponent < kUnit || exponent > kUnit + 32 * static_cast<int>(kNumDigits))
     throw std::invalid_argument("not an exact sum: " + text);
-  sum.digits_ = DigitsOf(cpp_int("0x" + hex) << (exponent - kUnit));
+  sum.digits_ = ListDigits(cpp_int("0x" + hex) << (exponent - kUnit));
   for (std::int64_t& digit : sum.digits_) digit *= is_negative ? -1 : 1;
   sum.Carry();
   return sum;

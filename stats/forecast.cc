@@ -8,13 +8,13 @@
 namespace rcme {
 namespace {
 
-ClusteredEstimate MeanOf(std::span<const Forecast> forecasts, double greatest,
-                         double (*score)(const Forecast&), double confidence) {
+ClusteredEstimate MeasureMeanScore(std::span<const Forecast> forecasts, double greatest,
+                                   double (*score)(const Forecast&), double confidence) {
   CheckForecasts(forecasts);
   std::vector<double> scores;
   scores.reserve(forecasts.size());
   for (const Forecast& forecast : forecasts) scores.push_back(score(forecast));
-  return MeasureBoundedClusteredMean(scores, greatest, ClustersOf(forecasts), confidence);
+  return MeasureBoundedClusteredMean(scores, greatest, ListClusters(forecasts), confidence);
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ void CheckForecasts(std::span<const Forecast> forecasts) {
   }
 }
 
-std::vector<std::int64_t> ClustersOf(std::span<const Forecast> forecasts) {
+std::vector<std::int64_t> ListClusters(std::span<const Forecast> forecasts) {
   std::vector<std::int64_t> clusters;
   clusters.reserve(forecasts.size());
   for (const Forecast& forecast : forecasts) clusters.push_back(forecast.cluster);
@@ -49,7 +49,7 @@ double LogScore(double probability, bool happened, double clip) {
 }
 
 ClusteredEstimate MeasureShareHappened(std::span<const Forecast> forecasts, double confidence) {
-  const ClusteredEstimate share = MeanOf(
+  const ClusteredEstimate share = MeasureMeanScore(
       forecasts, 1.0, [](const Forecast& f) { return f.happened ? 1.0 : 0.0; }, confidence);
   if (share.num_clusters < share.n) return share;
   ClusteredEstimate of_single = share;
@@ -59,12 +59,12 @@ ClusteredEstimate MeasureShareHappened(std::span<const Forecast> forecasts, doub
 }
 
 ClusteredEstimate MeasureBrierScore(std::span<const Forecast> forecasts, double confidence) {
-  return MeanOf(
+  return MeasureMeanScore(
       forecasts, 1.0, [](const Forecast& f) { return BrierScore(f.probability, f.happened); }, confidence);
 }
 
 ClusteredEstimate MeasureLogScore(std::span<const Forecast> forecasts, double confidence) {
-  return MeanOf(
+  return MeasureMeanScore(
       forecasts, std::max(LogScore(0.0, true), LogScore(1.0, false)),
       [](const Forecast& f) { return LogScore(f.probability, f.happened); }, confidence);
 }

@@ -25,7 +25,7 @@ double ClippedProbability(double probability, double clip = kProbabilityClip);
 // Throws std::invalid_argument if there are no forecasts or a probability is not in [0, 1].
 void CheckForecasts(std::span<const Forecast> forecasts);
 
-std::vector<std::int64_t> ClustersOf(std::span<const Forecast> forecasts);
+std::vector<std::int64_t> ListClusters(std::span<const Forecast> forecasts);
 
 // Scores of a forecast, the less the better; both proper: nobody gains by stating another probability than
 // the one believed in. Brier (1950): (p - y)^2, in [0, 1]. Good's (1952) logarithmic score: -log of the

@@ -17,12 +17,12 @@ double RatioIn(std::span<const UnitValues* const> units) {
     observed.insert(observed.end(), unit->observed.begin(), unit->observed.end());
     null.insert(null.end(), unit->null.begin(), unit->null.end());
   }
-  return MedianOf(std::move(observed)) / MedianOf(std::move(null));
+  return ComputeMedian(std::move(observed)) / ComputeMedian(std::move(null));
 }
 
 }  // namespace
 
-double MedianOf(std::vector<double> values) {
+double ComputeMedian(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const size_t half = values.size() / 2;
   const double middle = ValueOfRank(half, &values);

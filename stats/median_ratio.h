@@ -28,6 +28,6 @@ ComparedMedians RatioOfMedians(std::span<const UnitValues> units, double confide
                                RandomStream& rng);
 
 // The middle of a list, NaN of an empty one.
-double MedianOf(std::vector<double> values);
+double ComputeMedian(std::vector<double> values);
 
 }  // namespace rcme

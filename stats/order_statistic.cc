@@ -11,7 +11,7 @@ double ValueOfRank(std::size_t rank, std::vector<double>* values) {
   return *at;
 }
 
-double QuantileOf(std::vector<double>& values, double probability) {
+double ComputeQuantile(std::vector<double>& values, double probability) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   return ValueOfRank(static_cast<std::size_t>(probability * (static_cast<double>(values.size()) - 1)),
                      &values);

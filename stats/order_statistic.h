@@ -11,6 +11,6 @@ namespace rcme {
 double ValueOfRank(std::size_t rank, std::vector<double>* values);
 
 // The value of rank floor(probability (n - 1)) of n. NaN if there are no values.
-double QuantileOf(std::vector<double>& values, double probability);
+double ComputeQuantile(std::vector<double>& values, double probability);
 
 }  // namespace rcme

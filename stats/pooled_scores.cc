@@ -41,7 +41,7 @@ struct Jackknife {
   double variance = 0.0, variance_if_apart = 0.0;
   std::int64_t num_members = 0;
 };
-Jackknife JackknifeOf(const std::vector<PairValue>& moves) {
+Jackknife ComputeJackknife(const std::vector<PairValue>& moves) {
   const SharedMemberMean mean = MeasureSharedMemberMean(moves);
   const double n = static_cast<double>(moves.size());
   double squares = 0.0;
@@ -56,9 +56,9 @@ struct Scatter {
   Eigen::VectorXd squared_shares_of_each;      // sum h_u^2
 };
 // Nothing where a unit alone tells a parameter.
-std::optional<Scatter> ScatterOf(std::span<const UnitScore> units, const Eigen::MatrixXd& A,
-                                 const Eigen::MatrixXd& inverse, const Eigen::VectorXd& theta,
-                                 const Scaling& scaling) {
+std::optional<Scatter> ComputeScatter(std::span<const UnitScore> units, const Eigen::MatrixXd& A,
+                                      const Eigen::MatrixXd& inverse, const Eigen::VectorXd& theta,
+                                      const Scaling& scaling) {
   Scatter scatter{std::vector<std::vector<PairValue>>(static_cast<size_t>(theta.size())), 0.0, 0.0,
                   Eigen::VectorXd::Zero(theta.size())};
   for (const UnitScore& unit : units) {
@@ -100,7 +100,7 @@ PooledScores PoolScores(std::span<const UnitScore> units, double confidence) {
   pooled.correlations = one_over_sd.asDiagonal() * *inverse * one_over_sd.asDiagonal();
 
   for (Eigen::Index j = 0; j < k; ++j) pooled.parameters[static_cast<size_t>(j)].value = theta(j);
-  const std::optional<Scatter> scatter = ScatterOf(units, A, *inverse, theta, scaling);
+  const std::optional<Scatter> scatter = ComputeScatter(units, A, *inverse, theta, scaling);
   if (!scatter) return pooled;
 
   const double parameters = static_cast<double>(k), of_shares = scatter->squared_shares;
@@ -108,7 +108,7 @@ PooledScores PoolScores(std::span<const UnitScore> units, double confidence) {
   std::vector<Jackknife> jackknives;
   double sharing = 0.0;  // c
   for (const auto& of_parameter : scatter->moves) {
-    jackknives.push_back(JackknifeOf(of_parameter));
+    jackknives.push_back(ComputeJackknife(of_parameter));
     sharing += RatioOrOne(jackknives.back().variance, jackknives.back().variance_if_apart) / parameters;
   }
   const double n = static_cast<double>(units.size());

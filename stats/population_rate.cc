@@ -29,7 +29,7 @@ struct WeightedShares {
   size_t size() const { return shares.size(); }
 };
 
-WeightedShares SharesOf(std::span<const ConditionCount> conditions, ConditionWeights kind) {
+WeightedShares ComputeShares(std::span<const ConditionCount> conditions, ConditionWeights kind) {
   WeightedShares of;
   for (const ConditionCount& condition : conditions) {
     if (condition.num_events < 0 || condition.num_events > condition.num_trials)
@@ -55,7 +55,7 @@ struct Spread {
   double greatest = 0.0;      // r, not kept to its range
 };
 
-Spread SpreadOf(const WeightedShares& of) {
+Spread ComputeSpread(const WeightedShares& of) {
   Spread spread;
   for (size_t i = 0; i < of.size(); ++i) {
     spread.p += of.weights[i] * of.shares[i];
@@ -90,7 +90,7 @@ double OneMore(const WeightedShares& of, const Spread& spread) {
 
 double UpperEnd(const WeightedShares& of, double tail) {
   const double M = of.effective;
-  const Spread spread = SpreadOf(of);
+  const Spread spread = ComputeSpread(of);
   if (spread.p == 0.0) return 1.0 - std::pow(tail, 1.0 / M);
   const double t = StudentQuantile(std::max(M - 1.0, 1.0), 1.0 - tail), z = NormalQuantile(1.0 - tail);
   const double B = spread.p * (1.0 - spread.p) * of.binomial;
@@ -157,7 +157,7 @@ double KishEffectiveNumber(std::span<const double> weights) {
 PopulationRate MeasurePopulationRate(std::span<const ConditionCount> conditions, ConditionWeights weights,
                                      double confidence) {
   PopulationRate rate;
-  const WeightedShares of = SharesOf(conditions, weights);
+  const WeightedShares of = ComputeShares(conditions, weights);
   for (const ConditionCount& condition : conditions) {
     rate.num_events += condition.num_events;
     rate.n += condition.num_trials;
@@ -167,7 +167,7 @@ PopulationRate MeasurePopulationRate(std::span<const ConditionCount> conditions,
   rate.interval = rate.of_these_conditions = {0.0, 1.0};
   rate.value = rate.effective_n = kNaN;
   if (rate.n == 0) return rate;
-  const Spread spread = SpreadOf(of);
+  const Spread spread = ComputeSpread(of);
   const double tail = 0.5 * (1.0 - confidence), n = static_cast<double>(rate.n);
   rate.value = std::min(spread.p, 1.0);
   rate.of_these_conditions = ExactInterval(rate.value, 1.0 / of.binomial, tail);
@@ -193,7 +193,8 @@ PopulationDifference MeasurePopulationDifference(std::span<const ConditionPair> 
   difference.value = a.value - b.value;
   difference.interval = {-1.0, 1.0};
   if (a.num_conditions < 2) return difference;
-  const double r = Correlation(SharesOf(first, weights), SharesOf(second, weights), a.value, b.value);
+  const double r =
+      Correlation(ComputeShares(first, weights), ComputeShares(second, weights), a.value, b.value);
   difference.interval = {
       std::max(-1.0, difference.value - Distance(a.value - a.interval.lower, b.interval.upper - b.value, r)),
       std::min(1.0, difference.value + Distance(a.interval.upper - a.value, b.value - b.interval.lower, r))};

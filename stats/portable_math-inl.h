@@ -26,7 +26,7 @@ HWY_INLINE hn::Vec<D> Polynomial(D d, const double (&c)[kSize], hn::Vec<D> x) {
 
 // x = m 2^e with m in [sqrt(1/2), sqrt(2)), then log m = 2 atanh(s), s = (m - 1) / (m + 1), |s| < 0.172.
 template <class D>
-HWY_INLINE hn::Vec<D> LogOf(D d, hn::Vec<D> x) {
+HWY_INLINE hn::Vec<D> ComputeLog(D d, hn::Vec<D> x) {
   // sum_k s^2k / (2k + 1), k = 0..10; the next term is below 2e-18.
   static constexpr double kAtanh[] = {1.0,      1.0 / 3,  1.0 / 5,  1.0 / 7,  1.0 / 9, 1.0 / 11,
                                       1.0 / 13, 1.0 / 15, 1.0 / 17, 1.0 / 19, 1.0 / 21};

@@ -10,7 +10,9 @@ constexpr hn::CappedTag<double, 1> kOneLane;  // of the baseline: one lane needs
 
 }  // namespace
 
-double PortableLog(double x) { return hn::GetLane(HWY_NAMESPACE::LogOf(kOneLane, hn::Set(kOneLane, x))); }
+double PortableLog(double x) {
+  return hn::GetLane(HWY_NAMESPACE::ComputeLog(kOneLane, hn::Set(kOneLane, x)));
+}
 
 CosSin PortableCosSinOfTurn(double u) {
   const HWY_NAMESPACE::CosSinOf turn(kOneLane, hn::Set(kOneLane, u));

@@ -54,7 +54,7 @@ struct PhiloxPairs {
 };
 
 // Exact, as an integer below 2^53 is.
-HWY_INLINE hn::Vec<Reals> UniformOf(PairsVec pair) {
+HWY_INLINE hn::Vec<Reals> ConvertToUniform(PairsVec pair) {
   const hn::RebindToSigned<Pairs> di;
   const auto integer = hn::BitCast(di, hn::ShiftRight<11>(pair));
   return hn::Mul(hn::ConvertTo(Reals(), integer), hn::Set(Reals(), 0x1p-53));
@@ -70,7 +70,8 @@ void PhiloxWordPairs(PhiloxInput first, std::size_t num_pairs, std::uint64_t* HW
 void PhiloxUniforms(PhiloxInput first, std::size_t num_uniforms, double* HWY_RESTRICT uniforms) {
   for (std::size_t block = 0; 2 * block < num_uniforms; block += hn::Lanes(Pairs())) {
     const PhiloxPairs made(first, block);
-    hn::StoreInterleaved2(UniformOf(made.first), UniformOf(made.second), Reals(), uniforms + 2 * block);
+    hn::StoreInterleaved2(ConvertToUniform(made.first), ConvertToUniform(made.second), Reals(),
+                          uniforms + 2 * block);
   }
 }
 
@@ -79,7 +80,7 @@ void NormalsFromUniforms(std::size_t num_values, double* HWY_RESTRICT values) {
   for (std::size_t i = 0; i < num_values; i += 2 * hn::Lanes(d)) {
     hn::Vec<Reals> u, v;
     hn::LoadInterleaved2(d, values + i, u, v);
-    const auto log = LogOf(d, hn::Sub(hn::Set(d, 1.0), u));  // 1 - u is in (0, 1]
+    const auto log = ComputeLog(d, hn::Sub(hn::Set(d, 1.0), u));  // 1 - u is in (0, 1]
     const auto radius = hn::Sqrt(hn::Mul(hn::Set(d, -2.0), log));
     const CosSinOf turn(d, v);
     hn::StoreInterleaved2(hn::Mul(radius, turn.cos), hn::Mul(radius, turn.sin), d, values + i);

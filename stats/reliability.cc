@@ -72,7 +72,7 @@ Groups GroupsWithOutcomes(std::span<const Forecast> forecasts) {
 }
 
 // Of samples in any order: the values that leave out less than the tail at either end.
-ConsistencyPoint PointOf(double probability, std::vector<double> samples, double confidence) {
+ConsistencyPoint ComputeConsistencyPoint(double probability, std::vector<double> samples, double confidence) {
   std::sort(samples.begin(), samples.end());
   const auto num_outside =
       static_cast<size_t>(0.5 * (1.0 - confidence) * static_cast<double>(samples.size() + 1));
@@ -123,7 +123,8 @@ CalibrationCheck CheckCalibration(std::span<const Forecast> forecasts, std::span
     for (size_t k = 0; k < at.size(); ++k) curves[k].push_back(curve.At(at[k]));
   }
   check.p_value = (1.0 + num_as_great) / (1.0 + num_samples);
-  for (size_t k = 0; k < at.size(); ++k) check.band.push_back(PointOf(at[k], curves[k], confidence));
+  for (size_t k = 0; k < at.size(); ++k)
+    check.band.push_back(ComputeConsistencyPoint(at[k], curves[k], confidence));
   return check;
 }
 

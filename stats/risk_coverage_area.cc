@@ -32,7 +32,7 @@ struct Tie {
   double weight = 0.0;  // mean of H_n - H_(rank - 1) over the ranks
 };
 
-std::vector<Tie> TiesOf(std::span<const ClusteredOutcome> outcomes, const std::vector<size_t>& order) {
+std::vector<Tie> FindTies(std::span<const ClusteredOutcome> outcomes, const std::vector<size_t>& order) {
   std::vector<Tie> ties;
   for (size_t i = 0; i < order.size(); ++i) {
     if (i == 0 || outcomes[order[i]].score != outcomes[order[i - 1]].score) ties.push_back({i, i});
@@ -64,7 +64,7 @@ Interval LogInterval(const ClusteredEstimate& area, double confidence) {
 
 ClusteredEstimate MeasureRiskCoverageArea(std::span<const ClusteredOutcome> outcomes, double confidence) {
   const std::vector<size_t> order = SurestFirst(outcomes);
-  const std::vector<Tie> ties = TiesOf(outcomes, order);
+  const std::vector<Tie> ties = FindTies(outcomes, order);
   const double n = static_cast<double>(outcomes.size());
   double area = 0.0, rate = 0.0;
   for (const Tie& tie : ties) area += tie.num_failed * tie.weight / n, rate += tie.num_failed / n;

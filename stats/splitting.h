@@ -87,7 +87,7 @@ class SplittingPopulation {
       : system_(system), rng_(*rng) {
     for (int i = 0; i < num_particles; ++i) {
       typename System::State state = system_.Draw(rng_);
-      const double value = ValueOf(state);
+      const double value = EvaluateState(state);
       particles_.push_back({std::move(state), value, i});
     }
   }
@@ -133,7 +133,7 @@ class SplittingPopulation {
     for (Particle& p : particles_) {
       bool is_local = false;
       typename System::State proposed = system_.Propose(p.state, step, rng_, is_local);
-      const double value = ValueOf(proposed);
+      const double value = EvaluateState(proposed);
       num_local += is_local;
       if (!(value > level)) continue;
       num_made += is_local;
@@ -150,7 +150,7 @@ class SplittingPopulation {
     int ancestor;  // number of the first particle it comes from
   };
 
-  double ValueOf(const typename System::State& state) {
+  double EvaluateState(const typename System::State& state) {
     ++num_values_;
     return system_.Value(state);
   }

@@ -47,8 +47,8 @@ std::string Name(SplittingDoubt doubt) {
   return "";
 }
 
-SplittingRate RateOf(const SplittingPilot& pilot, const std::vector<SplittingReplicate>& replicates,
-                     double confidence) {
+SplittingRate EstimateSplittingRate(const SplittingPilot& pilot,
+                                    const std::vector<SplittingReplicate>& replicates, double confidence) {
   SplittingRate rate;
   rate.num_values = pilot.num_values;
   if (pilot.end != PilotEnd::kReached) {

@@ -45,7 +45,8 @@ struct SplittingRate {
 };
 
 // Of at least two replicates, none if the pilot found no levels.
-SplittingRate RateOf(const SplittingPilot& pilot, const std::vector<SplittingReplicate>& replicates,
-                     double confidence = 0.95);
+SplittingRate EstimateSplittingRate(const SplittingPilot& pilot,
+                                    const std::vector<SplittingReplicate>& replicates,
+                                    double confidence = 0.95);
 
 }  // namespace rcme

@@ -73,7 +73,7 @@ StreamMedian StreamMedian::FromText(const std::string& text) {
   return median;
 }
 
-const StreamMedian::Cell& StreamMedian::CellOf(std::int64_t rank) const {
+const StreamMedian::Cell& StreamMedian::FindCell(std::int64_t rank) const {
   auto at = cells_.begin();
   for (std::int64_t below = at->second.count; below < rank; below += at->second.count) ++at;
   return at->second;
@@ -91,19 +91,19 @@ std::int64_t StreamMedian::CountUpTo(double x) const {
 Interval StreamMedian::IntervalOfQuantiles(double from, double to) const {
   if (n_ == 0) return {kNaN, kNaN};
   const double n = static_cast<double>(n_);
-  return {from <= 0.0 ? -kInfinity : CellOf(static_cast<std::int64_t>(std::ceil(from * n))).least,
-          to >= 1.0 ? kInfinity : CellOf(static_cast<std::int64_t>(std::floor(to * n)) + 1).greatest};
+  return {from <= 0.0 ? -kInfinity : FindCell(static_cast<std::int64_t>(std::ceil(from * n))).least,
+          to >= 1.0 ? kInfinity : FindCell(static_cast<std::int64_t>(std::floor(to * n)) + 1).greatest};
 }
 
 double StreamMedian::median() const {
-  return n_ > 0 ? CellOf((n_ + 1) / 2).least : std::numeric_limits<double>::quiet_NaN();
+  return n_ > 0 ? FindCell((n_ + 1) / 2).least : std::numeric_limits<double>::quiet_NaN();
 }
 
 Interval StreamMedian::interval(double confidence) const {
   if (n_ == 0) return {-kInfinity, kInfinity};
   const RankInterval ranks = QuantileRanks(n_, 0.5, confidence);
-  return {ranks.lower < 1 ? -kInfinity : CellOf(ranks.lower).least,
-          ranks.upper > n_ ? kInfinity : CellOf(ranks.upper).greatest};
+  return {ranks.lower < 1 ? -kInfinity : FindCell(ranks.lower).least,
+          ranks.upper > n_ ? kInfinity : FindCell(ranks.upper).greatest};
 }
 
 }  // namespace rcme

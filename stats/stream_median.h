@@ -42,7 +42,7 @@ class StreamMedian {
     std::int64_t count = 0;
     double least = 0.0, greatest = 0.0;
   };
-  const Cell& CellOf(std::int64_t rank) const;  // of the rank-th smallest, from 1
+  const Cell& FindCell(std::int64_t rank) const;  // of the rank-th smallest, from 1
 
   std::map<double, Cell> cells_;  // by the number that is cut off after eight digits
   std::int64_t n_ = 0;

@@ -22,17 +22,17 @@ struct Components {
   double within = 0.0, total = 0.0, mean = 0.0, num_scenes = 0.0;
 };
 
-double WithinOf(double q, int num_repeats) {
+double ComputeWithin(double q, int num_repeats) {
   const double repeats = num_repeats;
   return repeats / (repeats - 1.0) * q * (1.0 - q);
 }
 
-Components ComponentsOf(const std::vector<EqualScenes>& scenes, int num_repeats) {
+Components ComputeComponents(const std::vector<EqualScenes>& scenes, int num_repeats) {
   Components c;
   for (const EqualScenes& each : scenes) {
     c.num_scenes += each.count;
     c.mean += each.count * each.q;
-    c.within += each.count * WithinOf(each.q, num_repeats);
+    c.within += each.count * ComputeWithin(each.q, num_repeats);
   }
   c.mean /= c.num_scenes;
   c.within /= c.num_scenes;
@@ -46,7 +46,7 @@ Components ComponentsOf(const std::vector<EqualScenes>& scenes, int num_repeats)
 double StandardErrorOfLogShare(const std::vector<EqualScenes>& scenes, int num_repeats, const Components& c) {
   double squares = 0.0;
   for (const EqualScenes& each : scenes) {
-    const double influence = (WithinOf(each.q, num_repeats) - c.within) / c.within -
+    const double influence = (ComputeWithin(each.q, num_repeats) - c.within) / c.within -
                              (1.0 - 2.0 * c.mean) * (each.q - c.mean) / c.total;
     squares += each.count * influence * influence;
   }
@@ -79,7 +79,7 @@ VarianceSplit RepeatedEvents::Split(double confidence) const {
     const double count = static_cast<double>(num_scenes_with_[static_cast<size_t>(k)]);
     if (count > 0.0) scenes.push_back({static_cast<double>(k) / num_repeats_, count});
   }
-  const Components c = ComponentsOf(scenes, num_repeats_);
+  const Components c = ComputeComponents(scenes, num_repeats_);
   split.within = c.within;
   split.between = c.total - c.within;
   if (!(c.total > 0.0)) return split;
@@ -89,7 +89,7 @@ VarianceSplit RepeatedEvents::Split(double confidence) const {
     return split;
   }
   scenes.insert(scenes.end(), {{0.0, 1.0}, {0.5, 1.0}, {1.0, 1.0}});
-  const Components more = ComponentsOf(scenes, num_repeats_);
+  const Components more = ComputeComponents(scenes, num_repeats_);
   const double reach = StudentQuantile(static_cast<int>(num_scenes_) + 2, 0.5 * (1.0 + confidence)) *
                        StandardErrorOfLogShare(scenes, num_repeats_, more);
   const double center = more.within / more.total;

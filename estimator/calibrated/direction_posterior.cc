@@ -61,7 +61,7 @@ struct Parts {
   Eigen::Vector3d unit_along, unit_across;
   double sin, along, across;
 };
-Parts PartsOf(const Eigen::Vector3d& direction, const Displacement& match) {
+Parts ComputeParts(const Eigen::Vector3d& direction, const Displacement& match) {
   const Eigen::Vector3d e = direction - direction.dot(match.a) * match.a;
   Parts parts;
   parts.sin = std::max(e.norm(), 1e-9);
@@ -119,7 +119,7 @@ struct Rest {
   double along, along_variance, far, near, wrong;
   double All() const { return far + near + wrong; }
 };
-Rest RestOf(const DisplacementSet& set, const Parts& p, double noise_variance, const AxisFit& fit) {
+Rest ComputeRest(const DisplacementSet& set, const Parts& p, double noise_variance, const AxisFit& fit) {
   Rest rest;
   const double across = p.across + fit.x.head<3>().dot(p.unit_along);
   rest.along = p.along - fit.x.head<3>().dot(p.unit_across) - fit.x(3) * p.sin;
@@ -145,7 +145,7 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
   for (size_t i = 0; i < parts.size(); ++i) {
     const Parts& p = parts[i];
     const double noise = set.matches[i].noise_variance, sin2 = p.sin * p.sin;
-    const Rest rest = RestOf(set, p, noise, old);
+    const Rest rest = ComputeRest(set, p, noise, old);
     const double all = rest.All(), far = rest.far / all, near = rest.near / all;
     likelihood.MultiplyBy(all / rest.wrong);
     sum_near += near;
@@ -176,7 +176,7 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
 AxisFit FitAxis(const DisplacementSet& set, const Eigen::Vector3d& direction) {
   std::vector<Parts> parts;
   parts.reserve(set.matches.size());
-  for (const Displacement& match : set.matches) parts.push_back(PartsOf(direction, match));
+  for (const Displacement& match : set.matches) parts.push_back(ComputeParts(direction, match));
   AxisFit fit = FirstFit(parts);
   fit.direction = direction;
   for (int step = 0; step < kSteps; ++step) fit = Step(set, parts, fit);
@@ -276,7 +276,7 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
   posterior.best.pose = {RotationFromVector(best.x.head<3>()) * mode.mode.pose.R,
                          best.x(3) < 0.0 ? Eigen::Vector3d(-best.direction) : best.direction};
   for (const Displacement& match : set.matches) {
-    const Rest rest = RestOf(set, PartsOf(best.direction, match), match.noise_variance, best);
+    const Rest rest = ComputeRest(set, ComputeParts(best.direction, match), match.noise_variance, best);
     if (rest.far + rest.near > rest.wrong) continue;
     posterior.best.used[match.match / kBlockSize] &=
         static_cast<std::uint8_t>(~(1u << (match.match % kBlockSize)));

@@ -16,14 +16,14 @@ constexpr double kLeastCurvature = 0.1;
 constexpr double kDoubt = 0.5;
 constexpr double kFew = 30.0;
 
-Vector5d DerivativeOf(const MatchTermLists& terms, size_t i) {
+Vector5d ReadDerivative(const MatchTermLists& terms, size_t i) {
   Vector5d J;
   for (size_t k = 0; k < 5; ++k) J(static_cast<Eigen::Index>(k)) = terms.derivative[k][i];
   return J;
 }
 
 // The least matrix that is as great as both along every direction in which they are compared.
-Matrix5d GreaterOf(const Matrix5d& a, const Matrix5d& b) {
+Matrix5d ComputeLeastUpperBound(const Matrix5d& a, const Matrix5d& b) {
   const Eigen::LLT<Matrix5d> llt(b);
   if (llt.info() != Eigen::Success) return a;
   const Matrix5d L = llt.matrixL();
@@ -73,7 +73,7 @@ Vector5d EffectiveMatches(const Mode& mode, const Explanation& e, const Matrix5d
   Vector5d sum = Vector5d::Zero(), sum_squares = Vector5d::Zero();
   for (size_t i = 0; i < e.probability.size(); ++i) {
     if (!(mode.used[i / kBlockSize] >> (i % kBlockSize) & 1)) continue;
-    const Vector5d part = e.probability[i] * (axes.transpose() * DerivativeOf(e.terms, i)).cwiseAbs2();
+    const Vector5d part = e.probability[i] * (axes.transpose() * ReadDerivative(e.terms, i)).cwiseAbs2();
     sum += part;
     sum_squares += part.cwiseAbs2();
   }
@@ -90,7 +90,7 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
     const double u = e.terms.residual[i] / m.scale;
     const double psi = e.probability[i] * NoiseWeight(m.noise, u) * u;
     const double factor = psi / (std::max(1.0 - e.leverage[i], 0.05) * m.scale);
-    const Vector5d J = DerivativeOf(e.terms, i);
+    const Vector5d J = ReadDerivative(e.terms, i);
     const Matrix5d outer = J * J.transpose();
     scores += factor * factor * outer;
     geometry += e.probability[i] * outer;
@@ -103,7 +103,7 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
   }
   const double freedom = std::max(num_right - 5.0, 1.0);
   const Matrix5d equal = sum_squares / freedom * geometry;
-  scores = GreaterOf(scores, equal) + doubt;
+  scores = ComputeLeastUpperBound(scores, equal) + doubt;
   // From a root of the middle: few matches leave a direction so uncertain that rounding would make the
   // product indefinite.
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(scores);

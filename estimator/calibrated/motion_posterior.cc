@@ -52,7 +52,7 @@ std::array<Eigen::Matrix<double, kSize, 1>, kNumber> MakeNormals() {
 }
 
 template <int kSize>
-Eigen::Matrix<double, kSize, kSize> RootOf(const Eigen::Matrix<double, kSize, kSize>& covariance) {
+Eigen::Matrix<double, kSize, kSize> ComputeRoot(const Eigen::Matrix<double, kSize, kSize>& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kSize, kSize>> eigen(covariance);
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
@@ -69,7 +69,7 @@ void AddPoints(const MotionComponent& component, double share, std::vector<PoseP
   static const std::array<RadiusPoint, kRadii> radii = MakeRadii();
   const size_t most = component.is_answer ? kDirections : kDirectionsOfRival;
   const size_t number = std::max(static_cast<size_t>(share * static_cast<double>(most)), kLeastDirections);
-  const Matrix5d root = RootOf<5>(component.covariance);
+  const Matrix5d root = ComputeRoot<5>(component.covariance);
   for (size_t i = 0; i < number; ++i) {
     const Vector5d unit = root * normals[i].normalized();
     for (const RadiusPoint& at : radii)
@@ -101,7 +101,7 @@ RelativePose MotionIn(const DirectionCell& cell, const Eigen::Matrix3d& root_of_
 void AddPoints(const MotionPosterior& posterior, const DirectionCell& cell, double share,
                std::vector<PosePoint>* points) {
   static const auto places = MakeNormals<5, kPointsOfCells + kLeastOfCell>();
-  const Eigen::Matrix3d root = RootOf<3>(cell.rotation_cov);
+  const Eigen::Matrix3d root = ComputeRoot<3>(cell.rotation_cov);
   const auto number = kLeastOfCell + static_cast<size_t>(share * static_cast<double>(kPointsOfCells));
   for (size_t k = 0; k < number; ++k)
     points->push_back(
@@ -109,7 +109,7 @@ void AddPoints(const MotionPosterior& posterior, const DirectionCell& cell, doub
 }
 
 // How many there are of each part depends on shares alone, not on the weight of the whole.
-std::vector<PosePoint> PointsOf(const MotionPosterior& posterior) {
+std::vector<PosePoint> MakePosePoints(const MotionPosterior& posterior) {
   std::vector<PosePoint> points;
   double greatest[2] = {0.0, 0.0}, of_cells = 0.0;
   for (const MotionComponent& component : posterior.components)
@@ -135,7 +135,7 @@ void ScaleWeights(double factor, bool is_answer, MotionPosterior* posterior) {
     for (DirectionCell& cell : posterior->cells) cell.weight *= factor;
 }
 
-double WeightOf(bool is_answer, const MotionPosterior& posterior) {
+double SumWeight(bool is_answer, const MotionPosterior& posterior) {
   double weight = 0.0;
   for (const MotionComponent& component : posterior.components)
     if (component.is_answer == is_answer) weight += component.weight;
@@ -154,7 +154,7 @@ MotionPosterior Narrowed(MotionPosterior posterior, double factor, const MotionB
     cell.rotation *= factor;
     cell.rotation_cov *= factor * factor;
   }
-  const double weight = WeightOf(true, posterior);
+  const double weight = SumWeight(true, posterior);
   if (weight > 0.0) ScaleWeights(1.0 / weight, true, &posterior);
   return posterior;
 }
@@ -202,7 +202,7 @@ MotionPosterior MakeMotionPosterior(const RelativePose& answer, const MotionBoun
                                     std::vector<DirectionCell> cells) {
   MotionPosterior posterior{answer, std::move(components), std::move(cells), 0.0, 1.0};
   const double p = failure_probability;
-  double of_rivals = WeightOf(false, posterior);
+  double of_rivals = SumWeight(false, posterior);
   double beyond = PosteriorDistances(posterior, answer).ComputeBeyond(false, bounds);
   const double within = of_rivals - beyond;
   const double kept =
@@ -214,13 +214,13 @@ MotionPosterior MakeMotionPosterior(const RelativePose& answer, const MotionBoun
   posterior = NarrowedTo(most, posterior, bounds);
   const double of_answer = (1.0 - p - (of_rivals - beyond)) / (1.0 - BeyondOfAnswer(posterior, bounds));
   ScaleWeights(std::clamp(of_answer, 0.0, 1.0 - of_rivals), true, &posterior);
-  posterior.weight_of_none = std::max(1.0 - WeightOf(false, posterior) - WeightOf(true, posterior), 0.0);
+  posterior.weight_of_none = std::max(1.0 - SumWeight(false, posterior) - SumWeight(true, posterior), 0.0);
   return posterior;
 }
 
 PosteriorDistances::PosteriorDistances(const MotionPosterior& posterior, const RelativePose& motion)
     : weight_of_none_(posterior.weight_of_none) {
-  for (const PosePoint& point : PointsOf(posterior))
+  for (const PosePoint& point : MakePosePoints(posterior))
     points_.push_back({{RotationAngleBetween(motion.R, point.pose.R), AngleBetween(motion.t, point.pose.t)},
                        point.weight,
                        point.is_answer});
@@ -275,12 +275,12 @@ PosteriorCovariance Covariance(const MotionPosterior& posterior) {
     const Vector5d away = LocalCoordinates(posterior.answer, component.mean);
     covariance.of_answer += component.weight * (component.covariance + away * away.transpose());
   }
-  for (const PosePoint& point : PointsOf(posterior)) {
+  for (const PosePoint& point : MakePosePoints(posterior)) {
     if (point.is_answer && posterior.cells.empty()) continue;  // in closed form, above
     const Vector5d away = LocalCoordinates(posterior.answer, point.pose);
     (point.is_answer ? covariance.of_answer : of_rivals) += point.weight * away * away.transpose();
   }
-  const double answer = WeightOf(true, posterior), rivals = WeightOf(false, posterior);
+  const double answer = SumWeight(true, posterior), rivals = SumWeight(false, posterior);
   if (answer + rivals > 0.0) covariance.total = (covariance.of_answer + of_rivals) / (answer + rivals);
   if (answer > 0.0) covariance.of_answer /= answer;
   return covariance;
@@ -289,7 +289,7 @@ PosteriorCovariance Covariance(const MotionPosterior& posterior) {
 RelativePose Median(const MotionPosterior& posterior) {
   constexpr int kMostSteps = 50;
   constexpr double kNegligible = 1e-6;  // rad
-  const std::vector<PosePoint> points = PointsOf(posterior);
+  const std::vector<PosePoint> points = MakePosePoints(posterior);
   RelativePose median = posterior.answer;
   std::vector<Eigen::Vector3d> rotations(points.size());
   std::vector<Eigen::Vector2d> directions(points.size());
@@ -314,14 +314,14 @@ std::optional<RelativePose> Draw(const MotionPosterior& posterior, RandomStream&
     if (left >= 0.0) continue;
     Vector5d normal;
     for (double& x : normal) x = rng.Normal();
-    return Retract(component.mean, RootOf<5>(component.covariance) * normal);
+    return Retract(component.mean, ComputeRoot<5>(component.covariance) * normal);
   }
   for (const DirectionCell& cell : posterior.cells) {
     left -= cell.weight;
     if (left >= 0.0) continue;
     Vector5d place;
     for (double& x : place) x = rng.Normal();
-    return MotionIn(cell, RootOf<3>(cell.rotation_cov), posterior.answer, place);
+    return MotionIn(cell, ComputeRoot<3>(cell.rotation_cov), posterior.answer, place);
   }
   return std::nullopt;
 }

@@ -35,9 +35,10 @@ void Leave(const std::vector<size_t>& only, MatchMask* mask) {
 
 // The best motion of some of the matches at the assumed scale. Neither the samples are ranked nor the
 // candidates refined at a wider one, where a compromise between two motions would win.
-std::optional<Mode> MotionOf(const MotionProblem& problem, const MatchBlocks& matches,
-                             const MixturePrior& fixed, const std::vector<size_t>& some, RandomStream& rng) {
-  const MatchBlocks blocks(PartOf(problem, some));
+std::optional<Mode> SearchMotion(const MotionProblem& problem, const MatchBlocks& matches,
+                                 const MixturePrior& fixed, const std::vector<size_t>& some,
+                                 RandomStream& rng) {
+  const MatchBlocks blocks(SelectPart(problem, some));
   CalibratedOptions options;
   options.max_samples = kSplitSamples;
   options.num_candidates = kCandidates;
@@ -92,12 +93,12 @@ std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, con
   fixed.estimates_scale = false;
   std::vector<size_t> all(problem.matches.size());
   std::iota(all.begin(), all.end(), size_t{0});
-  std::optional<Mode> first = MotionOf(problem, matches, fixed, all, rng);
+  std::optional<Mode> first = SearchMotion(problem, matches, fixed, all, rng);
   if (!first) return std::nullopt;
   const Explanation by_first = Explain(matches, *first);
   const std::vector<size_t> rest = Unexplained(by_first);
   if (rest.size() < kLeastMatches) return std::nullopt;
-  std::optional<Mode> second = MotionOf(problem, matches, fixed, rest, rng);
+  std::optional<Mode> second = SearchMotion(problem, matches, fixed, rest, rng);
   if (!second) return std::nullopt;
   const TwoMotions mix = Mix(by_first, Explain(matches, *second), prior.uniform_density);
   if (mix.log_likelihood < mode.log_likelihood + kLeastSplitGain) return std::nullopt;

@@ -75,10 +75,10 @@ ConformJudge::ConformJudge(ConformRule rule) : rule_(std::move(rule)) {
       const double x = rule_.familiar[i * width + j];
       if (!std::isnan(x)) values.push_back(x);
     }
-    const double median = values.empty() ? 0.0 : MedianOf(values);
+    const double median = values.empty() ? 0.0 : ComputeMedian(values);
     for (const double x : values) distances.push_back(std::abs(x - median));
     constexpr double kLeastScale = 1e-6;  // all alike
-    usual_.push_back({median, std::fmax(MedianOf(std::move(distances)), kLeastScale)});
+    usual_.push_back({median, std::fmax(ComputeMedian(std::move(distances)), kLeastScale)});
   }
   for (size_t i = 0; i < n; ++i) {
     VisibleFeatures features;

@@ -40,7 +40,7 @@ double ResidualScale(const MotionProblem& problem, const Eigen::Matrix3d& F,
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];
     distances.push_back(std::sqrt(SquaredSampsonDistance(F, match)));
   }
-  return MedianOf(std::move(distances)) / (kMedianOfNormal * problem.sigma_px);
+  return ComputeMedian(std::move(distances)) / (kMedianOfNormal * problem.sigma_px);
 }
 
 // |x2 - h(x1)| of the rotation's homography, over sqrt(2) sigma; infinite behind camera 2.
@@ -56,7 +56,7 @@ double MedianParallax(const std::vector<RayMatch>& matches, const RayScale& nois
     const double y = (match.ray2.y() - turned.y() / turned.z()) / noise.y2;
     parallax.push_back(std::hypot(x, y) / std::sqrt(2.0));
   }
-  return MedianOf(std::move(parallax));
+  return ComputeMedian(std::move(parallax));
 }
 
 // The most of these matches that the homography of one of some samples explains, refined.
@@ -127,7 +127,7 @@ VisibleFeatures MeasureVisibleFeatures(const MotionProblem& problem, const Motio
   set(VisibleFeature::kAgreeingShare, LogOdds(num_agreeing, static_cast<double>(n) - num_agreeing));
   set(VisibleFeature::kResidual, LogRatio(ResidualScale(problem, F, estimate.inliers)));
 
-  const RayMatches all(PartOf(problem, agreeing));
+  const RayMatches all(SelectPart(problem, agreeing));
   set(VisibleFeature::kParallax, LogRatio(MedianParallax(all.matches, all.noise, pose.R)));
   if (agreeing.size() >= 4) {
     RayMatches some = all;

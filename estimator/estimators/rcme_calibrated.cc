@@ -33,10 +33,10 @@ MotionProblem Shuffled(const MotionProblem& problem, RandomStream& rng, std::vec
   order->resize(problem.matches.size());
   std::iota(order->begin(), order->end(), 0);
   rng.Shuffle(std::span<int>(*order));
-  return PartOf(problem, *order);
+  return SelectPart(problem, *order);
 }
 
-MixturePrior PriorOf(const MotionProblem& problem, const CalibratedOptions& options) {
+MixturePrior MakePrior(const MotionProblem& problem, const CalibratedOptions& options) {
   const double diagonal = std::hypot(problem.camera2.width, problem.camera2.height) / problem.sigma_px;
   return {2.0 / diagonal, options.sigma == SigmaKnowledge::kEstimated};
 }
@@ -108,14 +108,14 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     std::vector<int> order;
     const MotionProblem shuffled = Shuffled(problem, rng, &order);
     LoopCounts counts;
-    return FindExplained(shuffled, MatchBlocks(shuffled), PriorOf(problem, options_), rng, &counts);
+    return FindExplained(shuffled, MatchBlocks(shuffled), MakePrior(problem, options_), rng, &counts);
   }
 
   std::vector<WeighedMotion> WeighMotions(const MotionProblem& problem,
                                           const std::vector<RelativePose>& starts) const override {
     if (RefuseUnsolvable(problem, 6)) return {};
     const MatchBlocks matches(problem);
-    const MixturePrior prior = PriorOf(problem, options_);
+    const MixturePrior prior = MakePrior(problem, options_);
     const std::vector<ExplainedMode> modes =
         ExplainMatches(problem, matches, prior, options_, ModesFrom(matches, prior, starts));
     if (modes.empty()) return {};
@@ -136,7 +136,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     std::vector<int> order;
     const MotionProblem shuffled = Shuffled(problem, rng, &order);
     const MatchBlocks matches(shuffled);
-    const MixturePrior prior = PriorOf(problem, options_);
+    const MixturePrior prior = MakePrior(problem, options_);
     MotionEstimate estimate;
     std::vector<ExplainedMode> modes = FindExplained(shuffled, matches, prior, rng, &estimate.counts);
     const int num_solved = estimate.counts.num_hypotheses - estimate.counts.num_degenerate_samples;
@@ -212,8 +212,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
 
   // `spreads`: per mode, see Judge. A covariance that is not of the modes (kRobust) is the whole answer's.
   MotionPosterior BuildPosterior(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
-                              const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
-                              bool is_direction_weak, const MotionEstimate& estimate) const {
+                                 const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
+                                 bool is_direction_weak, const MotionEstimate& estimate) const {
     const bool is_whole = options_.covariance == CovarianceKind::kRobust;
     std::vector<MotionComponent> components;
     for (size_t i = 0; i < modes.size(); ++i) {
@@ -226,7 +226,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
           {modes[i].mode.pose, is_whole && is_answer ? estimate.pose_cov : spreads[i], weight, is_answer});
     }
     std::vector<DirectionCell> cells;
-    if (is_direction_weak) cells = ComputeDirectionCells(problem, modes[weights.answer], Bounds().direction_rad);
+    if (is_direction_weak)
+      cells = ComputeDirectionCells(problem, modes[weights.answer], Bounds().direction_rad);
     return MakeMotionPosterior(estimate.cam2_from_cam1, Bounds(), estimate.failure_probability,
                                std::move(components), std::move(cells));
   }

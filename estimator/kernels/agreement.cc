@@ -44,8 +44,8 @@ void FindAgreeingMatches(const MatchBlocks& matches, const TwoViewPose& pose, co
       const Vec total = hn::IfThenElse(is_fitted, n2 - terms.variance, n2 + terms.variance);
       const Mask fits = hn::And(terms.g2 <= limit * total, terms.variance <= max_leverage * n2);
       const Mask are_matches = AreMatches(b * kBlockSize + lane, matches.num_matches());
-      bits |= BitsOf(hn::And(are_matches,
-                             hn::AndNot(AreClearlyBehind(pose, matches.ray_scale(), m, noise2), fits)))
+      bits |= ReadMaskBits(hn::And(are_matches,
+                                   hn::AndNot(AreClearlyBehind(pose, matches.ray_scale(), m, noise2), fits)))
               << lane;
     }
     (*agreeing)[static_cast<size_t>(b)] = static_cast<std::uint8_t>(bits);
@@ -57,10 +57,10 @@ FrontCounts CountFront(const MatchBlocks& matches, const MatchMask& mask, const 
   for (int b = 0; b < matches.num_blocks(); ++b) {
     for (int lane = 0; lane < kBlockSize; lane += kLanes) {
       const Sides sides = EvaluateSides(pose, matches.ray_scale(), LoadMatches(matches[b], lane));
-      const unsigned ahead =
-          BitsOf(sides.is_ahead_of_camera2) & (static_cast<unsigned>(mask[static_cast<size_t>(b)]) >> lane);
-      counts.with_t += __builtin_popcount(ahead & BitsOf(sides.inverse_depth > Set(0.0)));
-      counts.with_opposite_t += __builtin_popcount(ahead & BitsOf(sides.inverse_depth < Set(0.0)));
+      const unsigned ahead = ReadMaskBits(sides.is_ahead_of_camera2) &
+                             (static_cast<unsigned>(mask[static_cast<size_t>(b)]) >> lane);
+      counts.with_t += __builtin_popcount(ahead & ReadMaskBits(sides.inverse_depth > Set(0.0)));
+      counts.with_opposite_t += __builtin_popcount(ahead & ReadMaskBits(sides.inverse_depth < Set(0.0)));
     }
   }
   return counts;

@@ -42,16 +42,14 @@ HWY_INLINE Vec ShareOfBox(const double* F, const Box& box, double threshold, Vec
 
 double SumShares(const double* F, const Box& box, double threshold, const double* x, const double* y,
                  int count) {
-  HWY_ALIGN double sums[kBlockSize];
-  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+  return SumOverLanes([&](int lane) {
     Vec sum = Set(0.0);
     for (int i = lane; i < count; i += kBlockSize) {
       const Vec share = ShareOfBox(F, box, threshold, Load(x + i), Load(y + i));
       sum = sum + hn::IfThenElseZero(AreMatches(i, count), share);
     }
-    Store(sum, sums + lane);
-  }
-  return SumOfEight(sums);
+    return sum;
+  });
 }
 
 }  // namespace rcme::HWY_NAMESPACE

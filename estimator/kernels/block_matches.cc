@@ -35,7 +35,7 @@ RelativePose BlockMatches::SelectPose(const EssentialProjection& projection, con
 
 RefinedMotion BlockMatches::Refine(const Set& set, const RelativePose& start, Loss loss) const {
   return error_ == RefinementError::kReprojection
-             ? RefineByReprojection(problem_, rcme::IndicesOf(set), start, loss)
+             ? RefineByReprojection(problem_, rcme::ListIndices(set), start, loss)
              : RefineBySampson(matches_, set, start, loss);
 }
 

@@ -30,9 +30,9 @@ class BlockMatches {
   Eigen::Matrix2d SumDirectionNoise(const Set& set, const RelativePose& pose,
                                     const Eigen::Matrix2d& direction_cov) const;
   Set Intersect(const Set& a, const Set& b) const { return Intersection(a, b); }
-  Set SetOf(const std::vector<int>& indices) const { return MaskOf(indices, matches_); }
+  Set MakeSet(const std::vector<int>& indices) const { return MakeMask(indices, matches_); }
   Set All() const { return matches_.All(); }
-  std::vector<int> IndicesOf(const Set& set) const { return rcme::IndicesOf(set); }
+  std::vector<int> ListIndices(const Set& set) const { return rcme::ListIndices(set); }
   int Count(const Set& set) const { return CountIn(set); }
 
  private:

@@ -11,20 +11,20 @@ struct TestDof {
 };
 
 template <typename PointTest>
-TestDof DofOf(int solver_dof) {
+TestDof FindTestDof(int solver_dof) {
   return {PointTest::kDegreesOfFreedom, PointTest::SampleTestDof(solver_dof)};
 }
 
 TestDof DegreesOfFreedom(BlockReading reading, int solver_dof) {
   switch (reading) {
     case BlockReading::kAsPrinted:
-      return DofOf<AsPrintedTest>(solver_dof);
+      return FindTestDof<AsPrintedTest>(solver_dof);
     case BlockReading::kRankAware:
-      return DofOf<RankAwareTest>(solver_dof);
+      return FindTestDof<RankAwareTest>(solver_dof);
     case BlockReading::kKnownPose:
       break;
   }
-  return DofOf<KnownPoseTest>(solver_dof);
+  return FindTestDof<KnownPoseTest>(solver_dof);
 }
 
 }  // namespace

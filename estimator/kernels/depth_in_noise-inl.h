@@ -47,7 +47,7 @@ HWY_INLINE DepthAngle Least(const DepthAngles& depths) {
   return {hn::IfThenElse(is_first, p.along, q.along), hn::IfThenElse(is_first, p.square, q.square)};
 }
 
-HWY_INLINE Vec AngleOf(const DepthAngle& depth) { return depth.along / hn::Sqrt(depth.square); }
+HWY_INLINE Vec ComputeAngle(const DepthAngle& depth) { return depth.along / hn::Sqrt(depth.square); }
 
 }  // namespace rcme::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

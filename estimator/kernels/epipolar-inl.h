@@ -24,6 +24,14 @@ HWY_INLINE Mask AreMatches(int first_match, int num_matches) {
   return hn::FirstN(Tag(), static_cast<size_t>(num_matches > first_match ? num_matches - first_match : 0));
 }
 
+// The sum over a block's places: sum_lanes(lane) gives the partial sums of the vector that begins at a place.
+template <typename SumLanes>
+HWY_INLINE double SumOverLanes(const SumLanes& sum_lanes) {
+  HWY_ALIGN double sums[kBlockSize];
+  for (int lane = 0; lane < kBlockSize; lane += kLanes) Store(sum_lanes(lane), sums + lane);
+  return SumOfEight(sums);
+}
+
 // g and its gradient with respect to (x1, y1, x2, y2).
 struct Constraint {
   Vec g, gradient[4];

@@ -29,7 +29,7 @@ struct Node {
   double t;         // z or u
   bool is_inverse;  // u
 };
-constexpr Node NodeOf(int n) {
+constexpr Node ComputeNode(int n) {
   if (n < kQuarter) return {-static_cast<double>(n) / kQuarter, true};
   if (n <= 3 * kQuarter) return {static_cast<double>(n - 2 * kQuarter) / kQuarter, false};
   return {static_cast<double>(kNumNodes - n) / kQuarter, true};
@@ -41,7 +41,8 @@ struct Interval {
 constexpr std::array<Interval, kNumNodes> MakeIntervals() {
   std::array<Interval, kNumNodes> intervals{};
   for (int n = 0; n < kNumNodes; ++n) {
-    const Node a = NodeOf(n), b = NodeOf((n + 1) % kNumNodes);  // t of 1 and -1 is the same in both charts
+    const Node a = ComputeNode(n),
+               b = ComputeNode((n + 1) % kNumNodes);  // t of 1 and -1 is the same in both charts
     intervals[static_cast<size_t>(n)] = {a.t, b.t, a.is_inverse || b.is_inverse ? 1.0 : 0.0};
   }
   return intervals;
@@ -76,7 +77,7 @@ class NodeWriter {
       hn::StoreMaskBits(Tag(), mask, byte);
       return;
     }
-    const unsigned bits = BitsOf(mask) << lane_;
+    const unsigned bits = ReadMaskBits(mask) << lane_;
     *byte = static_cast<std::uint8_t>(lane_ == 0 ? bits : *byte | bits);
   }
   int lane_;
@@ -166,7 +167,7 @@ struct Extremum {
 // Whether p has its other sign there: two roots. Newton's method on p' from the node, until p has changed its
 // sign or the parabola at hand says that it does not.
 inline bool FindPair(const BlockPolynomials& polynomials, int sample, int n, Extremum* extremum) {
-  const Node node = NodeOf(n);
+  const Node node = ComputeNode(n);
   double p[kDegree + 1];
   for (int c = 0; c <= kDegree; ++c) p[c] = polynomials.p[node.is_inverse ? kDegree - c : c][sample];
   double t = node.t;
@@ -242,7 +243,8 @@ inline void AddPairs(const BlockPolynomials& polynomials, const SignChanges& cha
     for (std::uint64_t left = minima; left != 0; left &= left - 1) {
       const int bit = __builtin_ctzll(left), node = n + bit / 8, sample = bit % 8;
       Extremum extremum;
-      if (FindPair(polynomials, sample, node, &extremum)) AddPair(extremum, NodeOf(node), sample, brackets);
+      if (FindPair(polynomials, sample, node, &extremum))
+        AddPair(extremum, ComputeNode(node), sample, brackets);
     }
   }
 }

@@ -233,7 +233,7 @@ inline void Settle(const BlockPolynomials& polynomials, UnsettledRoots* unsettle
     const SampleBasis of_sample(polynomials, Lookup(unsettled->sample + first));
     Vec4 c = {Load(unsettled->c[0] + first), Load(unsettled->c[1] + first), Load(unsettled->c[2] + first),
               Load(unsettled->c[3] + first)};
-    const unsigned is_model = BitsOf(SettleCoordinates(of_sample, &c));
+    const unsigned is_model = ReadMaskBits(SettleCoordinates(of_sample, &c));
     alignas(64) double E[9][Brackets::kCapacity];
     StoreMatrices(of_sample, c, 0, E);
     for (int lane = 0; lane < kLanes && first + lane < unsettled->count; ++lane) {
@@ -256,7 +256,8 @@ inline void RecoverMatrices(const BlockPolynomials& polynomials, const Brackets&
         TakeNewtonStep(of_sample, CoordinatesAtRoot(polynomials, lookup, is_inverse, Load(t + first)));
     StoreCoordinates(step.c, first, roots->c);
     StoreMatrices(of_sample, step.c, first, roots->E);
-    const unsigned is_regular = BitsOf(step.is_regular), is_model = is_regular & BitsOf(step.is_short);
+    const unsigned is_regular = ReadMaskBits(step.is_regular),
+                   is_model = is_regular & ReadMaskBits(step.is_short);
     for (int lane = 0; lane < kLanes; ++lane) roots->is_model[first + lane] = (is_model >> lane) & 1u;
     const int num_left = brackets.count - first;
     unsigned others = is_regular & ~is_model;

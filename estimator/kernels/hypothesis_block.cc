@@ -146,7 +146,7 @@ void FillBlock(const RayScale& ray_scale, HypothesisBlock* block) {
   const Whitening whitening(ray_scale);
   unsigned is_model = 0;
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
-    is_model |= BitsOf(FillLanes<outputs>(whitening, lane, block)) << lane;
+    is_model |= ReadMaskBits(FillLanes<outputs>(whitening, lane, block)) << lane;
   }
   block->is_model = static_cast<std::uint8_t>(is_model);
 }

@@ -52,7 +52,7 @@ HWY_INLINE double SumOfEight(const double* s) {
   return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
 }
 // Bit l is lane l of the mask.
-HWY_INLINE unsigned BitsOf(Mask mask) {
+HWY_INLINE unsigned ReadMaskBits(Mask mask) {
   std::uint8_t bits[8] = {};
   hn::StoreMaskBits(Tag(), mask, bits);
   return bits[0];

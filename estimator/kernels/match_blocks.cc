@@ -35,7 +35,7 @@ MatchMask MatchBlocks::All() const {
   return mask;
 }
 
-std::vector<int> IndicesOf(const MatchMask& mask) {
+std::vector<int> ListIndices(const MatchMask& mask) {
   std::vector<int> indices;
   indices.reserve(static_cast<size_t>(CountIn(mask)));
   for (size_t block = 0; block < mask.size(); ++block) {
@@ -46,7 +46,7 @@ std::vector<int> IndicesOf(const MatchMask& mask) {
   return indices;
 }
 
-MatchMask MaskOf(std::span<const int> indices, const MatchBlocks& matches) {
+MatchMask MakeMask(std::span<const int> indices, const MatchBlocks& matches) {
   MatchMask mask = matches.Empty();
   for (const int i : indices) {
     std::uint8_t& byte = mask[static_cast<size_t>(i / kBlockSize)];

@@ -60,8 +60,8 @@ inline void WriteRowMajor(const Eigen::Matrix3d& matrix, double* to) {
 }
 
 // Indices of the matches in the mask, ascending, and back.
-std::vector<int> IndicesOf(const MatchMask& mask);
-MatchMask MaskOf(std::span<const int> indices, const MatchBlocks& matches);
+std::vector<int> ListIndices(const MatchMask& mask);
+MatchMask MakeMask(std::span<const int> indices, const MatchBlocks& matches);
 
 MatchMask Intersection(const MatchMask& a, const MatchMask& b);
 

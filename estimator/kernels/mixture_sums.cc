@@ -119,7 +119,7 @@ void SumMixtureOver(const MatchBlocks& matches, const MatchMask& mask, const Mix
     for (Vec& sum : sums) sum = zero;
     for (int b = 0; b < matches.num_blocks(); ++b) {
       if (b % 8 == 0) {
-        sums[0] = sums[0] + LogOf(Tag(), product);
+        sums[0] = sums[0] + ComputeLog(Tag(), product);
         product = one;
       }
       const unsigned bits = mask[static_cast<size_t>(b)];
@@ -152,7 +152,7 @@ void SumMixtureOver(const MatchBlocks& matches, const MatchMask& mask, const Mix
         for (int col = 0; col <= row; ++col, ++i) sums[i] = FusedMulAdd(weighted, slopes[col], sums[i]);
       }
     }
-    sums[0] = sums[0] + LogOf(Tag(), product);
+    sums[0] = sums[0] + ComputeLog(Tag(), product);
     for (int i = 0; i < kNumMixtureSums; ++i) Store(sums[i], partial[i] + lane);
   }
   for (int i = 0; i < kNumMixtureSums; ++i) totals[i] = SumOfEight(partial[i]);
@@ -171,7 +171,8 @@ void ListTerms(const MatchBlocks& matches, const MixtureModel& model, double* co
       const Matches m = LoadMatches(matches[b], lane);
       const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
       const Vec inverse_n = Set(1.0) / hn::Sqrt(SquaredGradient(c)), r = c.g * inverse_n;
-      const Vec z = AngleOf(Least(EvaluateDepths(model.pose, model.rays, m))) * Set(model.inverse_noise_rad);
+      const Vec z =
+          ComputeAngle(Least(EvaluateDepths(model.pose, model.rays, m))) * Set(model.inverse_noise_rad);
       Vec slopes[5];
       EvaluateSlopes(model, m, c, r * inverse_n, slopes);
       const int at = b * kBlockSize + lane;
@@ -196,8 +197,8 @@ double SumCheiralityOver(const MatchBlocks& matches, int num_blocks, const Mixtu
       const Vec n2 = Dot4(c.gradient, c.gradient) * (noise.scale * noise.scale);
       const Vec v = n2 / FusedMulAdd(c.g * c.g, inverse_s2, n2);
       const DepthAngles depths = EvaluateDepths(model.pose, model.rays, m);
-      const Vec z =
-          (AngleOf(depths.in1) + AngleOf(depths.in2)) * (Set(0.5 * model.inverse_noise_rad) * noise.inverse);
+      const Vec z = (ComputeAngle(depths.in1) + ComputeAngle(depths.in2)) *
+                    (Set(0.5 * model.inverse_noise_rad) * noise.inverse);
       const Vec term = v * z / hn::Sqrt(FusedMulAdd(z, z, one));
       const Mask are_matches =
           hn::And(AreMatches(b * kBlockSize + lane, matches.num_matches()), term == term);

@@ -61,16 +61,14 @@ HWY_INLINE Vec BoundGroup(const MatchBlock* blocks, int size, const RayScale& sc
 }
 
 double SumGroupBounds(const MatchBlocks& matches, double squared_reach) {
-  HWY_ALIGN double sums[kBlockSize];
-  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
+  return SumOverLanes([&](int lane) {
     Vec sum = Set(0.0);
     for (int b = 0; b < matches.num_blocks(); b += kBlockSize) {
       const int size = std::min(kBlockSize, matches.num_blocks() - b);
       sum = sum + BoundGroup(&matches[b], size, matches.ray_scale(), lane, Set(squared_reach));
     }
-    Store(sum, sums + lane);
-  }
-  return SumOfEight(sums);
+    return sum;
+  });
 }
 
 }  // namespace rcme::HWY_NAMESPACE

@@ -111,7 +111,7 @@ void ScanTransfers(const MatchBlocks& matches, const TwoViewPose& pose, double t
     for (int lane = 0; lane < kBlockSize; lane += kLanes) {
       const Transfer t = EvaluateTransfer(pose, matches.ray_scale(), LoadMatches(matches[b], lane));
       const Mask are_matches = AreMatches(b * kBlockSize + lane, matches.num_matches());
-      bits |= BitsOf(hn::And(are_matches, hn::And(t.is_in_front, t.squared <= Set(threshold)))) << lane;
+      bits |= ReadMaskBits(hn::And(are_matches, hn::And(t.is_in_front, t.squared <= Set(threshold)))) << lane;
     }
     scan->inliers[static_cast<size_t>(b)] = static_cast<std::uint8_t>(bits);
     scan->num_inliers += __builtin_popcount(bits);

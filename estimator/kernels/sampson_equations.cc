@@ -53,7 +53,7 @@ class LogSum {
 
  private:
   HWY_INLINE void Flush() {
-    sum_ = sum_ + LogOf(Tag(), product_);
+    sum_ = sum_ + ComputeLog(Tag(), product_);
     product_ = Set(1.0);
   }
   Vec product_, sum_;

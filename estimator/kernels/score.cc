@@ -34,7 +34,7 @@ HWY_INLINE unsigned ScanBlock(const MatchBlock& block, int num_matches, const Vi
                                ? hn::And(visited.is_inlier, AreMatches(lane, num_matches))
                                : visited.is_inlier;
     if constexpr (has_spread) *spread += hn::CompressStore(visited.spread, is_inlier, Tag(), *spread);
-    bits |= BitsOf(is_inlier) << lane;
+    bits |= ReadMaskBits(is_inlier) << lane;
   }
   return bits;
 }
@@ -146,7 +146,7 @@ double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const
       of.Fill(blocks + first / kBlockSize, num_matches - first, F, coefficients);
     for (int v = 0; v < kVectors; ++v) {
       const int i = first % kMatchesAtOnce + v * kLanes;
-      const Vec d2 = Load(of.d2 + i), log_s2 = LogOf(Tag(), Load(of.s2 + i));
+      const Vec d2 = Load(of.d2 + i), log_s2 = ComputeLog(Tag(), Load(of.s2 + i));
       costs[v] = Lesser(half * (d2 + log_two_pi + log_s2), limit);  // limit too where a number is NaN
     }
   });
@@ -157,7 +157,7 @@ double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const
 void SumEntropies(const double* spreads, int count, double offset, double* mean, double* sum_squares) {
   const Vec half = Set(0.5), shift = Set(offset);
   const auto entropy = [&](int i) {
-    return FusedMulAdd(half, LogOf(Tag(), hn::LoadU(Tag(), spreads + i)), shift);
+    return FusedMulAdd(half, ComputeLog(Tag(), hn::LoadU(Tag(), spreads + i)), shift);
   };
   HWY_ALIGN double
       stored[512];  // entropies of the first 512 inliers: their logarithms need not be taken twice
@@ -201,7 +201,7 @@ unsigned TestSamples(const HypothesisBlock& block, double threshold) {
       const PrintedDistance distance = EvaluatePrinted(ModelPerLane{block, lane}, matches);
       are_consistent = hn::And(are_consistent, IsWithin(distance, limit));
     }
-    bits |= BitsOf(are_consistent) << lane;
+    bits |= ReadMaskBits(are_consistent) << lane;
   }
   return bits;
 }

@@ -24,7 +24,7 @@ std::vector<std::pair<std::string, std::optional<ModelCriterion>>> Criteria() {
 }
 
 // kOk: the verdict is no reason to refuse.
-MotionStatus StatusOf(const ModelChoice& choice, bool refuses_planes) {
+MotionStatus FindStatus(const ModelChoice& choice, bool refuses_planes) {
   if (choice.status != MotionStatus::kOk) return MotionStatus::kOk;
   switch (choice.verdict) {
     case SceneVerdict::kPlanar:
@@ -48,7 +48,7 @@ class GatedEstimator : public MotionEstimator {
     MotionEstimate estimate = estimator_->Estimate(problem, rng);
     if (estimate.status != MotionStatus::kOk) return estimate;
     const ModelChoice choice = ChooseModel(problem, options_.choice, rng);
-    const MotionStatus status = StatusOf(choice, options_.refuses_planes);
+    const MotionStatus status = FindStatus(choice, options_.refuses_planes);
     if (status == MotionStatus::kOk) return estimate;
     MotionEstimate refusal;
     refusal.status = status;

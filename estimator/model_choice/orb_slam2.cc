@@ -12,7 +12,7 @@ constexpr double kPointBound = 5.99, kLineBound = 3.84;  // T_H and T_F
 constexpr double kGreatestScore = kPointBound;           // Gamma
 
 // rho_M of the paper; nothing for an error that is not a number.
-double ScoreOf(double squared_error, double bound) {
+double ScoreError(double squared_error, double bound) {
   return squared_error < bound ? kGreatestScore - squared_error : 0.0;
 }
 
@@ -36,8 +36,8 @@ double OrbSlam2HomographyScore(const MotionProblem& problem, const Eigen::Matrix
   double score = 0.0;
   for (const Correspondence& match : problem.matches) {
     const Eigen::Vector2d x1 = whitening.WhitenPoint1(match.x1_px), x2 = whitening.WhitenPoint2(match.x2_px);
-    score += ScoreOf(SquaredDistance(back * x2.homogeneous(), x1), kPointBound);
-    score += ScoreOf(SquaredDistance(forth * x1.homogeneous(), x2), kPointBound);
+    score += ScoreError(SquaredDistance(back * x2.homogeneous(), x1), kPointBound);
+    score += ScoreError(SquaredDistance(forth * x1.homogeneous(), x2), kPointBound);
   }
   return score;
 }
@@ -48,8 +48,8 @@ double OrbSlam2EpipolarScore(const MotionProblem& problem, const Eigen::Matrix3d
   double score = 0.0;
   for (const Correspondence& match : problem.matches) {
     const Eigen::Vector2d x1 = whitening.WhitenPoint1(match.x1_px), x2 = whitening.WhitenPoint2(match.x2_px);
-    score += ScoreOf(SquaredDistanceFromLine(F * x1.homogeneous(), x2), kLineBound);
-    score += ScoreOf(SquaredDistanceFromLine(F.transpose() * x2.homogeneous(), x1), kLineBound);
+    score += ScoreError(SquaredDistanceFromLine(F * x1.homogeneous(), x2), kLineBound);
+    score += ScoreError(SquaredDistanceFromLine(F.transpose() * x2.homogeneous(), x1), kLineBound);
   }
   return score;
 }

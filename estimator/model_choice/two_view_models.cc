@@ -106,7 +106,7 @@ void FitEssential(const MotionProblem& problem, RandomStream& rng, TwoViewFits* 
 
 }  // namespace
 
-const ModelDimensions& DimensionsOf(TwoViewModel model) {
+const ModelDimensions& FindDimensions(TwoViewModel model) {
   switch (model) {
     case TwoViewModel::kRotation:
       return kRotationDimensions;
@@ -144,7 +144,7 @@ TwoViewFits FitTwoViewModels(const MotionProblem& problem, RandomStream& rng) {
 }
 
 std::vector<int> FindInliers(const ModelFit& fit, TwoViewModel model, double significance_level) {
-  const double threshold = ChiSquareQuantile(DimensionsOf(model).codimension(), 1.0 - significance_level);
+  const double threshold = ChiSquareQuantile(FindDimensions(model).codimension(), 1.0 - significance_level);
   std::vector<int> inliers;
   for (int i = 0; i < static_cast<int>(fit.squared_residuals.size()); ++i) {
     if (fit.squared_residuals[static_cast<size_t>(i)] <= threshold) inliers.push_back(i);

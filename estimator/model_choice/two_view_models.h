@@ -19,7 +19,7 @@ namespace rcme {
 enum class TwoViewModel { kRotation, kHomography, kEssential };
 inline constexpr std::array<TwoViewModel, 3> kTwoViewModels = {
     TwoViewModel::kRotation, TwoViewModel::kHomography, TwoViewModel::kEssential};
-const ModelDimensions& DimensionsOf(TwoViewModel model);
+const ModelDimensions& FindDimensions(TwoViewModel model);
 
 struct ModelFit {
   Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();  // R, H or E, between rays

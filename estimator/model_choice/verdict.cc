@@ -33,7 +33,7 @@ using Criterion = double (*)(std::span<const double>, const ModelDimensions&);
 std::array<double, 3> ScoresBy(Criterion score, const TwoViewFits& fits) {
   std::array<double, 3> scores{};
   for (size_t m = 0; m < kTwoViewModels.size(); ++m) {
-    scores[m] = score(fits[kTwoViewModels[m]].squared_residuals, DimensionsOf(kTwoViewModels[m]));
+    scores[m] = score(fits[kTwoViewModels[m]].squared_residuals, FindDimensions(kTwoViewModels[m]));
   }
   return scores;
 }
@@ -60,8 +60,8 @@ TwoViewFits OfMatchesThatAgree(const TwoViewFits& fits) {
   return part;
 }
 
-std::array<double, 3> ScoresOf(ModelCriterion criterion, const MotionProblem& problem,
-                               const TwoViewFits& fits) {
+std::array<double, 3> ComputeScores(ModelCriterion criterion, const MotionProblem& problem,
+                                    const TwoViewFits& fits) {
   switch (criterion) {
     case ModelCriterion::kAic:
       return ScoresBy(AicScore, fits);
@@ -79,7 +79,7 @@ std::array<double, 3> ScoresOf(ModelCriterion criterion, const MotionProblem& pr
   return OrbSlam2Scores(problem, fits);
 }
 
-const ModelFamily& FamilyOf(TwoViewModel model) {
+const ModelFamily& FindModelFamily(TwoViewModel model) {
   switch (model) {
     case TwoViewModel::kRotation:
       return kRotations;
@@ -104,7 +104,7 @@ double MeanRootDeterminant(const MotionProblem& problem, const Eigen::Matrix3d& 
 
 // The probability that a random match agrees with the model.
 double ComputeModelChance(TwoViewModel model, const MotionProblem& problem, const TwoViewFits& fits) {
-  const double threshold = ChiSquareQuantile(DimensionsOf(model).codimension(), 1.0 - kInlierLevel);
+  const double threshold = ChiSquareQuantile(FindDimensions(model).codimension(), 1.0 - kInlierLevel);
   if (model == TwoViewModel::kEssential) return ChanceOfAgreement(problem, fits.motion, threshold);
   return ChanceOfAgreementInEllipse(problem, threshold, MeanRootDeterminant(problem, fits[model].matrix));
 }
@@ -120,7 +120,7 @@ int CountParallax(const MotionProblem& problem, const std::vector<int>& inliers,
   return static_cast<int>(inliers.size() - rotated.size());
 }
 
-std::string SentenceOf(const ModelChoice& choice, size_t num_matches) {
+std::string DescribeChoice(const ModelChoice& choice, size_t num_matches) {
   switch (choice.verdict) {
     case SceneVerdict::kRotationOnly:
       return fmt::format("a rotation alone explains {} of {} matches: there is no translation to be seen",
@@ -144,8 +144,8 @@ void Decide(const MotionProblem& problem, const TwoViewFits& fits, const ModelCh
   const std::vector<int> inliers = FindInliers(fits[choice->model], choice->model, kInlierLevel);
   choice->num_inliers = static_cast<int>(inliers.size());
   const double log_false_alarms =
-      LogFalseAlarms(FamilyOf(choice->model), static_cast<int>(problem.matches.size()), choice->num_inliers,
-                     ComputeModelChance(choice->model, problem, fits));
+      LogFalseAlarms(FindModelFamily(choice->model), static_cast<int>(problem.matches.size()),
+                     choice->num_inliers, ComputeModelChance(choice->model, problem, fits));
   if (log_false_alarms > std::log(kChanceLevel)) {
     choice->status = MotionStatus::kNotBetterThanChance;
     choice->message = fmt::format("{} of {} matches agree with the best model, no more than chance explains",
@@ -164,7 +164,7 @@ void Decide(const MotionProblem& problem, const TwoViewFits& fits, const ModelCh
                       : choice->model == TwoViewModel::kHomography          ? SceneVerdict::kPlanar
                                                                             : SceneVerdict::kGeneral;
   }
-  choice->message = SentenceOf(*choice, problem.matches.size());
+  choice->message = DescribeChoice(*choice, problem.matches.size());
 }
 
 }  // namespace
@@ -208,7 +208,7 @@ std::vector<ModelChoice> ChooseModels(const MotionProblem& problem,
   }
   const TwoViewFits fits = FitTwoViewModels(problem, rng);
   for (size_t i = 0; i < options.size(); ++i) {
-    choices[i].scores = ScoresOf(options[i].criterion, problem, fits);
+    choices[i].scores = ComputeScores(options[i].criterion, problem, fits);
     choices[i].model = kTwoViewModels[static_cast<size_t>(std::ranges::min_element(choices[i].scores) -
                                                           choices[i].scores.begin())];
     Decide(problem, fits, options[i], &choices[i]);

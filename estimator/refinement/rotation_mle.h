@@ -53,7 +53,7 @@ RotationFit FitRotation(const Matches& matches, const typename Matches::Set& set
     fitted = std::move(selected);
     if (is_same) break;
     if (matches.Count(fitted) < 3) {
-      fitted = matches.SetOf({});
+      fitted = matches.MakeSet({});
       break;
     }
     fit.R = minimize(fitted, fit.R, Loss::kSquared);

@@ -37,16 +37,16 @@ struct KeyPoints {
 };
 
 // Of so many that their pairs can be visited, evenly: the place of each, or -1.
-std::vector<Eigen::Index> PlacesOf(size_t num_points) {
+std::vector<Eigen::Index> SelectPlaces(size_t num_points) {
   std::vector<Eigen::Index> places(num_points, -1);
   const size_t num_kept = std::min(num_points, kMostKeyPoints);
   for (size_t i = 0; i < num_kept; ++i) places[i * num_points / num_kept] = static_cast<Eigen::Index>(i);
   return places;
 }
 
-KeyPoints KeyPointsOf(const MatchScores& scores, std::span<const int> groups, const Matrix5d& L) {
+KeyPoints SelectKeyPoints(const MatchScores& scores, std::span<const int> groups, const Matrix5d& L) {
   const std::vector<Eigen::Index> places =
-      PlacesOf(1 + static_cast<size_t>(*std::ranges::max_element(groups)));
+      SelectPlaces(1 + static_cast<size_t>(*std::ranges::max_element(groups)));
   const auto n = static_cast<Eigen::Index>(std::min(places.size(), kMostKeyPoints));
   KeyPoints points;
   points.share_kept = static_cast<double>(n) / static_cast<double>(places.size());
@@ -84,7 +84,7 @@ KeyPoints KeyPointsOf(const MatchScores& scores, std::span<const int> groups, co
 }
 
 // c of a key point and those before it, the longest length last.
-ByLength CorrelationsOf(const KeyPoints& points, size_t g) {
+ByLength ComputeCorrelations(const KeyPoints& points, size_t g) {
   ByLength c(static_cast<Eigen::Index>(g), kNumLengths);
   for (size_t h = 0; h < g; ++h) {
     const double e1 = std::exp(-(points.at[g].x1_px - points.at[h].x1_px).norm() / kLongestPx);
@@ -114,7 +114,7 @@ PairSums VisitPairs(const KeyPoints& points) {
   pairs.means.fill(Rows::Zero(points.size(), 5));
   const Eigen::VectorXd weights = points.num_matches.cwiseInverse();
   for (Eigen::Index g = 1; g < points.size(); ++g) {
-    const ByLength c = CorrelationsOf(points, static_cast<size_t>(g));
+    const ByLength c = ComputeCorrelations(points, static_cast<size_t>(g));
     pairs.squares += 2.0 * c.transpose() * c;
     pairs.weighted += 2.0 * weights(g) * c.transpose() * weights.head(g).asDiagonal() * c;
     pairs.products += 2.0 * points.residuals(g) * c.transpose() * points.residuals.head(g);
@@ -227,7 +227,7 @@ ResidualVariances FitResidualVariances(const MatchScores& scores, std::span<cons
   const Eigen::LLT<Matrix5d> llt(scores.information);
   if (groups.empty() || llt.info() != Eigen::Success) return {};
   const Matrix5d L = llt.matrixL();
-  const Moments moments = ComputeMoments(KeyPointsOf(scores, groups, L));
+  const Moments moments = ComputeMoments(SelectKeyPoints(scores, groups, L));
   const Solution solution = SolveMoments(moments);
   ResidualVariances variances;
   variances.own = solution.v(kOwn);

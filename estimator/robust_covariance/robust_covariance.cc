@@ -23,7 +23,7 @@ constexpr int kMostRefits = 10;
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
 constexpr size_t kLeastFitted = 6;                      // five matches determine a motion exactly
 
-std::vector<Correspondence> MatchesOf(const MotionProblem& problem, std::span<const int> indices) {
+std::vector<Correspondence> SelectMatches(const MotionProblem& problem, std::span<const int> indices) {
   std::vector<Correspondence> matches;
   for (const int i : indices) matches.push_back(problem.matches[static_cast<size_t>(i)]);
   return matches;
@@ -47,7 +47,7 @@ std::vector<int> AgreeingWith(const MotionProblem& problem, const RelativePose& 
   MotionProblem with_own_noise = problem;
   with_own_noise.sigma_px = SigmaOfResiduals(problem, fitted, pose);
   const std::optional<Matrix5d> pose_cov = FirstOrderMotionCovariance(
-      pose, problem.camera1, problem.camera2, MatchesOf(problem, fitted), with_own_noise.sigma_px);
+      pose, problem.camera1, problem.camera2, SelectMatches(problem, fitted), with_own_noise.sigma_px);
   if (!pose_cov) return {};
   return SelectFitSet(with_own_noise, {true, pose, *pose_cov, 0}, fitted);
 }

@@ -119,7 +119,7 @@ std::optional<Eigen::Matrix3d> Polish(const Eigen::Matrix3d& E, const FivePoint:
 }
 
 // f and G of a solution; nothing if it is not isolated.
-std::optional<FivePoint::Model> ModelOf(const Eigen::Matrix3d& E, const Eigen::Matrix<double, 5, 9>& C) {
+std::optional<FivePoint::Model> ComputeModel(const Eigen::Matrix3d& E, const Eigen::Matrix<double, 5, 9>& C) {
   const RelativePose pose = PosesFromEssential(ProjectToEssential(E))[0];
   const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(pose);
   Eigen::Matrix<double, 9, 5> T;
@@ -176,7 +176,7 @@ ModelList<FivePoint::Model, FivePoint::kMaxModels> FivePoint::FindModels(const R
   const Solutions solutions = Solve(rays1, rays2);
   const Eigen::Matrix<double, 5, 9> C = ConstraintRows(rays1, rays2);
   for (int i = 0; i < solutions.count; ++i) {
-    if (const auto model = ModelOf(solutions.E[static_cast<size_t>(i)], C)) models.Add(*model);
+    if (const auto model = ComputeModel(solutions.E[static_cast<size_t>(i)], C)) models.Add(*model);
   }
   return models;
 }
@@ -190,7 +190,7 @@ std::optional<FivePoint::Model> FivePoint::ModelNear(const Eigen::Matrix3d& E, c
   }
   const std::optional<Eigen::Matrix3d> polished = Polish(E, unit_rays1, unit_rays2);
   if (!polished) return std::nullopt;
-  return ModelOf(*polished, ConstraintRows(rays1, rays2));
+  return ComputeModel(*polished, ConstraintRows(rays1, rays2));
 }
 
 }  // namespace rcme

@@ -5,7 +5,7 @@
 namespace rcme {
 namespace {
 
-Eigen::Matrix3d EssentialOf(double cos_h, double sin_h) {
+Eigen::Matrix3d MakeEssential(double cos_h, double sin_h) {
   Eigen::Matrix3d E;
   E << 0.0, cos_h, 0.0, -cos_h, 0.0, sin_h, 0.0, sin_h, 0.0;
   return E;
@@ -23,9 +23,9 @@ ModelList<OnePoint::Model, OnePoint::kMaxModels> OnePoint::FindModels(const Rays
   const double sign = of_sin < 0.0 ? -1.0 : 1.0;
   const double cos_h = sign * of_sin / length, sin_h = -sign * of_cos / length;
 
-  const Vector9d T = Vectorize(EssentialOf(-sin_h, cos_h)) / std::sqrt(2.0);  // df/dh
+  const Vector9d T = Vectorize(MakeEssential(-sin_h, cos_h)) / std::sqrt(2.0);  // df/dh
   if (const auto G = ImplicitGain<1>(ConstraintRows(rays1, rays2), T)) {
-    models.Add({Vectorize(EssentialOf(cos_h, sin_h)) / std::sqrt(2.0), *G});
+    models.Add({Vectorize(MakeEssential(cos_h, sin_h)) / std::sqrt(2.0), *G});
   }
   return models;
 }

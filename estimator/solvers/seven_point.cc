@@ -40,7 +40,7 @@ Pencil TurnAwayFromRoots(const Pencil& pencil) {
 }
 
 // det(z A + B) / det A = z^3 + c(2) z^2 + c(1) z + c(0).
-Eigen::Vector3d CubicOf(const Pencil& pencil) {
+Eigen::Vector3d ComputeCubic(const Pencil& pencil) {
   const auto dot = [](const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) { return a.cwiseProduct(b).sum(); };
   return Eigen::Vector3d(pencil.B.determinant(), dot(Cofactors(pencil.B), pencil.A),
                          dot(Cofactors(pencil.A), pencil.B)) /
@@ -77,7 +77,7 @@ ModelList<SevenPoint::Model, SevenPoint::kMaxModels> SevenPoint::FindModels(cons
   if (!(std::abs(pencil.A.determinant()) > 1e-12)) return models;
 
   // The roots are the eigenvalues of the companion matrix.
-  const Eigen::Vector3d cubic = CubicOf(pencil);
+  const Eigen::Vector3d cubic = ComputeCubic(pencil);
   Eigen::Matrix3d companion = Eigen::Matrix3d::Zero();
   companion(1, 0) = companion(2, 1) = 1.0;
   companion.col(2) = -cubic;

@@ -33,7 +33,7 @@ struct AskArguments {
 };
 
 template <typename Entry>
-std::vector<std::string> NamesOf(const std::vector<Entry>& registry) {
+std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
   std::vector<std::string> names;
   for (const Entry& entry : registry) names.push_back(entry.name);
   return names;
@@ -42,7 +42,7 @@ std::vector<std::string> NamesOf(const std::vector<Entry>& registry) {
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
 
 // Runs so many trials of the study into the file; those that are there already are kept.
-RunReport RunTrialsOf(const AskArguments& arguments, int trials, Study study) {
+RunReport RunStudyTrials(const AskArguments& arguments, int trials, Study study) {
   study.trials = trials;
   const StudyPlan plan = MakePlan(study, arguments.out + "/study.yaml");
   ResultStore store = ResultStore::OpenForRun(ResultPath(arguments), plan);
@@ -76,12 +76,12 @@ void RunAsk(AskArguments arguments) {
   const Study study = ParseStudy(text, path);
   WriteFileWhole(path, text);
   if (arguments.trials > 0) {
-    RunTrialsOf(arguments, arguments.trials, study);
+    RunStudyTrials(arguments, arguments.trials, study);
   } else {
     const int trials =
-        ChooseTrials(RunTrialsOf(arguments, study.trials, study), ParseDuration(arguments.within).value());
+        ChooseTrials(RunStudyTrials(arguments, study.trials, study), ParseDuration(arguments.within).value());
     PrintMessage("{} trials of each estimator, within about {}\n", trials, arguments.within);
-    RunTrialsOf(arguments, trials, study);
+    RunStudyTrials(arguments, trials, study);
   }
   const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.at_most);
   const std::string question = DescribeQuestion(arguments.question);
@@ -119,9 +119,9 @@ Examples:
   command->add_option("--wrong", texts.wrong, "share of wrong matches, 0 to 0.95");
   command
       ->add_option("--motion", question.motion, "kind of motion (`rcme list motions`); default: the scene's")
-      ->check(IsOneOf(NamesOf(MotionRegistry())));
+      ->check(MakeChoiceValidator(ListNames(MotionRegistry())));
   command->add_option("--outliers", question.outliers, "kind of wrong matches (`rcme list outliers`)")
-      ->check(IsOneOf(NamesOf(OutlierRegistry())))
+      ->check(MakeChoiceValidator(ListNames(OutlierRegistry())))
       ->capture_default_str();
   command->add_option("--matches", question.num_matches, "matches of a pair, wrong ones included")
       ->transform(WholeNumberIn(8, 100'000))
@@ -152,7 +152,7 @@ Examples:
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command->add_option("--format", arguments->format, "table (for people) or json (for programs)")
-      ->check(IsOneOf({"table", "json"}))
+      ->check(MakeChoiceValidator({"table", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "folder for study.yaml and run.sqlite, created if missing")
       ->capture_default_str();

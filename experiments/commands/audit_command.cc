@@ -35,7 +35,7 @@ struct AuditArguments {
 };
 
 // The claims to audit, and what the options have to say of where they are made.
-std::vector<Claim> ClaimsOf(const AuditArguments& arguments, AuditOptions* options) {
+std::vector<Claim> ListAuditedClaims(const AuditArguments& arguments, AuditOptions* options) {
   if (arguments.study.empty()) {
     options->seed = SeedWithoutStudy(arguments.changes);
     options->conditions = ResolveCaseSettings({});
@@ -91,7 +91,7 @@ void RunAuditCommand(const AuditArguments& arguments) {
   options.only = arguments.only;
   options.budget = arguments.budget == "full" ? Budget::kFull : Budget::kQuick;
   options.num_threads = arguments.threads;
-  const std::vector<Claim> all = ClaimsOf(arguments, &options);
+  const std::vector<Claim> all = ListAuditedClaims(arguments, &options);
   if (arguments.only_plan) {
     fmt::print("{}", PlanAsTable(PlanAudit(all, options)));
     return;
@@ -161,7 +161,7 @@ code 75 (docs/many_machines.md):
                    "quick (all claims of the paper: minutes) or full (hours). A study takes longer the more "
                    "conditions "
                    "and slow estimators it has; the greatest time is printed first")
-      ->check(IsOneOf({"quick", "full"}))
+      ->check(MakeChoiceValidator({"quick", "full"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,
                       "folder for the results, created if missing; with --shard the file of the part");

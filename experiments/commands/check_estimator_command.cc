@@ -111,7 +111,7 @@ Examples:
   CLI::Option* only = command->add_option("--only", arguments->only, "checks a,b,...")
                           ->delimiter(',')
                           ->allow_extra_args(false)
-                          ->check(IsOneOf(CheckNames()));
+                          ->check(MakeChoiceValidator(CheckNames()));
   command
       ->add_option("--problem", arguments->problem,
                    "only the problem with this name, as printed by a failed check")

@@ -21,11 +21,11 @@
 namespace rcme {
 namespace {
 
-std::vector<const CLI::App*> CommandsOf(const CLI::App& app) {
+std::vector<const CLI::App*> ListSubcommands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-// "{a,b,c}" as IsOneOf (number_option.h) describes what it allows; empty: something else.
+// "{a,b,c}" as MakeChoiceValidator (number_option.h) describes what it allows; empty: something else.
 std::vector<std::string> WordsIn(const std::string& allowed) {
   std::vector<std::string> words;
   if (!allowed.starts_with('{') || !allowed.ends_with('}')) return words;
@@ -76,7 +76,7 @@ std::vector<std::string> QuantityNames() {
   return names;
 }
 
-std::vector<std::string> ValuesOf(const CLI::Option& option) {
+std::vector<std::string> ListOptionValues(const CLI::Option& option) {
   const std::string name = option.get_single_name();
   if (name == "set") return SettingNames();
   if (name == "shard") return {"1/2", "auto", "auto/8"};
@@ -92,7 +92,7 @@ std::vector<std::string> ValuesOf(const CLI::Option& option) {
   return {};
 }
 
-DescribedOption DescribedOptionOf(const CLI::Option& option) {
+DescribedOption DescribeOption(const CLI::Option& option) {
   DescribedOption described;
   for (const std::string& name : option.get_snames()) described.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) described.names.push_back("--" + name);
@@ -102,7 +102,7 @@ DescribedOption DescribedOptionOf(const CLI::Option& option) {
   described.default_value = option.get_default_str();
   described.is_required = option.get_required();
   described.takes_value = option.get_items_expected_max() > 0;
-  if (described.takes_value) described.values = ValuesOf(option);
+  if (described.takes_value) described.values = ListOptionValues(option);
   return described;
 }
 
@@ -120,7 +120,7 @@ DescribedCommand Described(const CLI::App& command) {
   DescribedCommand described{
       command.get_parent() ? command.get_name() : "", command.get_description(), command.get_footer(), {}};
   for (const CLI::Option* option : command.get_options())
-    described.options.push_back(DescribedOptionOf(*option));
+    described.options.push_back(DescribeOption(*option));
   std::stable_partition(described.options.begin(), described.options.end(),
                         [](const DescribedOption& o) { return o.is_positional; });
   return described;
@@ -128,7 +128,7 @@ DescribedCommand Described(const CLI::App& command) {
 
 std::vector<DescribedCommand> DescribedTree(const CLI::App& app) {
   std::vector<DescribedCommand> commands;
-  for (const CLI::App* command : CommandsOf(app)) commands.push_back(Described(*command));
+  for (const CLI::App* command : ListSubcommands(app)) commands.push_back(Described(*command));
   std::ranges::sort(commands, {}, &DescribedCommand::name);
   commands.insert(commands.begin(), Described(app));
   return commands;
@@ -136,7 +136,7 @@ std::vector<DescribedCommand> DescribedTree(const CLI::App& app) {
 
 std::vector<std::string> CommandNames(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : CommandsOf(app)) names.push_back(command->get_name());
+  for (const CLI::App* command : ListSubcommands(app)) names.push_back(command->get_name());
   return names;
 }
 

@@ -100,7 +100,7 @@ Examples:
   command->add_flag("--anytime", arguments->options.is_anytime_valid,
                     "intervals and p-values that stay valid however often you look");
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(IsOneOf({"table", "csv", "json"}))
+      ->check(MakeChoiceValidator({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {

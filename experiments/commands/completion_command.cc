@@ -168,7 +168,7 @@ Examples:
   auto shell = std::make_shared<std::string>();
   command->add_option("shell", *shell, "bash, zsh or fish")
       ->required()
-      ->check(IsOneOf({"bash", "zsh", "fish"}));
+      ->check(MakeChoiceValidator({"bash", "zsh", "fish"}));
   command->callback([&app, shell] {
     fmt::print("{}", *shell == "bash" ? Bash(app) : *shell == "zsh" ? Zsh(app) : Fish(app));
   });

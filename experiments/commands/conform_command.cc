@@ -6,11 +6,10 @@
 
 #include "estimator/conform/conform_estimator.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/estimator_run_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
-#include "experiments/commands/shard_options.h"
-#include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/conform/calibration_work.h"
 #include "experiments/conform/conform_output.h"
@@ -25,15 +24,11 @@ namespace {
 
 constexpr int kShiftIsNoticed = 1;  // exit code
 
-struct ConformArguments {
-  std::string study, estimator, out, check, models, format = "table";
+struct ConformArguments : EstimatorRunArguments {
+  std::string check, models, format = "table";
   std::string new_problem = "usual";
   bool is_needs = false;
-  std::int64_t trials = -1;
   ConformPromise promise;
-  int threads = 0;
-  StudyChanges changes;
-  ShardArguments shards;
 };
 
 EstimatorSpec ChooseEstimator(const ConformArguments& arguments, const Study& study) {
@@ -172,9 +167,7 @@ Examples:
   rcme conform new_pairs.yaml --check mine.conform.json
   rcme estimate matches.csv.gz --conform mine.conform.json)");
   auto arguments = std::make_shared<ConformArguments>();
-  command->add_option("study", arguments->study, "study file (YAML) or its name");
-  command->add_option("--estimator", arguments->estimator,
-                      "label of the study, estimator or estimator file; default: the study's only one");
+  AddStudyAndEstimator(command, arguments.get());
   command->add_option("-o,--out", arguments->out,
                       "the file to be written; with --check the report, instead of standard output");
   command->add_option("--check", arguments->check, "a file of before, to be tested on the study's problems");
@@ -201,21 +194,14 @@ Examples:
       ->add_option("--new", arguments->new_problem,
                    "what a new problem is: another trial of these conditions, one of another condition (or "
                    "scene), or the usual of these for the study")
-      ->check(IsOneOf({"usual", "trial", "condition"}))
+      ->check(MakeChoiceValidator({"usual", "trial", "condition"}))
       ->capture_default_str();
   command->add_flag("--needs", arguments->is_needs, "print how many answers the promises need, and end");
-  command->add_option("--trials", arguments->trials, "trials per condition, instead of the study's number")
-      ->transform(WholeNumberIn(1, 100'000'000));
+  AddTrialsOption(command, arguments.get());
   command->add_option("--format", arguments->format, "table (for people) or json (for programs)")
-      ->check(IsOneOf({"table", "json"}))
+      ->check(MakeChoiceValidator({"table", "json"}))
       ->capture_default_str();
-  AddStudyOptions(command, &arguments->changes);
-  AddShardOptions(command, "trials", &arguments->shards);
-  AddProcessOption(command, &arguments->changes.allow_process);
-  command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The result does not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddRunOptions(command, arguments.get());
   command->callback([arguments] { Conform(*arguments); });
 }
 

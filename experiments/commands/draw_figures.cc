@@ -8,8 +8,8 @@
 
 #include <filesystem>
 
-#include "experiments/core/text/message.h"
 #include "experiments/core/files/shared_files.h"
+#include "experiments/core/text/message.h"
 #include "parameters/input_error.h"
 
 extern char** environ;
@@ -24,7 +24,7 @@ constexpr const char* kHasPackages =
     "sys.exit(not all(map(u.find_spec, ('matplotlib', 'pandas'))))";
 
 std::string FindScript(const std::string& kind) {
-  const std::string folder = PathOf(SharedFolder::kPlots);
+  const std::string folder = FindSharedFolder(SharedFolder::kPlots);
   if (folder.empty())
     throw InputError(
         "the scripts that draw figures are missing: they belong in share/rcme/plots beside the program's "

@@ -39,7 +39,7 @@ struct EstimateArguments {
 };
 
 // "1,5": deg, of the rotation and of the direction.
-FailureBounds BoundsOf(const std::string& text) {
+FailureBounds ParseFailureBounds(const std::string& text) {
   const size_t comma = std::min(text.find(','), text.size());
   FailureBounds bounds;
   const auto is_angle = [](const std::string& part, double* angle) {
@@ -53,13 +53,13 @@ FailureBounds BoundsOf(const std::string& text) {
       Quoted(text)));
 }
 
-std::vector<FailureBounds> BoundsOf(const std::vector<std::string>& texts) {
+std::vector<FailureBounds> ParseFailureBounds(const std::vector<std::string>& texts) {
   std::vector<FailureBounds> bounds;
-  for (const std::string& text : texts) bounds.push_back(BoundsOf(text));
+  for (const std::string& text : texts) bounds.push_back(ParseFailureBounds(text));
   return bounds;
 }
 
-Camera CameraOf(const std::string& text) {
+Camera ParseCamera(const std::string& text) {
   std::array<double, 4> k{};
   size_t count = 0;
   bool are_numbers = true;
@@ -76,15 +76,15 @@ Camera CameraOf(const std::string& text) {
 }
 
 // Of both images, or one each.
-GivenCameras CamerasOf(const std::vector<std::string>& intrinsics) {
+GivenCameras ParseCameras(const std::vector<std::string>& intrinsics) {
   if (intrinsics.empty()) return std::nullopt;
   if (intrinsics.size() > 2)
     throw InputError("--K: given more than twice; give it once for both images, or once for each");
-  return std::array<Camera, 2>{CameraOf(intrinsics.front()), CameraOf(intrinsics.back())};
+  return std::array<Camera, 2>{ParseCamera(intrinsics.front()), ParseCamera(intrinsics.back())};
 }
 
 // What the arguments name, folders opened.
-std::vector<std::string> FilesOf(const std::vector<std::string>& arguments) {
+std::vector<std::string> ListFiles(const std::vector<std::string>& arguments) {
   std::vector<std::string> files;
   for (const std::string& argument : arguments) {
     if (argument == kStandardInput && arguments.size() > 1)
@@ -103,8 +103,8 @@ class Answerer {
  public:
   explicit Answerer(const EstimateArguments& arguments)
       : arguments_(arguments),
-        given_(CamerasOf(arguments.intrinsics)),
-        bounds_(BoundsOf(arguments.bounds)),
+        given_(ParseCameras(arguments.intrinsics)),
+        bounds_(ParseFailureBounds(arguments.bounds)),
         spec_(ChosenEstimator(arguments.estimator)),
         estimator_(Make(spec_)) {
     CheckProcessEstimators({spec_});
@@ -123,7 +123,7 @@ class Answerer {
     data.origin = file.path;
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.sd = file.truth_sd;
-    data.problem = ProblemOf(std::move(file), arguments_.sigma_px);
+    data.problem = MakeMotionProblem(std::move(file), arguments_.sigma_px);
     return data;
   }
 
@@ -137,7 +137,7 @@ class Answerer {
     answer.record = Score(answer.estimate, data, 0.0);
     answer.has_truth_sd = data.truth.sd.has_value();
     if (answer.estimate.status == MotionStatus::kOk)
-      answer.evidence = EvidenceOf(data.problem, answer.estimate);
+      answer.evidence = ComputeEvidence(data.problem, answer.estimate);
     return answer;
   }
 
@@ -283,7 +283,7 @@ void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
 
 void RunEstimate(const EstimateArguments& arguments) {
   const Answerer answerer(arguments);
-  const std::vector<std::string> files = FilesOf(arguments.matches);
+  const std::vector<std::string> files = ListFiles(arguments.matches);
   const bool is_one = arguments.matches.size() == 1 && files.front() == arguments.matches.front();
   if (is_one) return AnswerOne(arguments, answerer, files.front());
   AnswerMany(arguments, answerer, files);

@@ -31,7 +31,7 @@ Examples:
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("--of", arguments->query.event, "failure, refusal or failure_or_refusal")
-      ->check(IsOneOf(TrialEventNames()))
+      ->check(MakeChoiceValidator(TrialEventNames()))
       ->capture_default_str();
   command
       ->add_option("--estimators", arguments->query.estimators, "labels a,b,... of estimators; default: all")
@@ -45,7 +45,7 @@ Examples:
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(IsOneOf({"table", "csv", "json"}))
+      ->check(MakeChoiceValidator({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments, condition] {

@@ -19,7 +19,7 @@ void AddFrontEndOptions(CLI::App* command, DetectorOptions* detector, MatcherOpt
             }
           },
           "detector and descriptor of key points; default: sift")
-      ->check(IsOneOf(names));
+      ->check(MakeChoiceValidator(names));
   command
       ->add_option("--max-features", detector->max_features,
                    "number of strongest key points to keep per image; 0: all of sift and akaze, 2,000 of orb")

@@ -57,7 +57,7 @@ std::vector<GateTest> TestsFrom(const GateArguments& arguments, bool has_old, bo
 // Trials of match files are the same pairs again and again.
 void RequireSimulated(const Study& study) {
   for (const std::vector<std::string>& levels : DesignRows(study)) {
-    for (const auto& [key, value] : SettingsOf(study, levels)) {
+    for (const auto& [key, value] : CombineSettings(study, levels)) {
       if (key == "scene" && value == kMatchFilesScene)
         throw InputError(
             "gate: pairs of match files are not drawn anew by each trial; give a study of scenes");
@@ -254,7 +254,7 @@ Examples:
   CLI::Option* of = command->add_option("--of", arguments->of, "quantities a,b,... that are judged")
                         ->delimiter(',')
                         ->allow_extra_args(false)
-                        ->check(IsOneOf(GateQuantityNames()));
+                        ->check(MakeChoiceValidator(GateQuantityNames()));
   command
       ->add_option("--margin", arguments->margins,
                    "quantity=margin, repeatable: as a rate, of error and time as a share")

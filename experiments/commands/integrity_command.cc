@@ -4,11 +4,9 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/estimator_run_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
-#include "experiments/commands/shard_options.h"
-#include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
@@ -22,13 +20,8 @@ namespace {
 
 constexpr int kRiskIsExceeded = 1;  // exit code
 
-struct IntegrityArguments {
-  std::string study, estimator, out;
-  std::int64_t trials = -1;
+struct IntegrityArguments : EstimatorRunArguments {
   IntegrityTerms terms;
-  int threads = 0;
-  StudyChanges changes;
-  ShardArguments shards;
 };
 
 StudyPlan MakeIntegrityPlan(const IntegrityArguments& arguments) {
@@ -107,9 +100,7 @@ Examples:
   rcme integrity STUDY --shard 3/64 --out parts/3.json          the share of one machine
   rcme integrity STUDY --merge parts/*.json --out integrity     the bytes of a single run)");
   auto arguments = std::make_shared<IntegrityArguments>();
-  command->add_option("study", arguments->study, "study file (YAML) or its name")->required();
-  command->add_option("--estimator", arguments->estimator,
-                      "label of the study, estimator or estimator file; default: the study's only one");
+  AddStudyAndEstimator(command, arguments.get())->required();
   command
       ->add_option("--risk", arguments->terms.risk,
                    "probability that an error exceeds its protection level, of rotation and of direction")
@@ -127,15 +118,8 @@ Examples:
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,
                       "folder for the results; it is made. With --shard the file of the part");
-  command->add_option("--trials", arguments->trials, "trials per condition, instead of the study's number")
-      ->transform(WholeNumberIn(1, 100'000'000));
-  AddStudyOptions(command, &arguments->changes);
-  AddShardOptions(command, "trials", &arguments->shards);
-  AddProcessOption(command, &arguments->changes.allow_process);
-  command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The result does not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddTrialsOption(command, arguments.get());
+  AddRunOptions(command, arguments.get());
   command->callback([arguments] { RunIntegrity(*arguments); });
 }
 

@@ -136,7 +136,7 @@ Rows ListClaims() {
 // The value of a key of a shared file, as it stands there: the program may not be able to run it, because it
 // lacks a library, say.
 std::string ValueIn(SharedFolder folder, const std::string& name, const std::string& key) {
-  const std::string path = PathOf(folder) + "/" + name + ".yaml";
+  const std::string path = FindSharedFolder(folder) + "/" + name + ".yaml";
   const FileKind kind = {"file", "a file of YAML"};
   const YAML::Node value = ParseYaml(ReadInputText(path, kind), path, kind)[key];
   return value && value.IsScalar() ? value.Scalar() : "";
@@ -207,7 +207,7 @@ void AddListCommand(CLI::App& app) {
   auto format = std::make_shared<std::string>("table");
   command
       ->add_option("what", *what, "which list; default: all except studies, populations and estimator_files")
-      ->check(IsOneOf(names));
+      ->check(MakeChoiceValidator(names));
   command->footer(R"(Examples:
   rcme list studies
   rcme list settings
@@ -215,7 +215,7 @@ void AddListCommand(CLI::App& app) {
   command
       ->add_option("--format", *format,
                    "table: columns for a terminal; markdown: as in docs/reference; json: for programs")
-      ->check(IsOneOf({"table", "markdown", "json"}))
+      ->check(MakeChoiceValidator({"table", "markdown", "json"}))
       ->capture_default_str();
   command->callback([what, format] {
     nlohmann::ordered_json json = nlohmann::ordered_json::object();

@@ -39,8 +39,8 @@ MapWork WorkOnStudy(const MapArguments& arguments) {
   ValidityMapOptions& map = work.map;
   map.seed = plan.study.seed;
   map.condition_key = "condition";
-  map.conditions = MapConditionsOf(plan);
-  for (const double sigma_px : SigmasOf(plan)) map.sigmas_px.push_back(sigma_px);
+  map.conditions = ListMapConditions(plan);
+  for (const double sigma_px : ListSigmas(plan)) map.sigmas_px.push_back(sigma_px);
   std::ranges::sort(map.sigmas_px);
   map.sigmas_px.erase(std::unique(map.sigmas_px.begin(), map.sigmas_px.end()), map.sigmas_px.end());
   return work;

@@ -43,7 +43,7 @@ Examples:
       ->capture_default_str();
   command
       ->add_option("--format", arguments->format, "table (for people), csv or json (for programs, all rows)")
-      ->check(IsOneOf({"table", "csv", "json"}))
+      ->check(MakeChoiceValidator({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {

@@ -38,7 +38,7 @@ inline CLI::Validator WholeNumberIn(std::int64_t min,
 }
 
 // For Option::check: one of some words.
-inline CLI::Validator IsOneOf(const std::vector<std::string>& words) {
+inline CLI::Validator MakeChoiceValidator(const std::vector<std::string>& words) {
   const std::string allowed = fmt::format("{}", fmt::join(words, ", "));
   const auto check = [=](const std::string& text) -> std::string {
     if (std::ranges::count(words, text) > 0) return {};

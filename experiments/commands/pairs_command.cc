@@ -74,7 +74,7 @@ void CheckApplies(const PairsArguments& arguments) {
 }
 
 // All that the pairs depend on but the images' contents.
-std::string IdentityOf(const PairsArguments& arguments) {
+std::string DescribePairsIdentity(const PairsArguments& arguments) {
   const DatasetOptions& d = arguments.dataset;
   const PairsOptions& p = arguments.pairs;
   return fmt::format(
@@ -115,7 +115,7 @@ void RunPairs(PairsArguments arguments) {
     listed = layout->open(arguments.dataset);
     notes.push_back(listed->Note());
   }
-  PairJournal journal(out, IdentityOf(arguments));
+  PairJournal journal(out, DescribePairsIdentity(arguments));
   if (journal.num_before() > 0) PrintMessage("continues after {} pairs in {}\n", journal.num_before(), out);
   if (listed) {
     MakeListedPairs(*listed, arguments.pairs, &journal);
@@ -141,7 +141,7 @@ void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
                    "the data set's folder (colmap: or its database; posebench: a file)")
       ->required();
   command->add_option("--layout", arguments->layout, "layout of the data set, see below")
-      ->check(IsOneOf(LayoutNames()))
+      ->check(MakeChoiceValidator(LayoutNames()))
       ->required();
   command
       ->add_option("-o,--out", arguments->pairs.out,
@@ -163,7 +163,7 @@ void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
       ->transform(NumberIn())
       ->expected(4);
   command->add_option("--lens", arguments->lens, "images, tum: the distortion of --K; default: pinhole")
-      ->check(IsOneOf({"pinhole", "radtan", "fisheye"}));
+      ->check(MakeChoiceValidator({"pinhole", "radtan", "fisheye"}));
   command
       ->add_option("--distortion", arguments->dataset.distortion,
                    "coefficients in OpenCV's order: radtan k1 k2 p1 p2 [k3 [k4 k5 k6]], fisheye k1 k2 k3 k4")
@@ -184,7 +184,7 @@ void AddGateOptions(CLI::App* command, PairsArguments* arguments) {
   command
       ->add_option("--gate", arguments->gate,
                    "test that pairs must pass; off keeps all pairs; default: orb_slam2")
-      ->check(IsOneOf(GateNames()));
+      ->check(MakeChoiceValidator(GateNames()));
   command->add_option("--least-matches", gate.least_matches, "gate: least number of matches")
       ->transform(WholeNumberIn(8, 1'000'000))
       ->capture_default_str();

@@ -65,10 +65,10 @@ Examples:
   command
       ->add_option("--clusters", arguments->clusters,
                    "which pairs are dependent: those that share images, or all of a sequence")
-      ->check(IsOneOf({"images", "sequences"}))
+      ->check(MakeChoiceValidator({"images", "sequences"}))
       ->capture_default_str();
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(IsOneOf({"table", "csv", "json"}))
+      ->check(MakeChoiceValidator({"table", "csv", "json"}))
       ->capture_default_str();
   command->callback([arguments] { RunPaperTable(*arguments); });
 }

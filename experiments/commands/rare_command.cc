@@ -97,7 +97,7 @@ Examples:
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
   command->add_option("--method", arguments->method, "splitting (default) or stratified")
-      ->check(IsOneOf({"splitting", "stratified"}));
+      ->check(MakeChoiceValidator({"splitting", "stratified"}));
   command
       ->add_option("--trials", arguments->stratified.num_trials,
                    "stratified: trials drawn per condition (default: 100000)")

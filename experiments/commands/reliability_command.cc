@@ -40,7 +40,7 @@ Examples:
   command->add_option("--by", arguments->by,
                       "factor of the study: a line per level instead of one for all trials");
   command->add_option("--format", arguments->format, "table (for people) or json (for programs and figures)")
-      ->check(IsOneOf({"table", "json"}))
+      ->check(MakeChoiceValidator({"table", "json"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {

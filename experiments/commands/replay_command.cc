@@ -51,8 +51,8 @@ void PrintData(const StudyPlan& plan, const Condition& condition, std::uint32_t 
 
 void PrintEstimate(const std::string& label, const MotionEstimate& estimate, const TrialRecord& record,
                    const FailureBounds& bounds) {
-  fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status), Name(OutcomeOf(record, bounds)),
-             estimate.message);
+  fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status),
+             Name(ClassifyOutcome(record, bounds)), estimate.message);
   if (!HasRefused(record)) {
     fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
                MatrixText(kDegPerRad * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));
@@ -108,7 +108,7 @@ void Replay(const ReplayArguments& arguments) {
   const ResultStore store = ResultStore::OpenForReading(run);
   const StudyPlan plan = PlanOfStored(store, arguments.allow_process);
   const Condition& condition = ChosenCondition(plan, condition_index);
-  const std::vector<TrialRecord> stored = store.RecordsOf(condition_index, trial);
+  const std::vector<TrialRecord> stored = store.ReadTrialRecords(condition_index, trial);
   if (stored.empty()) {
     PrintMessage(
         "{}: no trial {} of condition {} is in the file, which asks for {} of it; made from the study\n", run,

@@ -218,7 +218,7 @@ Examples:
   command
       ->add_option("--until-event", arguments->until_event,
                    "event of --until: failure, refusal or failure_or_refusal")
-      ->check(IsOneOf(TrialEventNames()))
+      ->check(MakeChoiceValidator(TrialEventNames()))
       ->capture_default_str()
       ->needs(until);
   command
@@ -242,7 +242,7 @@ Examples:
           "--keep", arguments->keep,
           "all: every trial; counts: the exact sums that `rcme summarize` needs and a few complete trials, "
           "in a file that does not grow with the number of trials")
-      ->check(IsOneOf({"all", "counts"}))
+      ->check(MakeChoiceValidator({"all", "counts"}))
       ->capture_default_str()
       ->excludes(until)
       ->excludes(repeats);
@@ -252,7 +252,7 @@ Examples:
           "run trials with these statuses again and replace them: no_answer,timed_out,unreadable_answer; "
           "the file records how many")
       ->delimiter(',')
-      ->check(IsOneOf(NamesOfMissingAnswers()))
+      ->check(MakeChoiceValidator(NamesOfMissingAnswers()))
       ->excludes(until);
   AddTimeLimit(command, "trials", &arguments->max_time);
   command

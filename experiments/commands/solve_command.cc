@@ -128,9 +128,9 @@ Examples:
           ->add_option("--to", arguments->question.to, "greatest level; default: that of the study's factor")
           ->transform(NumberIn());
   command->add_option("--scale", arguments->scale, "linear (default) or log: how levels are spaced")
-      ->check(IsOneOf({"linear", "log"}));
+      ->check(MakeChoiceValidator({"linear", "log"}));
   command->add_option("--quantity", arguments->quantity, "event whose rate is meant; default: failure")
-      ->check(IsOneOf(TrialEventNames()));
+      ->check(MakeChoiceValidator(TrialEventNames()));
   command->add_option("--at", arguments->question.rate, "the rate")
       ->transform(NumberIn({1e-6, 1.0 - 1e-6}))
       ->capture_default_str();

@@ -39,7 +39,7 @@ struct Arguments {
 };
 
 // NAME=TEXT each, the text with whatever it has.
-Settings LabelsOf(const std::vector<std::string>& texts) {
+Settings ParseLabels(const std::vector<std::string>& texts) {
   Settings labels;
   for (const std::string& text : texts) {
     const size_t equals = text.find('=');
@@ -59,11 +59,11 @@ void WarnOfRefusals(const Summary& summary) {
   }
 }
 
-std::string TextOf(const Summary& summary, const Arguments& arguments) {
+std::string RenderSummary(const Summary& summary, const Arguments& arguments) {
   const std::vector<std::string>& quantities = arguments.quantities;
   if (arguments.format == "latex") {
     return SummaryAsLatex(summary, quantities.empty() ? DefaultLatexQuantities() : quantities,
-                          LabelsOf(arguments.labels));
+                          ParseLabels(arguments.labels));
   }
   if (arguments.format == "table")
     return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
@@ -107,7 +107,7 @@ Examples:
           ->add_option(
               "--format", arguments->format,
               "table (for people), csv or json (every quantity), latex (a table of a paper, booktabs)")
-          ->check(IsOneOf({"table", "csv", "json", "latex"}))
+          ->check(MakeChoiceValidator({"table", "csv", "json", "latex"}))
           ->capture_default_str();
   command
       ->add_option("--quantities", arguments->quantities,
@@ -120,7 +120,7 @@ Examples:
       ->allow_extra_args(false)
       ->needs(format);
   command->add_option("--raw", arguments->raw, "csv: a row per trial and estimator, nothing summarized")
-      ->check(IsOneOf({"csv"}))
+      ->check(MakeChoiceValidator({"csv"}))
       ->excludes(format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->add_flag("--times", arguments->with_times,
@@ -147,7 +147,7 @@ Examples:
       Summary summary = SummarizeCounts(counts, arguments->with_times, pooling);
       summary.preregistration = DescribePreregistered(counts.run, arguments->run);
       WarnOfRefusals(summary);
-      return PrintOrWrite(arguments->out, TextOf(summary, *arguments));
+      return PrintOrWrite(arguments->out, RenderSummary(summary, *arguments));
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
@@ -158,7 +158,7 @@ Examples:
     WarnOfRefusals(summary);
     PrintOrWrite(arguments->out, arguments->format == "table" && arguments->quantities.empty()
                                      ? Tables(store, summary)
-                                     : TextOf(summary, *arguments));
+                                     : RenderSummary(summary, *arguments));
   });
 }
 

@@ -78,7 +78,7 @@ Examples:
   command->add_option("runs", arguments->runs, "result files of `rcme run`, with the same factors")
       ->required();
   command->add_option("--quantity", arguments->quantity, "failure, coverage or P-y")
-      ->check(IsOneOf({"failure", "coverage", "P-y"}))
+      ->check(MakeChoiceValidator({"failure", "coverage", "P-y"}))
       ->capture_default_str();
   command->add_option("--estimator", arguments->estimator, "its label; default: the study's first");
   command->add_option("--propose", arguments->num_proposed, "so many further draws of the population")

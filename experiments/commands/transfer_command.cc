@@ -24,10 +24,10 @@ struct TransferArguments : TuningArguments {
 void RunTransfer(const TransferArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.shards.max_time);
-  const StudyPlan plan = TuningPlanOf(arguments);
+  const StudyPlan plan = MakeTuningPlan(arguments);
   if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
-  FamiliesOf(plan, arguments.by);  // refuses before any trial
+  ListFamilies(plan, arguments.by);  // refuses before any trial
   const TuningWork work = PlanTransferWork(plan);
   const bool is_part = !arguments.shards.shard.empty();
   if (!is_part && arguments.shards.parts.empty()) MakeResultFolder(arguments.out);

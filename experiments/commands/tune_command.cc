@@ -57,7 +57,7 @@ void WriteEstimator(const TuneArguments& arguments, const StudyPlan& plan, const
   const std::string& path = arguments.out;
   EstimatorSpec spec = settings.settings[*result.choice.setting].spec;
   spec.label += "_tuned";
-  auto provenance = ProvenanceOf(plan, result);
+  auto provenance = DescribeProvenance(plan, result);
   if (!arguments.changes.overrides.empty()) {
     provenance.emplace_back("changed", fmt::format("{}", fmt::join(arguments.changes.overrides, ", ")));
   }
@@ -83,7 +83,7 @@ void RunRepetitions(const TuneArguments& arguments, const StudyPlan& plan, const
 void RunTune(const TuneArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.shards.max_time);
-  const StudyPlan plan = TuningPlanOf(arguments);
+  const StudyPlan plan = MakeTuningPlan(arguments);
   if (arguments.shards.parts.empty()) CheckProcessEstimators(plan.study.estimators);
   const SettingPlan settings = MakeSettingPlan(plan.study, *plan.study.tuning);
   if (arguments.repeat > 0) {
@@ -106,7 +106,7 @@ void RunTune(const TuneArguments& arguments) {
   PrintCosts(runner);
   const TuneResult result = Tune(plan, settings, unreached, CountsIn(plan, settings, work, runner.results()));
   std::vector<EntropyRoc> rocs;
-  if (!result.verified.empty()) rocs = RocsOf(plan, EntropiesIn(plan, work, runner.results()));
+  if (!result.verified.empty()) rocs = ComputeRocs(plan, EntropiesIn(plan, work, runner.results()));
   fmt::print("{}", TuneAsTable(plan, result, rocs));
   if (result.choice.setting) WriteEstimator(arguments, plan, settings, result);
   if (!arguments.figures.empty()) {

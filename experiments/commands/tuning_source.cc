@@ -30,7 +30,7 @@ void AddTuningOptions(CLI::App* command, TuningArguments* arguments) {
       ->transform(WholeNumberIn(0, 1024));
 }
 
-StudyPlan TuningPlanOf(const TuningArguments& arguments) {
+StudyPlan MakeTuningPlan(const TuningArguments& arguments) {
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (!study.tuning) {
     throw InputError(

@@ -18,6 +18,6 @@ void AddTuningOptions(CLI::App* command, TuningArguments* arguments);
 
 // The plan of the study, its tune block changed; the severity of the problems is not measured. Throws
 // InputError, also if the study has no tune block.
-StudyPlan TuningPlanOf(const TuningArguments& arguments);
+StudyPlan MakeTuningPlan(const TuningArguments& arguments);
 
 }  // namespace rcme

@@ -37,7 +37,7 @@ struct TwinPlaces {
   std::filesystem::path study, simulated_study, templates;
 };
 
-TwinPlaces PlacesOf(const std::filesystem::path& out, const std::string& scene) {
+TwinPlaces MakeTwinPlaces(const std::filesystem::path& out, const std::string& scene) {
   if (out.extension() == ".yaml") {
     std::filesystem::path stem = out;
     stem.replace_extension();
@@ -130,7 +130,7 @@ void RunTwin(const TwinArguments& arguments) {
   std::vector<TwinReport> reports;
   for (const auto& [scene, data] : scenes) {
     const auto seed = static_cast<std::uint64_t>(arguments.seed);
-    const TwinPlaces places = PlacesOf(out, scene);
+    const TwinPlaces places = MakeTwinPlaces(out, scene);
     const TwinSource source = AnswerScene(scene, *data, images, *estimator, seed, &steps);
     reports.push_back(MakeTwinReport(source, *estimator, places.templates.filename().string(),
                                      arguments.sigma_px, seed, arguments.num_twins, &steps));
@@ -194,7 +194,7 @@ Examples:
       ->capture_default_str();
   AddTimeLimit(command, "pairs", &arguments->max_time);
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(IsOneOf({"table", "csv", "json"}))
+      ->check(MakeChoiceValidator({"table", "csv", "json"}))
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "seed of samples, halves and twins")
       ->transform(WholeNumberIn(0))

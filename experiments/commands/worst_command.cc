@@ -130,7 +130,7 @@ Examples:
   command->add_option("--estimator", arguments->estimator, "its label")->required();
   command->add_option("--against", arguments->against, "label of the estimator that a difference is from");
   command->add_option("--quantity", arguments->quantity, "failure, sure_failure, coverage or difference")
-      ->check(IsOneOf({"failure", "sure_failure", "coverage", "difference"}))
+      ->check(MakeChoiceValidator({"failure", "sure_failure", "coverage", "difference"}))
       ->capture_default_str();
   CLI::Option* trials =
       command->add_option("--trials", arguments->trials, "how many may be spent; default: 5000")

@@ -4,6 +4,9 @@
 #include <iterator>
 #include <map>
 #include <set>
+#include <span>
+
+#include "stats/random.h"
 
 namespace rcme {
 
@@ -31,5 +34,16 @@ std::int64_t AnswerRows::CountRefusals() const {
 }
 
 bool AnswerRows::HasSharedGroups() const { return CountGroups() < std::ssize(problems); }
+
+std::map<std::int64_t, size_t> ShuffleGroups(const AnswerRows& answers) {
+  std::set<std::int64_t> names;
+  for (const AskedProblem& problem : answers.problems) names.insert(problem.group);
+  std::vector<std::int64_t> order(names.begin(), names.end());
+  RandomStream rng({.seed = 1, .condition = 0, .trial = 0, .purpose = 1});
+  rng.Shuffle(std::span(order));
+  std::map<std::int64_t, size_t> places;
+  for (size_t i = 0; i < order.size(); ++i) places[order[i]] = i;
+  return places;
+}
 
 }  // namespace rcme

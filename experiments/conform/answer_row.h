@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <vector>
 
 #include "estimator/conform/visible_features.h"
@@ -38,5 +39,8 @@ struct AnswerRows {
   std::int64_t CountRefusals() const;
   bool HasSharedGroups() const;  // some group has several problems
 };
+
+// A number for each group, in an order that says nothing of them: the same for the same groups.
+std::map<std::int64_t, size_t> ShuffleGroups(const AnswerRows& answers);
 
 }  // namespace rcme

@@ -9,6 +9,8 @@
 #include <set>
 #include <span>
 
+#include "experiments/conform/fit_rule.h"
+#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
@@ -36,7 +38,7 @@ struct RegionKind {
   std::function<double(const JudgedAnswer&)> size_deg;  // geometric mean of the semi-axes
 };
 
-double SizeOf(const JudgedAnswer& answer, double factor) {
+double ComputeRegionSize(const JudgedAnswer& answer, double factor) {
   const double radius = std::sqrt(factor * ChiSquareQuantile(5, answer.level));
   const double size_deg = kDegPerRad * radius * std::exp(answer.row.log_det / 10.0);
   return std::isfinite(factor) ? std::min(size_deg, kWholeSpaceDeg) : kWholeSpaceDeg;
@@ -45,7 +47,7 @@ double SizeOf(const JudgedAnswer& answer, double factor) {
 RegionKind RegionOfFactor(const std::string& name, const std::function<double(const JudgedAnswer&)>& factor) {
   return {name,
           [factor](const JudgedAnswer& a) { return a.row.nees <= factor(a) * ChiSquareQuantile(5, a.level); },
-          [factor](const JudgedAnswer& a) { return SizeOf(a, factor(a)); }};
+          [factor](const JudgedAnswer& a) { return ComputeRegionSize(a, factor(a)); }};
 }
 
 std::vector<RegionKind> RegionKinds(bool is_check) {
@@ -81,7 +83,7 @@ Estimate MeasureShare(const Judged& judged, const std::function<bool(const Judge
 double MedianSize(const Judged& judged, const RegionKind& kind) {
   std::vector<double> sizes;
   for (const JudgedAnswer& answer : judged) sizes.push_back(kind.size_deg(answer));
-  return MedianOf(std::move(sizes));
+  return ComputeMedian(std::move(sizes));
 }
 
 // The quarter of the answers that looks hardest at run time: by difficulty, where the rule has none by the
@@ -189,24 +191,6 @@ Table MakeProbabilityTable(const ConformReport& report) {
       {Column::Estimated("log_score"),
        [&](const ProbabilityKind& kind) { return estimate(MeasureLogScore(kind.forecasts)); }}};
   return MakeTable(columns, kinds);
-}
-
-// For files: the interval of each estimate in a column of its own.
-Table WithIntervalColumns(const Table& table) {
-  Table wide;
-  wide.rows.resize(table.rows.size());
-  for (size_t c = 0; c < table.columns.size(); ++c) {
-    wide.columns.push_back(table.columns[c]);
-    for (size_t r = 0; r < table.rows.size(); ++r) wide.rows[r].push_back(table.rows[r][c]);
-    if (table.columns[c].type != ColumnType::kEstimate) continue;
-    const std::string& name = table.columns[c].name;
-    wide.columns.push_back({.name = fmt::format("{0}_lower,{0}_upper", name),
-                            .type = ColumnType::kInterval,
-                            .json_name = name + "_interval"});
-    for (size_t r = 0; r < table.rows.size(); ++r)
-      wide.rows[r].push_back(std::get<Estimate>(table.rows[r][c]).interval);
-  }
-  return wide;
 }
 
 std::string Counted(std::int64_t n, const std::string& one, const std::string& many) {

@@ -9,9 +9,11 @@
 #include <span>
 
 #include "estimator/conform/conform_file.h"
+#include "experiments/conform/fit_rule.h"
 #include "parameters/input_error.h"
 #include "stats/exchangeability.h"
 #include "stats/fnv1a.h"
+#include "stats/random.h"
 
 namespace rcme {
 namespace {

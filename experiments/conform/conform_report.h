@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "experiments/conform/calibration_work.h"
-#include "experiments/conform/fit_rule.h"
+#include "experiments/conform/cross_validate.h"
+#include "experiments/conform/set_promises.h"
 
 namespace rcme {
 

@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kCameras = "own_intrinsics";
 
 // The last value of a key; empty: there is none.
-std::string ValueOf(const Settings& settings, const std::string& key) {
+std::string FindLastValue(const Settings& settings, const std::string& key) {
   std::string last;
   for (const auto& [name, value] : settings) {
     if (name == key) last = value;
@@ -57,8 +57,8 @@ SettingHelp CalibrationHelp() {
 }
 
 Settings WithCalibration(const Settings& settings) {
-  if (ValueOf(settings, "cameras") != kCamerasFromFile) return settings;
-  const std::string path = ValueOf(settings, kCalibrationKey);
+  if (FindLastValue(settings, "cameras") != kCamerasFromFile) return settings;
+  const std::string path = FindLastValue(settings, kCalibrationKey);
   if (path.empty()) {
     throw InputError(fmt::format("cameras: {} needs the key '{}': {}", kCamerasFromFile, kCalibrationKey,
                                  CalibrationHelp().allowed));

@@ -73,7 +73,7 @@ class DataSource {
   // pairs.
   virtual Settings ChosenParts() const { return {}; }
   // The exact scene of a trial; nothing where nobody knows it.
-  virtual std::optional<Scene> SceneOf(const StreamName&) const { return std::nullopt; }
+  virtual std::optional<Scene> FindScene(const StreamName&) const { return std::nullopt; }
   // The real scene whose images all trials share, again and again; nothing: each trial draws its own.
   virtual std::optional<std::string> SharedScene() const { return std::nullopt; }
 };

@@ -160,7 +160,7 @@ std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings,
 Settings ResolveSettings(const Settings& settings) {
   Configured configured(settings);
   Settings resolved = configured.ChosenNames();
-  const Settings values = ValuesOf(configured.AllParameters());
+  const Settings values = ListValues(configured.AllParameters());
   resolved.insert(resolved.end(), values.begin(), values.end());
   return resolved;
 }

@@ -332,9 +332,9 @@ MatchFile ReadMatchesFromInput(const GivenCameras& given) {
   return ReadMatches("standard input", GzipLines::OfStandardInput(), given);
 }
 
-MotionProblem ProblemOf(MatchFile file, double sigma_px) {
+MotionProblem MakeMotionProblem(MatchFile file, double sigma_px) {
   return {std::move(file.matches), file.camera1, file.camera2, sigma_px,
-          NoiseScaleOf(std::move(file.sigma_px))};
+          ComputeNoiseScale(std::move(file.sigma_px))};
 }
 
 void WriteMatchFile(const MatchFile& file, const std::string& path) {

@@ -36,7 +36,7 @@ namespace rcme {
 //
 // A further column named sigma_px is each match's own standard deviation per coordinate (features.h says
 // what those of our front end are). An estimator is given how these compare with each other, not how large
-// they are (ProblemOf). Other columns are skipped.
+// they are (MakeMotionProblem). Other columns are skipped.
 struct MatchFile {
   std::string path;
   std::string scene = "unnamed";
@@ -71,7 +71,7 @@ MatchFile ReadMatchesFromInput(const GivenCameras& given = std::nullopt);
 
 // What an estimator is given of a file: its matches and cameras, the noise level that is assumed, and of a
 // column sigma_px each one's share of the median (noise_scale).
-MotionProblem ProblemOf(MatchFile file, double sigma_px);
+MotionProblem MakeMotionProblem(MatchFile file, double sigma_px);
 
 // Writes the same format, plain. Throws InputError if the path cannot be written; never leaves half a file.
 void WriteMatchFile(const MatchFile& file, const std::string& path);

@@ -76,7 +76,7 @@ TruthSd AssumedSd(const MatchFile& file, const PoseSd& truth) {
 
 }  // namespace
 
-std::string PairIdOf(const fs::path& match_file) {
+std::string ExtractPairId(const fs::path& match_file) {
   const std::string name = match_file.filename().string();
   return name.substr(0, name.find(".csv"));
 }
@@ -86,7 +86,7 @@ std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder,
   // Without a slash at the end, so that 'x/' too has its parent above it.
   const fs::path folder = (fs::absolute(given_folder) / "").lexically_normal().parent_path();
   std::set<std::string> ids, weak;
-  for (const fs::path& file : files) ids.insert(PairIdOf(file));
+  for (const fs::path& file : files) ids.insert(ExtractPairId(file));
   for (const fs::path& index : {folder / "INDEX.csv", folder.parent_path() / "INDEX.csv"}) {
     if (fs::exists(index)) AddWeak(index, ids, &weak);
   }
@@ -163,7 +163,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     TrialData data;
     data.origin = path.filename().string();
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
-    data.truth.is_direction_known = weak.count(PairIdOf(path)) == 0;
+    data.truth.is_direction_known = weak.count(ExtractPairId(path)) == 0;
     group.noise_levels.push_back(file.noise_level);
     group.num_with_truth_sd += file.truth_sd.has_value();
     if (IsTruthAssumed(file, settings.truth)) {
@@ -173,7 +173,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     }
     data.truth.sd = file.truth_sd;
     AddNumbers(file, data.truth.is_direction_known, &group.digest);
-    data.problem = ProblemOf(std::move(file), settings.sigma_px);
+    data.problem = MakeMotionProblem(std::move(file), settings.sigma_px);
     if (redraw.IsOn()) Redraw::Label(&data);
     group.pairs.push_back(std::move(data));
   }

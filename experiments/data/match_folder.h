@@ -60,7 +60,7 @@ using ImageNames = std::map<std::string, std::pair<std::string, std::string>>;
 ImageNames ImageNamesIn(const std::string& folder);
 
 // The name of a pair in an index: that of its file without the ending.
-std::string PairIdOf(const std::filesystem::path& match_file);
+std::string ExtractPairId(const std::filesystem::path& match_file);
 
 // Of these files of a folder the pairs whose true direction an INDEX.csv in it or above it calls weak.
 std::set<std::string> PairsWithWeakDirection(const std::filesystem::path& given_folder,

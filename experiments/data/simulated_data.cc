@@ -106,7 +106,7 @@ Scene SimulatedData::DrawScene(const StreamName& trial_name) const {
   return Simulate([&] { return scenes_.Generate(scene_rng); });
 }
 
-Scene SimulatedData::DrawSceneOf(const Motion& motion, RandomStream& rng) const {
+Scene SimulatedData::DrawSceneWithMotion(const Motion& motion, RandomStream& rng) const {
   FixBaseline();
   return Simulate([&] { return scenes_.GenerateWith(motion, rng); });
 }
@@ -145,10 +145,10 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, std::span<const double> no
 TrialData SimulatedData::Give(const Scene& scene, Observation observation) const {
   TrialData data;
   // sigma_px is that of the median match where single ones are told apart.
-  const double median = observation.noise_scale.empty() ? 1.0 : MedianOf(observation.noise_scale);
+  const double median = observation.noise_scale.empty() ? 1.0 : ComputeMedian(observation.noise_scale);
   data.problem = {std::move(observation.matches), assumed_.AssumedCamera(scene.camera1),
                   assumed_.AssumedCamera(scene.camera2), assumed_.AssumedSigma(median * noise_->sigma_px()),
-                  NoiseScaleOf(std::move(observation.noise_scale))};
+                  ComputeNoiseScale(std::move(observation.noise_scale))};
   data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),
                 std::move(observation.is_undetectable)};
   data.origin = "simulated";

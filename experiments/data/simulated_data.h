@@ -42,7 +42,9 @@ class SimulatedData : public DataSource {
   int NumTrials(int trials) const override { return trials; }
   TrialData Make(const StreamName& trial_name) const override;
 
-  std::optional<Scene> SceneOf(const StreamName& trial_name) const override { return DrawScene(trial_name); }
+  std::optional<Scene> FindScene(const StreamName& trial_name) const override {
+    return DrawScene(trial_name);
+  }
 
   // The two halves of Make: the exact scene, and what the images give of it.
   Scene DrawScene(const StreamName& trial_name) const;
@@ -50,7 +52,7 @@ class SimulatedData : public DataSource {
 
   // Another scene of the same motion, or of one near it (MotionModel::DrawNear): nothing where the motion's
   // law has no such move.
-  Scene DrawSceneOf(const Motion& motion, RandomStream& rng) const;
+  Scene DrawSceneWithMotion(const Motion& motion, RandomStream& rng) const;
   std::optional<Scene> DrawSceneNear(const Motion& motion, double step, RandomStream& rng) const;
 
   // Root mean square of the noise over the coordinates of matches, as the noise's law has it.

@@ -199,7 +199,7 @@ std::vector<ChangedTrial> FindChangedTrials(const ReadableRun& run, std::int64_t
   run.for_each_trial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     if (problem.trial >= num_rounds || records.size() < 2) return;
     const TrialRecord &of_old = records.front(), &of_new = records.back();
-    const TrialOutcome before = OutcomeOf(of_old, bounds), after = OutcomeOf(of_new, bounds);
+    const TrialOutcome before = ClassifyOutcome(of_old, bounds), after = ClassifyOutcome(of_new, bounds);
     if (before == after) return;
     changed.push_back({problem.condition, problem.trial, OutcomeInFull(of_old, bounds),
                        OutcomeInFull(of_new, bounds), RankOutcome(after) > RankOutcome(before)});

@@ -64,12 +64,12 @@ TallyClusters ClustersFrom(const std::map<std::int64_t, IntegrityTally>& scenes)
   return clusters;
 }
 
-TallyClusters ClustersOf(const ConditionIntegrity& condition) {
+TallyClusters ListTallyClusters(const ConditionIntegrity& condition) {
   if (condition.scenes.empty()) return {{condition.counts.tally}, true};
   return ClustersFrom(condition.scenes);
 }
 
-TallyClusters ClustersOf(const IntegrityReport& report) {
+TallyClusters ListTallyClusters(const IntegrityReport& report) {
   TallyClusters all;
   std::map<std::int64_t, IntegrityTally> common;
   all.by_trial = report.new_problem == NewProblem::kTrial;
@@ -79,7 +79,7 @@ TallyClusters ClustersOf(const IntegrityReport& report) {
       continue;
     }
     for (const auto& [number, tally] : condition.scenes) common[number].Add(tally);
-    const TallyClusters of = ClustersOf(condition);
+    const TallyClusters of = ListTallyClusters(condition);
     all.by_trial = all.by_trial && of.by_trial;
     all.tallies.insert(all.tallies.end(), of.tallies.begin(), of.tallies.end());
   }
@@ -96,7 +96,7 @@ struct IntegrityRow {
 };
 
 IntegrityRow MakeRow(const IntegrityReport& report, const ConditionIntegrity& condition, size_t quantity) {
-  const TallyClusters clusters = ClustersOf(condition);
+  const TallyClusters clusters = ListTallyClusters(condition);
   return {condition.levels, quantity, condition.counts.tally.NumTrials(quantity),
           condition.counts.tally.NumAnswers(quantity),
           MeasureIntegrity(clusters.tallies, clusters.by_trial, quantity, report.terms.risk)};
@@ -194,7 +194,7 @@ Json RegionsAsJson(const RegionCounts& counts) {
   return json;
 }
 
-Json CellsOf(const std::map<int, std::int64_t>& cells) {
+Json RenderTallyCells(const std::map<int, std::int64_t>& cells) {
   Json json = Json::array();
   for (const auto& [cell, count] : cells)
     json.push_back({{"error", cell / kNumIntegrityBins}, {"level", cell % kNumIntegrityBins}, {"n", count}});
@@ -202,11 +202,13 @@ Json CellsOf(const std::map<int, std::int64_t>& cells) {
 }
 
 Json DiagramAsJson(const IntegrityReport& report, const IntegrityCounts& all, size_t quantity) {
-  return {
-      {"error", IntegrityQuantityName(quantity)},    {"alert_limit_deg", report.terms.LimitDeg(quantity)},
-      {"trials", all.tally.NumTrials(quantity)},     {"without_motion", all.tally.num_without_motion},
-      {"without_truth", all.num_unscored[quantity]}, {"regions", RegionsAsJson(all.tally.regions[quantity])},
-      {"cells", CellsOf(all.cells[quantity])}};
+  return {{"error", IntegrityQuantityName(quantity)},
+          {"alert_limit_deg", report.terms.LimitDeg(quantity)},
+          {"trials", all.tally.NumTrials(quantity)},
+          {"without_motion", all.tally.num_without_motion},
+          {"without_truth", all.num_unscored[quantity]},
+          {"regions", RegionsAsJson(all.tally.regions[quantity])},
+          {"cells", RenderTallyCells(all.cells[quantity])}};
 }
 
 }  // namespace
@@ -242,7 +244,7 @@ IntegrityRates MeasureIntegrity(const std::vector<IntegrityTally>& clusters, boo
 }
 
 IntegrityRates MeasureIntegrity(const IntegrityReport& report, size_t quantity) {
-  const TallyClusters clusters = ClustersOf(report);
+  const TallyClusters clusters = ListTallyClusters(report);
   return MeasureIntegrity(clusters.tallies, clusters.by_trial, quantity, report.terms.risk);
 }
 

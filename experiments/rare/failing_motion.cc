@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-Motion MotionOf(const Scene& scene) { return {scene.cam2_from_cam1_true, scene.baseline_m}; }
+Motion ReadMotion(const Scene& scene) { return {scene.cam2_from_cam1_true, scene.baseline_m}; }
 
 bool SeesAll(const Scene& scene, const std::vector<Eigen::Vector3d>& points) {
   return std::ranges::all_of(points, [&](const Eigen::Vector3d& point) { return scene.Sees(point); });
@@ -22,7 +22,7 @@ bool SeesAll(const Scene& scene, const std::vector<Eigen::Vector3d>& points) {
 void RequireDrawnScenes(const Study& study) {
   RequireFixedOptions(study, "rcme rare");
   for (const std::vector<std::string>& levels : DesignRows(study)) {
-    for (const auto& [key, value] : SettingsOf(study, levels)) {
+    for (const auto& [key, value] : CombineSettings(study, levels)) {
       if (key == "scene" && value == kMatchFilesScene) {
         throw InputError(
             "rare: scene: match_files is not allowed; real pairs give too few trials for rare failures");
@@ -45,7 +45,7 @@ double ErrorOverBound(const TrialRecord& record, const FailureBounds& bounds) {
 FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, size_t estimator)
     : estimator_(plan.estimators[estimator]), study_(plan.study), stream_key_(condition.stream_key) {
   RequireDrawnScenes(plan.study);
-  data_ = MakeSimulatedData(SettingsOf(plan.study, condition.levels), BaselineSearch::kWithFirstScene);
+  data_ = MakeSimulatedData(CombineSettings(plan.study, condition.levels), BaselineSearch::kWithFirstScene);
   if (!data_->HasNormalNoise()) {
     throw InputError("rare: noise: splitting needs gaussian noise; for other noise give --method stratified");
   }
@@ -72,7 +72,7 @@ std::shared_ptr<const Scene> FailingMotion::DrawScene(RandomStream& rng) const {
 
 std::shared_ptr<const Scene> FailingMotion::WithSomePoints(const Scene& scene, double share,
                                                            RandomStream& rng) const {
-  const Scene fresh = data_->DrawSceneOf(MotionOf(scene), rng);
+  const Scene fresh = data_->DrawSceneWithMotion(ReadMotion(scene), rng);
   Scene mixed = scene;
   for (size_t i = 0; i < mixed.points_in_cam1.size(); ++i) {
     if (rng.Uniform() < share) mixed.points_in_cam1[i] = fresh.points_in_cam1[i];
@@ -91,7 +91,7 @@ std::shared_ptr<const Scene> FailingMotion::WithMotionNear(const Scene& scene, d
   constexpr double kStepOfMotion = 0.3;
   Scene moved = scene;
   for (int i = 0; i < kTries; ++i) {
-    const std::optional<Scene> fresh = data_->DrawSceneNear(MotionOf(moved), kStepOfMotion * step, rng);
+    const std::optional<Scene> fresh = data_->DrawSceneNear(ReadMotion(moved), kStepOfMotion * step, rng);
     if (!fresh || !SeesAll(*fresh, moved.points_in_cam1) || !SeesAll(moved, fresh->points_in_cam1)) continue;
     moved.cam2_from_cam1_true = fresh->cam2_from_cam1_true;
   }

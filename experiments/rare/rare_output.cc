@@ -54,7 +54,7 @@ std::string DescribeDoubts(const RareCell& cell) {
   return fmt::format("{}", fmt::join(words, "; "));
 }
 
-std::vector<std::string> HeadOf(const StudyPlan& plan, size_t condition, size_t estimator) {
+std::vector<std::string> MakeRowHead(const StudyPlan& plan, size_t condition, size_t estimator) {
   std::vector<std::string> head = plan.conditions[condition].levels;
   head.push_back(plan.study.estimators[estimator].label);
   return head;
@@ -75,7 +75,7 @@ double KnownShare(const RareRow& row) {
 
 // Of so many trials of every condition; the estimators of one share them.
 template <typename Cell>
-std::string DescribeMissingTrials(const std::vector<Cell>& cells, std::int64_t num_of_condition) {
+std::string DescribeMissingCellTrials(const std::vector<Cell>& cells, std::int64_t num_of_condition) {
   std::int64_t num_not_simulated = 0, num_trials = 0;
   for (const Cell& cell : cells) {
     if (cell.estimator != 0) continue;
@@ -98,7 +98,7 @@ Table MakeRateTable(const StudyPlan& plan, const std::vector<RareRow>& rows) {
                     Column::Number("of brute force", {100.0, "%", ".2g"}),
                     Column::Number("unseen up to", {1.0, "", ".1e"}), Column::Flag("trusted")});
   for (const RareRow& row : rows) {
-    const std::vector<std::string> head = HeadOf(plan, row.condition, row.estimator);
+    const std::vector<std::string> head = MakeRowHead(plan, row.condition, row.estimator);
     std::vector<Value>& values = table.rows.emplace_back(head.begin(), head.end());
     values.insert(values.end(), {Estimate{row.estimate, row.interval}, row.num_calls, KnownShare(row),
                                  row.unseen_up_to, row.doubts.empty()});
@@ -106,7 +106,7 @@ Table MakeRateTable(const StudyPlan& plan, const std::vector<RareRow>& rows) {
   return table;
 }
 
-Json LevelsOf(const RareCell& cell) {
+Json RenderSplittingLevels(const RareCell& cell) {
   std::vector<double> values = cell.pilot.levels.levels;
   values.push_back(1.0);
   Json levels = Json::array();
@@ -194,9 +194,9 @@ std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cell
   for (size_t i = 0; i < cells.size(); ++i) {
     table.rows[i].emplace_back(cells[i].rate.relative_spread);
     if (cells[i].rate.IsTrusted()) continue;
-    doubts += FormatParagraph(fmt::format("{}: not trusted: {}",
-                                          fmt::join(HeadOf(plan, rows[i].condition, rows[i].estimator), ", "),
-                                          DescribeDoubts(cells[i])));
+    doubts += FormatParagraph(fmt::format(
+        "{}: not trusted: {}", fmt::join(MakeRowHead(plan, rows[i].condition, rows[i].estimator), ", "),
+        DescribeDoubts(cells[i])));
   }
   return fmt::format("{}: failures by multilevel splitting\n\n{}\n{}{}", plan.study.name, RenderText(table),
                      doubts, doubts.empty() ? "" : "\n") +
@@ -204,7 +204,7 @@ std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cell
              "Mean of independent unbiased replicates with Cox's 95 % interval; spread: standard deviation "
              "of "
              "one over the mean.") +
-         FormatParagraph(kBruteForceLegend) + DescribeMissingTrials(cells, FailingMotion::kNumTried) +
+         FormatParagraph(kBruteForceLegend) + DescribeMissingCellTrials(cells, FailingMotion::kNumTried) +
          FormatParagraph(
              "unseen up to: failures of a kind that comes at once, with no level before it, may have any "
              "rate "
@@ -228,7 +228,7 @@ std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<Stratifie
              "Each trial that is run counts as many as its stratum stands for; 95 % interval of Fay and "
              "Feuer "
              "for weighted counts.") +
-         FormatParagraph(kBruteForceLegend) + DescribeMissingTrials(cells, NumDrawn(cells)) +
+         FormatParagraph(kBruteForceLegend) + DescribeMissingCellTrials(cells, NumDrawn(cells)) +
          FormatParagraph(
              "unseen up to: the upper end if the next failure came from the easiest stratum that was run.") +
          FormatParagraph(fmt::format("trusted: the failures weigh as much as {:g} of equal weight or more.",
@@ -247,7 +247,7 @@ std::string RareAsCsv(const StudyPlan& plan, const std::vector<RareRow>& rows) {
   for (const RareRow& row : rows) {
     std::vector<Value>& values = table.rows.emplace_back(
         std::vector<Value>{plan.study.name, static_cast<std::int64_t>(row.condition)});
-    std::ranges::copy(HeadOf(plan, row.condition, row.estimator), std::back_inserter(values));
+    std::ranges::copy(MakeRowHead(plan, row.condition, row.estimator), std::back_inserter(values));
     const std::int64_t is_trusted = row.doubts.empty() ? 1 : 0;
     values.insert(values.end(), {"failure", "rate", row.estimate, row.interval.lower, row.interval.upper,
                                  row.standard_error, row.num_calls, is_trusted,
@@ -265,7 +265,7 @@ std::string RareAsJson(const StudyPlan& plan, const RareEffort& effort, const st
     all.push_back(RowAsJson(plan, MakeRareRow(cell)));
     all.back().update({{"relative_spread", JsonNumber(cell.rate.relative_spread)},
                        {"num_ancestors", cell.rate.num_ancestors},
-                       {"error_levels", LevelsOf(cell)},
+                       {"error_levels", RenderSplittingLevels(cell)},
                        {"replicates", estimates}});
   }
   Json json = StudyAsJson(plan, "splitting");

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
 
 // The pilot has the number 0, replicates count from 1.
-RandomStream StreamOf(std::uint64_t seed, const Condition& condition, std::uint32_t number) {
+RandomStream MakeStream(std::uint64_t seed, const Condition& condition, std::uint32_t number) {
   return RandomStream({seed, condition.stream_key, number, kSplittingPurpose});
 }
 
@@ -23,11 +23,6 @@ std::string PilotAsJson(const SplittingPilot& pilot) {
   return Json::array({static_cast<int>(pilot.end), NumbersAsJson(pilot.levels.levels),
                       NumbersAsJson(pilot.levels.steps), NumberAsJson(pilot.last_level), pilot.num_values})
       .dump();
-}
-
-// What no run can have given is damage, whatever the checksums say.
-void RequirePossible(bool is_possible, const char* what) {
-  if (!is_possible) throw std::invalid_argument(fmt::format("its numbers cannot be: {}", what));
 }
 
 bool AreShares(const std::vector<double>& numbers) {
@@ -48,9 +43,11 @@ SplittingPilot PilotFrom(const Json& json, const SplittingEffort& effort) {
                              NumberFrom(json[3]),
                              CountFrom(json[4], kMost)};
   const std::vector<double>& levels = pilot.levels.levels;
-  RequirePossible(levels.size() == pilot.levels.steps.size(), "levels without steps");
-  RequirePossible(std::ranges::is_sorted(levels) && AreShares(pilot.levels.steps), "levels that fall");
-  RequirePossible(pilot.num_values == NumValues(effort, levels.size()), "another number of values");
+  RequirePossible(levels.size() == pilot.levels.steps.size(), "numbers", "levels without steps");
+  RequirePossible(std::ranges::is_sorted(levels) && AreShares(pilot.levels.steps), "numbers",
+                  "levels that fall");
+  RequirePossible(pilot.num_values == NumValues(effort, levels.size()), "numbers",
+                  "another number of values");
   return pilot;
 }
 
@@ -72,10 +69,11 @@ SplittingReplicate ReplicateFrom(const Json& json, const SplittingEffort& effort
                                      CountFrom(json[6], kMost)};
   double product = 1.0;
   for (const double share : replicate.shares) product *= share;
-  RequirePossible(AreShares(replicate.shares) && AreShares(replicate.acceptance), "a share that is none");
-  RequirePossible(replicate.estimate == product, "the estimate is not the product of the shares");
-  RequirePossible(replicate.num_drawn == num_particles, "another number of particles");
-  RequirePossible(replicate.num_values == NumValues(effort, replicate.acceptance.size()),
+  RequirePossible(AreShares(replicate.shares) && AreShares(replicate.acceptance), "numbers",
+                  "a share that is none");
+  RequirePossible(replicate.estimate == product, "numbers", "the estimate is not the product of the shares");
+  RequirePossible(replicate.num_drawn == num_particles, "numbers", "another number of particles");
+  RequirePossible(replicate.num_values == NumValues(effort, replicate.acceptance.size()), "numbers",
                   "another number of values");
   return replicate;
 }
@@ -130,7 +128,7 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
   std::erase_if(pilots,
                 [&](const ItemPlace& place) { return !cells[place.group].why_not_simulated.empty(); });
   runner->Get(pilots, [&](const ItemPlace& place) {
-    RandomStream rng = StreamOf(seed, plan.conditions[cells[place.group].condition], 0);
+    RandomStream rng = MakeStream(seed, plan.conditions[cells[place.group].condition], 0);
     return PilotAsJson(FindLevels(systems[place.group], effort.splitting, rng));
   });
   ReadResults(work, runner->results(), 0, num_cells, [&](const ItemPlace& place, const std::string& json) {
@@ -143,7 +141,7 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
   runner->Get(replicates, [&](const ItemPlace& place) {
     const size_t c = place.group - num_cells;
     RandomStream rng =
-        StreamOf(seed, plan.conditions[cells[c].condition], 1 + static_cast<std::uint32_t>(place.item));
+        MakeStream(seed, plan.conditions[cells[c].condition], 1 + static_cast<std::uint32_t>(place.item));
     return ReplicateAsJson(Split(systems[c], effort.splitting, cells[c].pilot.levels, rng));
   });
   ReadResults(work, runner->results(), num_cells, 2 * num_cells,
@@ -151,7 +149,7 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
                 cells[place.group - num_cells].replicates.push_back(
                     ReplicateFrom(ParsePiece(json), effort.splitting));
               });
-  for (RareCell& cell : cells) cell.rate = RateOf(cell.pilot, cell.replicates);
+  for (RareCell& cell : cells) cell.rate = EstimateSplittingRate(cell.pilot, cell.replicates);
   return cells;
 }
 

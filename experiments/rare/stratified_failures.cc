@@ -29,7 +29,7 @@ constexpr std::uint32_t kThinningPurpose = 101;
 constexpr std::uint32_t kFirstPilotTrial = 4'000'000'000, kNumPilotTrials = 1000;
 constexpr std::uint32_t kTrialsOfRareItem = 100;
 
-double TailOf(double bound_deg, double variance) {
+double ComputeTail(double bound_deg, double variance) {
   return std::erfc(RadFromDeg(bound_deg) / std::sqrt(2.0 * variance));
 }
 
@@ -84,7 +84,7 @@ class Strata {
   double log_hard_ = 0.0;
 };
 
-TrialRange FindTrialsOf(const StratifiedEffort& effort, const ItemPlace& place) {
+TrialRange FindStratumTrials(const StratifiedEffort& effort, const ItemPlace& place) {
   const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfRareItem;
   return {first, std::min(first + kTrialsOfRareItem, effort.num_trials)};
 }
@@ -189,8 +189,8 @@ double FailureChanceOfBound(const Matrix5d& bound, const FailureBounds& bounds) 
   const double direction =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(Eigen::Matrix2d(bound.bottomRightCorner<2, 2>()))
           .eigenvalues()(1);
-  return std::max(TailOf(bounds.max_rotation_error_deg, rotation),
-                  TailOf(bounds.max_direction_error_deg, direction));
+  return std::max(ComputeTail(bounds.max_rotation_error_deg, rotation),
+                  ComputeTail(bounds.max_direction_error_deg, direction));
 }
 
 WorkPlan PlanStrata(const StudyPlan& plan, const StratifiedEffort& effort) {
@@ -214,13 +214,14 @@ std::vector<StratifiedCell> StratifyFailures(const StudyPlan& plan, const Strati
   std::vector<Strata> strata;
   for (const Condition& condition : plan.conditions) strata.emplace_back(plan, condition, effort.run_share);
   runner->Get(ListItems(work, {}), [&](const ItemPlace& place) {
-    return RunBlock(plan, plan.conditions[place.group], strata[place.group], FindTrialsOf(effort, place));
+    return RunBlock(plan, plan.conditions[place.group], strata[place.group],
+                    FindStratumTrials(effort, place));
   });
   std::vector<StratifiedCell> cells;
   for (size_t c = 0; c < plan.conditions.size(); ++c) {
     StrataSum sum(plan.estimators.size());
     ReadResults(work, runner->results(), c, c + 1, [&](const ItemPlace& place, const std::string& json) {
-      const TrialRange trials = FindTrialsOf(effort, place);
+      const TrialRange trials = FindStratumTrials(effort, place);
       sum.Add(ParsePiece(json), trials.end - trials.first);
     });
     for (size_t e = 0; e < plan.estimators.size(); ++e)

@@ -17,7 +17,7 @@ struct Method {
   std::string test, interval, test_in_words, interval_in_words;
 };
 
-Method MethodOf(ComparedKind kind, bool is_anytime_valid) {
+Method FindMethod(ComparedKind kind, bool is_anytime_valid) {
   if (kind == ComparedKind::kScore) {
     return {"betting", "betting", "test by betting, valid at every look",
             "anytime-valid 95 % interval (betting)"};
@@ -39,10 +39,10 @@ Method MethodOfPopulation(ComparedKind kind) {
                       kind == ComparedKind::kError ? ", of the share greater less the share less," : ""),
           "95 % interval of the population, over its draws"};
 }
-Method MethodOf(const ComparisonRow& row) {
+Method FindMethod(const ComparisonRow& row) {
   if (row.is_of_population) return MethodOfPopulation(row.kind);
   const bool is_by_means = row.is_of_scenes && row.kind == ComparedKind::kEvent;
-  return MethodOf(is_by_means ? ComparedKind::kScore : row.kind, row.is_anytime_valid);
+  return FindMethod(is_by_means ? ComparedKind::kScore : row.kind, row.is_anytime_valid);
 }
 
 // In percentage points or degrees.
@@ -51,8 +51,8 @@ NumberFormat DifferenceFormat(ComparedKind kind) {
 }
 
 // The counts of a kind: their headings and where they are.
-std::vector<std::pair<std::string, std::int64_t PairedCounts::*>> CountsOf(ComparedKind kind,
-                                                                           const std::string& reference) {
+std::vector<std::pair<std::string, std::int64_t PairedCounts::*>> ListPairedCounts(
+    ComparedKind kind, const std::string& reference) {
   using P = PairedCounts;
   switch (kind) {
     case ComparedKind::kEvent:
@@ -68,13 +68,13 @@ std::vector<std::pair<std::string, std::int64_t PairedCounts::*>> CountsOf(Compa
   return {};
 }
 
-std::string TableOf(const Compared& compared, const Comparison& comparison) {
+std::string RenderComparedTable(const Compared& compared, const Comparison& comparison) {
   using R = const ComparisonRow&;
   const bool is_error = compared.kind == ComparedKind::kError;
   auto columns = LevelColumns<ComparisonRow>(comparison.factor_names);
   columns.push_back({{.name = "estimator", .is_key = true}, [](R r) { return r.estimator; }});
   columns.push_back({{"n", ColumnType::kCount}, [](R r) { return r.n; }});
-  for (const auto& [heading, count] : CountsOf(compared.kind, comparison.reference))
+  for (const auto& [heading, count] : ListPairedCounts(compared.kind, comparison.reference))
     columns.push_back({{heading, ColumnType::kCount}, [count](R r) { return r.counts.*count; }});
   columns.push_back({{is_error ? "median difference (deg)" : "difference (% points)", ColumnType::kEstimate,
                       DifferenceFormat(compared.kind)},
@@ -93,7 +93,7 @@ std::string TableOf(const Compared& compared, const Comparison& comparison) {
 std::string Legend(ComparedKind kind, const Comparison& comparison) {
   const auto row = std::ranges::find(comparison.rows, kind, &ComparisonRow::kind);
   if (row == comparison.rows.end()) return "";
-  const Method method = MethodOf(*row);
+  const Method method = FindMethod(*row);
   const std::string tests = fmt::format("with {}.\np: {}.\n", method.interval_in_words, method.test_in_words);
   switch (kind) {
     case ComparedKind::kEvent:
@@ -138,12 +138,12 @@ Table MakeRowTable(const Comparison& comparison) {
       {{"risk_difference", ColumnType::kNumber}, [](R r) { return r.difference; }},
       {{"lower,upper", ColumnType::kInterval}, [](R r) { return r.interval; }},
       {{"p_mcnemar", ColumnType::kNumber},
-       [](R r) { return MethodOf(r).test == "mcnemar" ? r.p_value : std::nan(""); }},
+       [](R r) { return FindMethod(r).test == "mcnemar" ? r.p_value : std::nan(""); }},
       {{"p_holm", ColumnType::kNumber}, [](R r) { return r.holm_p_value; }},
       {{"kind"}, [](R r) { return Name(r.kind); }},
       {{"p_value", ColumnType::kNumber}, [](R r) { return r.p_value; }},
-      {{"test"}, [](R r) { return MethodOf(r).test; }},
-      {{.name = "interval", .json_name = "interval_kind"}, [](R r) { return MethodOf(r).interval; }}};
+      {{"test"}, [](R r) { return FindMethod(r).test; }},
+      {{.name = "interval", .json_name = "interval_kind"}, [](R r) { return FindMethod(r).interval; }}};
   columns.insert(columns.end(), others.begin(), others.end());
   return MakeTable(columns, comparison.rows);
 }
@@ -155,7 +155,7 @@ std::string ComparisonAsTable(const Comparison& comparison) {
       fmt::format("Study {} against {}: {} of {} trials done\n", comparison.study, comparison.reference,
                   comparison.num_trials_done, comparison.num_trials_planned);
   if (!comparison.caution.empty()) text += fmt::format("Caution: {}.\n", comparison.caution);
-  for (const Compared& compared : comparison.compared) text += TableOf(compared, comparison);
+  for (const Compared& compared : comparison.compared) text += RenderComparedTable(compared, comparison);
   text += "\n";
   for (const ComparedKind kind : {ComparedKind::kEvent, ComparedKind::kScore, ComparedKind::kError})
     text += Legend(kind, comparison);

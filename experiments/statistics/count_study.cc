@@ -33,7 +33,7 @@ class CountsKeeper : public TrialKeeper {
 
   std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials,
                                         const ShardTrials& shard) override {
-    return counts_.conditions[condition].PlacesOf(shard_.Text()).Missing(shard.NumBefore(num_trials));
+    return counts_.conditions[condition].FindPlaces(shard_.Text()).Missing(shard.NumBefore(num_trials));
   }
 
   std::string NoteOrigin(const TrialOrigin& origin) override {

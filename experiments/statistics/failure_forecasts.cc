@@ -50,7 +50,7 @@ Groups GroupsBy(const std::string& factor, const RunDescription& run) {
   return groups;
 }
 
-Answer AnswerOf(const TrialRecord& record, const FailureBounds& bounds) {
+Answer ReadAnswer(const TrialRecord& record, const FailureBounds& bounds) {
   Answer answer;
   answer.stated = record.failure_probability;
   answer.inlier_share = record.num_matches > 0 ? 1.0 * record.num_inliers / record.num_matches : 0.0;
@@ -75,7 +75,7 @@ std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDe
                                                   : scene + scenes_apart * problem.condition;
     for (size_t e = 0; e < records.size(); ++e) {
       if (!IsScored(records[e])) continue;
-      answers[e].push_back(AnswerOf(records[e], run.failure));
+      answers[e].push_back(ReadAnswer(records[e], run.failure));
       answers[e].back().cluster = cluster;
       answers[e].back().group = groups.of_condition[problem.condition];
       answers[e].back().is_in_even_half = scene % 2 == 0;

@@ -23,7 +23,7 @@ double MeanProbability(const std::vector<Forecast>& forecasts) {
   return sum / static_cast<double>(forecasts.size());
 }
 
-AreaUnderCurve AreaOf(std::vector<Forecast> forecasts, const ClusteredEstimate& failure) {
+AreaUnderCurve MeasureForecastArea(std::vector<Forecast> forecasts, const ClusteredEstimate& failure) {
   if (failure.value == 0.0 || failure.value == 1.0) return {kNaN, kNaN, {0.0, 1.0}};
   std::ranges::stable_sort(forecasts, {}, &Forecast::cluster);
   std::vector<ScoreCluster> clusters;
@@ -36,7 +36,7 @@ AreaUnderCurve AreaOf(std::vector<Forecast> forecasts, const ClusteredEstimate& 
 }
 
 // Surest first by the probability; refusals last.
-std::vector<ClusteredOutcome> OutcomesOf(const FailureForecasts& of) {
+std::vector<ClusteredOutcome> ListOutcomes(const FailureForecasts& of) {
   std::vector<ClusteredOutcome> outcomes;
   for (const Forecast& forecast : of.forecasts)
     outcomes.push_back({-forecast.probability, forecast.happened, forecast.cluster});
@@ -46,7 +46,7 @@ std::vector<ClusteredOutcome> OutcomesOf(const FailureForecasts& of) {
 }
 
 void MeasureRiskCoverage(const FailureForecasts& of, ForecastMeasures* measures) {
-  const std::vector<ClusteredOutcome> outcomes = OutcomesOf(of);
+  const std::vector<ClusteredOutcome> outcomes = ListOutcomes(of);
   measures->risk_coverage_area = MeasureRiskCoverageArea(outcomes);
   std::vector<ScoredOutcome> scored;
   for (const ClusteredOutcome& outcome : outcomes) scored.push_back({outcome.score, outcome.failed});
@@ -93,7 +93,7 @@ void CountRates(const FailureForecasts& of, ForecastMeasures* measures) {
   measures->sure_failed_interval = sure_failed.FindInterval(of.is_of_population);
 }
 
-std::vector<std::int64_t> HistogramOf(const std::vector<Forecast>& forecasts) {
+std::vector<std::int64_t> CountHistogram(const std::vector<Forecast>& forecasts) {
   const std::vector<double> edges = HistogramEdges();
   std::vector<std::int64_t> counts(kNumHistogramBins, 0);
   for (const Forecast& forecast : forecasts) {
@@ -162,8 +162,8 @@ ForecastMeasures MeasureForecasts(const FailureForecasts& of, std::uint64_t seed
   measures.failure = MeasureShareHappened(of.forecasts);
   measures.brier = MeasureBrierScore(of.forecasts);
   measures.log_score = MeasureLogScore(of.forecasts);
-  measures.histogram = HistogramOf(of.forecasts);
-  measures.area = AreaOf(of.forecasts, measures.failure);
+  measures.histogram = CountHistogram(of.forecasts);
+  measures.area = MeasureForecastArea(of.forecasts, measures.failure);
   MeasureCalibration(of, seed, &measures);
   MeasureRiskCoverage(of, &measures);
   CountRates(of, &measures);

@@ -59,12 +59,10 @@ Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std:
   return table;
 }
 
-Json AsJson(const Interval& interval) { return {JsonNumber(interval.lower), JsonNumber(interval.upper)}; }
-
 Json AsJson(double value, double standard_error, const Interval& interval) {
   return {{"value", JsonNumber(value)},
           {"standard_error", JsonNumber(standard_error)},
-          {"interval", AsJson(interval)}};
+          {"interval", RenderJson(interval)}};
 }
 Json AsJson(const ClusteredEstimate& e) { return AsJson(e.value, e.standard_error, e.interval); }
 
@@ -78,7 +76,7 @@ Json AsJson(const MeasuredCalibrationError& error) {
 // With an interval where there is one.
 Json ErrorAsJson(const ForecastMeasures& m) {
   Json json = AsJson(m.error_of_equal_width);
-  if (m.is_of_population) json["interval"] = AsJson(m.interval_of_equal_width);
+  if (m.is_of_population) json["interval"] = RenderJson(m.interval_of_equal_width);
   return json;
 }
 
@@ -128,7 +126,7 @@ Json RiskCoverageAsJson(const ForecastMeasures& m) {
   return points;
 }
 
-Json EntryOf(const ForecastMeasures& m) {
+Json RenderForecastEntry(const ForecastMeasures& m) {
   Json entry = {{"estimator", m.estimator}, {"group", m.group},        {"source", Name(m.source)}, {"n", m.n},
                 {"refused", m.num_refused}, {"without", m.num_without}};
   if (m.is_of_population) entry["intervals_of"] = "population";
@@ -191,7 +189,7 @@ std::string ForecastsAsJson(const std::string& study, const std::string& by,
                {"sure_below", kSureBelow},
                {"histogram_edges", HistogramEdges()},
                {"entries", Json::array()}};
-  for (const ForecastMeasures& m : measures) json["entries"].push_back(EntryOf(m));
+  for (const ForecastMeasures& m : measures) json["entries"].push_back(RenderForecastEntry(m));
   return JsonText(kReliabilityFormat, json);
 }
 

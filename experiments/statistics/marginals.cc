@@ -47,7 +47,7 @@ std::optional<double> ValueIn(const TrialRecord& record, const FailureBounds& bo
   return std::nullopt;
 }
 
-double ClaimOf(MarginalQuantity quantity) {
+double FindClaimedRate(MarginalQuantity quantity) {
   switch (quantity) {
     case MarginalQuantity::kSureCoverage:
       return 0.95;
@@ -196,7 +196,7 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
                  double confidence) {
   Marginal marginal;
   marginal.quantity = quantity;
-  marginal.claimed = ClaimOf(quantity);
+  marginal.claimed = FindClaimedRate(quantity);
   if (IsShare(quantity)) {
     std::vector<ConditionCount> counts;
     for (const auto& [moments, num_failed] : conditions)

@@ -18,7 +18,7 @@ namespace rcme {
 namespace {
 
 // All that a part says of its trials but the times of calls, as a checksum for each condition.
-std::vector<std::uint32_t> DigestOf(const RunCounts& counts) {
+std::vector<std::uint32_t> ComputeDigest(const RunCounts& counts) {
   std::vector<std::uint32_t> digest;
   for (const ConditionCounts& condition : counts.conditions) {
     std::vector<std::string> texts;
@@ -27,7 +27,7 @@ std::vector<std::uint32_t> DigestOf(const RunCounts& counts) {
       if (IsOfTimes(row.quantity)) continue;
       texts.insert(texts.end(), {row.quantity, std::to_string(row.n), row.sum, row.sum_squares, row.cells});
     }
-    digest.push_back(ChecksumOf(texts));
+    digest.push_back(ComputeChecksum(texts));
   }
   return digest;
 }
@@ -48,7 +48,7 @@ class MergedCounts {
     if (IsStopRequested()) throw Stopped("stopped; nothing was written");
     const std::unique_ptr<ResultFile> file = OpenPart(path);
     const RunCounts part = NamingFile(path, [&] { return ReadCounts(*file); });
-    const std::vector<std::uint32_t> digest = DigestOf(part);
+    const std::vector<std::uint32_t> digest = ComputeDigest(part);
     if (HasCommonTrials(part)) {
       if (!digests_.contains(digest)) {
         throw InputError(fmt::format(
@@ -70,7 +70,7 @@ class MergedCounts {
       for (std::uint32_t number = 1; number <= report_->num_shards; ++number) {
         const Shard shard{number, report_->num_shards};
         const std::uint32_t end = ShardTrials(shard, c, 1).NumBefore(num_trials);
-        for (const TrialRange& range : counts_.conditions[c].PlacesOf(shard.Text()).Missing(end)) {
+        for (const TrialRange& range : counts_.conditions[c].FindPlaces(shard.Text()).Missing(end)) {
           report_->num_missing += range.end - range.first;
           shards.insert(number);
         }
@@ -94,7 +94,7 @@ class MergedCounts {
   bool HasCommonTrials(const RunCounts& part) const {
     for (size_t c = 0; c < part.conditions.size(); ++c) {
       for (const auto& [shard, places] : part.conditions[c].places) {
-        if (places.HasAnyOf(counts_.conditions[c].PlacesOf(shard))) return true;
+        if (places.Intersects(counts_.conditions[c].FindPlaces(shard))) return true;
       }
     }
     return false;

@@ -59,8 +59,8 @@ void TakeMedian(const std::vector<const QuantityCounts*>& draws, SummaryRow* row
 }
 
 // Of one estimator, or of the problems, and quantity: the counts of every draw.
-std::vector<const QuantityCounts*> CountsOf(const RunDescription& run, std::span<const SummaryCell> draws,
-                                            const SummaryRow& row) {
+std::vector<const QuantityCounts*> ListDrawCounts(const RunDescription& run,
+                                                  std::span<const SummaryCell> draws, const SummaryRow& row) {
   const auto place = [&](const auto& quantities) {
     return static_cast<size_t>(
         std::ranges::find_if(quantities,
@@ -104,7 +104,7 @@ Summary SummarizePopulation(const RunDescription& run, std::span<const SummaryCe
   for (const SummaryCell& draw : draws) all.Merge(draw);
   Summary summary = SummarizeCells(run, OneGroup(), {&all}, with_times);
   summary.is_of_population = true;
-  for (SummaryRow& row : summary.rows) TakeIntervalOfPopulation(CountsOf(run, draws, row), &row);
+  for (SummaryRow& row : summary.rows) TakeIntervalOfPopulation(ListDrawCounts(run, draws, row), &row);
   return summary;
 }
 

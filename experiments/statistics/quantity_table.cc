@@ -33,14 +33,15 @@ std::vector<EstimatorRow> GroupRows(const std::vector<SummaryRow>& rows) {
   return groups;
 }
 
-NumberFormat FormatOf(SummaryRow::Kind kind) {
+NumberFormat ChooseNumberFormat(SummaryRow::Kind kind) {
   const bool is_number = kind == SummaryRow::Kind::kMean || kind == SummaryRow::Kind::kMedian;
   return is_number ? kSignificant : kPercent;
 }
 
 // `repeats_per_scene` above 1: n counts scenes.
-Table MakeTableOf(const std::vector<SummaryRow>& rows, int repeats_per_scene,
-                  std::vector<ColumnOf<EstimatorRow>> columns, const std::vector<std::string>& quantities) {
+Table MakeSummaryRowTable(const std::vector<SummaryRow>& rows, int repeats_per_scene,
+                          std::vector<ColumnOf<EstimatorRow>> columns,
+                          const std::vector<std::string>& quantities) {
   using R = const EstimatorRow&;
   columns.push_back({{.name = repeats_per_scene > 1 ? "scenes" : "n",
                       .type = ColumnType::kCount,
@@ -50,7 +51,7 @@ Table MakeTableOf(const std::vector<SummaryRow>& rows, int repeats_per_scene,
   for (const std::string& quantity : quantities) {
     const auto row = std::ranges::find(rows, quantity, &SummaryRow::quantity);
     if (row == rows.end()) continue;
-    columns.push_back({{quantity, ColumnType::kEstimate, FormatOf(row->kind)}, [quantity](R r) {
+    columns.push_back({{quantity, ColumnType::kEstimate, ChooseNumberFormat(row->kind)}, [quantity](R r) {
                          const auto found = r.quantities.find(quantity);
                          return found == r.quantities.end() ? Value(Estimate())
                                                             : MakeEstimate(*found->second, r.num_trials);
@@ -103,13 +104,13 @@ Table MakeQuantityTable(const Summary& summary, const std::vector<std::string>& 
   std::vector<ColumnOf<EstimatorRow>> columns = LevelColumns<EstimatorRow>(summary.factor_names);
   columns.push_back(
       {{.name = "estimator", .is_key = true}, [](const EstimatorRow& row) { return row.estimator; }});
-  return MakeTableOf(SelectRows(summary, /*is_of_problems=*/false), summary.repeats_per_scene,
-                     std::move(columns), quantities);
+  return MakeSummaryRowTable(SelectRows(summary, /*is_of_problems=*/false), summary.repeats_per_scene,
+                             std::move(columns), quantities);
 }
 
 Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& quantities) {
-  return MakeTableOf(SelectRows(summary, /*is_of_problems=*/true), summary.repeats_per_scene,
-                     LevelColumns<EstimatorRow>(summary.factor_names), quantities);
+  return MakeSummaryRowTable(SelectRows(summary, /*is_of_problems=*/true), summary.repeats_per_scene,
+                             LevelColumns<EstimatorRow>(summary.factor_names), quantities);
 }
 
 }  // namespace rcme

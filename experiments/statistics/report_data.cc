@@ -34,7 +34,7 @@ struct ConditionProgress {
 };
 
 // One pass.
-std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const RunDescription& run) {
+std::vector<ConditionProgress> CountProgress(const ResultStore& store, const RunDescription& run) {
   std::vector<ConditionProgress> progress(run.conditions.size(),
                                           {0, 0, std::vector<FirstTrials>(run.estimators.size())});
   store.ForEachRecord([&](const TrialRecord& record) {
@@ -51,9 +51,9 @@ std::vector<ConditionProgress> ProgressOf(const ResultStore& store, const RunDes
 Json TrialOrNull(const std::optional<std::uint32_t>& trial) { return trial ? Json(*trial) : Json(); }
 
 // Conditions with their levels, their progress, and per estimator the first failure and refusal.
-Json ConditionsAsJson(const ResultStore& store, const RunDescription& run) {
+Json RenderConditionProgress(const ResultStore& store, const RunDescription& run) {
   Json conditions = Json::array();
-  const std::vector<ConditionProgress> progress = ProgressOf(store, run);
+  const std::vector<ConditionProgress> progress = CountProgress(store, run);
   for (size_t c = 0; c < run.conditions.size(); ++c) {
     const ConditionProgress& done = progress[c];
     Json first = Json::array();
@@ -102,7 +102,7 @@ Json RunAsJson(const std::string& path, const ResultStore& store) {
           {"study_yaml", run.study_yaml},
           {"factors", run.factors},
           {"estimators", estimators},
-          {"conditions", ConditionsAsJson(store, run)},
+          {"conditions", RenderConditionProgress(store, run)},
           {"failure_bounds", bounds},
           {"quantities", quantities},
           {"events", events}};
@@ -131,7 +131,7 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   json["is_of_population"] = is_of_population;
   const std::vector<ForecastMeasures> forecasts =
       HasFailureProbabilities(summary) ? MeasureFailureForecasts(store) : std::vector<ForecastMeasures>();
-  json["findings"] = FindingsOf(summary, comparison, forecasts);
+  json["findings"] = ListFindings(summary, comparison, forecasts);
   if (const auto preregistration = DecidePreregistered(store, run))
     json["preregistration"] = PreregistrationAsJson(*preregistration);
   WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));

@@ -34,14 +34,14 @@ std::string PercentWithInterval(double value, const Interval& interval) {
 
 // " at outlier_ratio 0.4, sigma_px 1"; of a population " over the population"; nothing without factors.
 template <typename Row>
-std::string PlaceOf(const Row& row, const std::vector<std::string>& factor_names) {
+std::string FormatPlace(const Row& row, const std::vector<std::string>& factor_names) {
   std::vector<std::string> levels;
   for (size_t f = 0; f < row.levels.size(); ++f) levels.push_back(factor_names[f] + " " + row.levels[f]);
   return levels.empty() ? "" : fmt::format(" at {}", fmt::join(levels, ", "));
 }
 
 std::string RateAt(const SummaryRow& row, const std::vector<std::string>& factor_names) {
-  return PercentWithInterval(row.value, row.interval) + PlaceOf(row, factor_names);
+  return PercentWithInterval(row.value, row.interval) + FormatPlace(row, factor_names);
 }
 
 // How far an interval lies outside of a range; 0 within or across its end.
@@ -177,7 +177,7 @@ std::string DescribeTally(const Tally& tally, const std::string& verb, const Com
     const std::string farthest =
         has_farthest ? fmt::format(" (by {:+.2f} points [{:+.2f}, {:+.2f}]{})", 100.0 * row.difference,
                                    100.0 * row.interval.lower, 100.0 * row.interval.upper,
-                                   PlaceOf(row, comparison.factor_names))
+                                   FormatPlace(row, comparison.factor_names))
                      : "";
     parts.push_back(fmt::format("{} often in {}{}", is_less ? "less" : "more", count, farthest));
   }
@@ -239,8 +239,8 @@ void AddDifferencesInPopulation(const Comparison& comparison, std::vector<std::s
 
 }  // namespace
 
-std::vector<std::string> FindingsOf(const Summary& summary, const Comparison& comparison,
-                                    const std::vector<ForecastMeasures>& forecasts) {
+std::vector<std::string> ListFindings(const Summary& summary, const Comparison& comparison,
+                                      const std::vector<ForecastMeasures>& forecasts) {
   std::vector<std::string> sentences;
   AddWrongCoverages(summary, &sentences);
   if (summary.is_of_population) {

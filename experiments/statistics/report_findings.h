@@ -18,7 +18,7 @@ namespace rcme {
 //   the range of each failure rate with the conditions at its ends
 // Rates have their 95 % intervals and the digits of the tables. Nothing is said of what has no trials or no
 // partner.
-std::vector<std::string> FindingsOf(const Summary& summary, const Comparison& comparison,
-                                    const std::vector<ForecastMeasures>& forecasts);
+std::vector<std::string> ListFindings(const Summary& summary, const Comparison& comparison,
+                                      const std::vector<ForecastMeasures>& forecasts);
 
 }  // namespace rcme

@@ -34,7 +34,7 @@ std::uint32_t PlaceIn(const std::string& text) {
   return static_cast<std::uint32_t>(place);
 }
 
-StoredCounts TextsOf(const ConditionCounts& condition) {
+StoredCounts MakeStoredCounts(const ConditionCounts& condition) {
   StoredCounts texts;
   for (const auto& [shard, places] : condition.places) texts.places.push_back({shard, places.Text()});
   texts.quantities = condition.cell.Texts();
@@ -62,7 +62,7 @@ void Places::AddAll(const Places& other) {
   }
 }
 
-bool Places::HasAnyOf(const Places& other) const {
+bool Places::Intersects(const Places& other) const {
   for (std::uint32_t place = 0; place < std::min(has_.size(), other.has_.size()); ++place) {
     if (has_[place] && other.has_[place]) return true;
   }
@@ -122,7 +122,7 @@ std::map<std::uint32_t, StoredTrial> KeptTrials::All() const {
   return all;
 }
 
-const Places& ConditionCounts::PlacesOf(const std::string& shard) const {
+const Places& ConditionCounts::FindPlaces(const std::string& shard) const {
   static const Places none;
   const auto found = places.find(shard);
   return found == places.end() ? none : found->second;
@@ -164,7 +164,7 @@ void WriteCounts(const RunCounts& counts, const std::set<std::uint32_t>& conditi
       file->database.exec(fmt::format("DELETE FROM {} WHERE condition = {}", table, c));
     file->totals.Clear(c);
     for (const auto& [number, trial] : condition.kept.All()) writer.AddTrial(trial.problem, trial.records);
-    WriteStoredCounts(file, c, TextsOf(condition));
+    WriteStoredCounts(file, c, MakeStoredCounts(condition));
   }
   file->totals.WriteChanged(file->database);
   change.commit();

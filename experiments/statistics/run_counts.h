@@ -25,7 +25,7 @@ class Places {
 
   void Add(std::uint32_t place);
   void AddAll(const Places& other);
-  bool HasAnyOf(const Places& other) const;
+  bool Intersects(const Places& other) const;
   bool Has(std::uint32_t place) const { return place < has_.size() && has_[place]; }
   std::int64_t num() const { return num_; }
   // Those of 0, ..., end - 1 that are not there, ascending.
@@ -60,7 +60,7 @@ struct ConditionCounts {
   std::map<std::string, Places> places;  // by shard, as Shard::Text
   KeptTrials kept;
 
-  const Places& PlacesOf(const std::string& shard) const;
+  const Places& FindPlaces(const std::string& shard) const;
 };
 
 struct RunCounts {

@@ -144,8 +144,8 @@ void FillWeighted(const QuantityCounts& counts, std::int64_t num_trials, Summary
 }
 
 template <typename Record>
-void AppendRowsOf(const std::vector<Quantity<Record>>& quantities, const QuantitySums& sums,
-                  const SummaryRow& cell, std::vector<SummaryRow>* rows) {
+void AppendQuantityRows(const std::vector<Quantity<Record>>& quantities, const QuantitySums& sums,
+                        const SummaryRow& cell, std::vector<SummaryRow>* rows) {
   for (size_t q = 0; q < quantities.size(); ++q) {
     SummaryRow row = cell;
     row.quantity = quantities[q].name;
@@ -292,11 +292,11 @@ void SummaryCell::AppendRows(const RunDescription& run, SummaryRow cell,
                              std::vector<SummaryRow>* rows) const {
   for (size_t e = 0; e < estimators_.size(); ++e) {
     cell.estimator = run.estimators[e].label;
-    AppendRowsOf(TrialQuantities(), estimators_[e], cell, rows);
+    AppendQuantityRows(TrialQuantities(), estimators_[e], cell, rows);
     if (!splits_.empty()) splits_[e].AppendRows(cell, rows);
   }
   cell.estimator = kSceneLabel;
-  AppendRowsOf(ProblemQuantities(), problems_, cell, rows);
+  AppendQuantityRows(ProblemQuantities(), problems_, cell, rows);
 }
 
 std::vector<CountedQuantity> SummaryCell::Texts() const {

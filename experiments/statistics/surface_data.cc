@@ -28,12 +28,6 @@ Json LevelsAsJson(const std::vector<std::string>& factors, const std::vector<std
   return json;
 }
 
-std::optional<int> FindDraw(const std::vector<std::string>& factors, const std::vector<std::string>& levels) {
-  for (size_t f = 0; f < factors.size(); ++f)
-    if (factors[f] == kDrawFactor) return std::stoi(levels[f]);
-  return std::nullopt;
-}
-
 // What the population says of a factor: its range, and the choice that it is drawn with. A key with several
 // ranges has the widest.
 Json FactorAsJson(const std::string& name, const std::optional<Population>& population) {
@@ -62,8 +56,8 @@ std::string NameOfQuantity(MarginalQuantity quantity) {
 }
 
 // Count, mean and spread of the quantity in each condition of a run.
-Json ConditionsAsJson(const ResultStore& store, const RunDescription& run, size_t number, size_t estimator,
-                      MarginalQuantity quantity) {
+Json RenderConditionMoments(const ResultStore& store, const RunDescription& run, size_t number,
+                            size_t estimator, MarginalQuantity quantity) {
   Json conditions = Json::array();
   const auto values = CollectConditionMoments(store, estimator, quantity);
   const double sign = quantity == MarginalQuantity::kFailedLessStated ? -1.0 : 1.0;  // P - y, not failed - P
@@ -105,7 +99,7 @@ Json CandidatesAsJson(Study study, int first, int number) {
   for (const PopulationDraw& draw : DrawPopulation(study)) {
     if (draw.number < first || !draw.outside_of.empty()) continue;
     for (const std::vector<std::string>& row : FactorRows(study))
-      candidates.push_back({{"draw", draw.number}, {"levels", LevelsAsJson(factors, LevelsOf(draw, row))}});
+      candidates.push_back({{"draw", draw.number}, {"levels", LevelsAsJson(factors, JoinLevels(draw, row))}});
   }
   return candidates;
 }
@@ -136,7 +130,7 @@ std::string SurfaceDataAsJson(const std::vector<std::string>& runs, const Surfac
     estimator = run.estimators[e].label;
     files.push_back(
         {{"path", runs[i]}, {"study", run.study}, {"is_sample", IsSampleOfPopulation(run.identity)}});
-    for (Json& condition : ConditionsAsJson(store, run, i, e, options.quantity))
+    for (Json& condition : RenderConditionMoments(store, run, i, e, options.quantity))
       conditions.push_back(std::move(condition));
   }
   Json candidates = Json::array();

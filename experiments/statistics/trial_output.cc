@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr size_t kMaxSelected = 8;
 
-const Condition& ConditionOf(const StudyPlan& plan, const TrialResult& result) {
+const Condition& FindCondition(const StudyPlan& plan, const TrialResult& result) {
   return plan.conditions[result.problem.condition];
 }
 
@@ -62,8 +62,8 @@ struct TrueSetting {
 
   TrueSetting(const StudyPlan& plan, const TrialResult& result)
       : camera1(result.data.problem.camera1), camera2(result.data.problem.camera2) {
-    const Condition& condition = ConditionOf(plan, result);
-    scene = condition.source->SceneOf(NameOfScene(plan, condition, result.problem.trial));
+    const Condition& condition = FindCondition(plan, result);
+    scene = condition.source->FindScene(NameOfScene(plan, condition, result.problem.trial));
     if (!scene) return;
     camera1 = scene->camera1;
     camera2 = scene->camera2;
@@ -105,7 +105,7 @@ Json KindsAsJson(const Truth& truth) {
 
 // The matches whose lines tell most: true inliers; where nobody knows them, the inliers of a drawn estimator;
 // where there is none either, all matches.
-std::vector<int> CandidatesOf(const TrialResult& result, const std::vector<size_t>& drawn) {
+std::vector<int> ListCandidates(const TrialResult& result, const std::vector<size_t>& drawn) {
   const std::vector<bool>& is_inlier = result.data.truth.is_inlier_true;
   for (const size_t e : drawn) {
     if (is_inlier.empty() && !result.estimates[e].inliers.empty()) return result.estimates[e].inliers;
@@ -145,7 +145,7 @@ Json EstimateAsJson(const StudyPlan& plan, const TrialResult& result, size_t e, 
   Json json = {{"label", plan.study.estimators[e].label},
                {"status", StatusName(estimate.status)},
                {"message", estimate.message},
-               {"outcome", Name(OutcomeOf(record, plan.study.failure))},
+               {"outcome", Name(ClassifyOutcome(record, plan.study.failure))},
                {"rotation_error_deg", JsonNumber(record.rotation_error_deg)},
                {"direction_error_deg", JsonNumber(record.direction_error_deg)},
                {"inlier_precision", JsonNumber(record.inlier_precision)},
@@ -170,7 +170,7 @@ Json MatchesAsJson(const std::vector<Correspondence>& matches) {
 }
 
 Json Header(const StudyPlan& plan, const TrialResult& result) {
-  const Condition& condition = ConditionOf(plan, result);
+  const Condition& condition = FindCondition(plan, result);
   Json factors = Json::array(), parts = Json::array(), bounds = Json::object(), severity = Json::object();
   for (size_t f = 0; f < plan.factor_names.size(); ++f) {
     factors.push_back(Json::array({plan.factor_names[f], condition.levels[f]}));
@@ -232,7 +232,7 @@ std::string TrialAsJson(const StudyPlan& plan, const TrialResult& result, const 
   json["kinds"] = KindsAsJson(data.truth);
   AddScene(setting, data.scene_point, &json);
   json["truth"] = TruthAsJson(setting, data.truth);
-  json["selected"] = SpreadOver(data.problem.matches, CandidatesOf(result, drawn));
+  json["selected"] = SpreadOver(data.problem.matches, ListCandidates(result, drawn));
   json["drawn"] = drawn;
   json["estimators"] = Json::array();
   for (size_t e = 0; e < result.estimates.size(); ++e) {
@@ -243,7 +243,7 @@ std::string TrialAsJson(const StudyPlan& plan, const TrialResult& result, const 
 }
 
 std::string TrialAsText(const StudyPlan& plan, const TrialResult& result) {
-  const Condition& condition = ConditionOf(plan, result);
+  const Condition& condition = FindCondition(plan, result);
   const std::uint32_t trial = result.problem.trial;
   std::string text = fmt::format("Study {}, seed {}, condition {}, trial {} ({})\n", plan.study.name,
                                  plan.study.seed, condition.index, trial, result.data.origin);
@@ -267,7 +267,7 @@ std::string TrialAsText(const StudyPlan& plan, const TrialResult& result) {
                                                  "direction error", "inliers", "precision", "recall"}};
   for (size_t e = 0; e < result.records.size(); ++e) {
     const TrialRecord& r = result.records[e];
-    rows.push_back({plan.study.estimators[e].label, Name(OutcomeOf(r, plan.study.failure)),
+    rows.push_back({plan.study.estimators[e].label, Name(ClassifyOutcome(r, plan.study.failure)),
                     StatusName(r.status), Degrees(r.rotation_error_deg), Degrees(r.direction_error_deg),
                     fmt::format("{}", r.num_inliers), Percentage(r.inlier_precision),
                     Percentage(r.inlier_recall)});

@@ -117,7 +117,7 @@ std::string TrialAsCpp(const StudyPlan& plan, const Condition& condition, const 
                        size_t estimator) {
   if (!result.why_not_simulated.empty())
     throw InputError("--emit-cpp: the trial was not simulated: " + result.why_not_simulated);
-  const EstimatorSpec spec = EstimatorsOf(plan.study, condition.levels).at(estimator);
+  const EstimatorSpec spec = ResolveEstimators(plan.study, condition.levels).at(estimator);
   if (spec.name == "process") {
     throw InputError(fmt::format(
         "--emit-cpp: {} is a process of its own; `rcme export` writes its problems for a debugger there",

@@ -50,7 +50,7 @@ std::string Header(const std::vector<std::string>& factors, bool with_times) {
 }
 
 // What the rows of a condition begin with.
-std::string BeginningOf(const RunDescription& run, std::uint32_t condition) {
+std::string FormatRowBeginning(const RunDescription& run, std::uint32_t condition) {
   std::vector<std::string> fields = {CsvField(run.study), fmt::format("{}", condition)};
   for (const std::string& level : run.conditions[condition].levels) fields.push_back(CsvField(level));
   return fmt::format("{}", fmt::join(fields, ","));
@@ -64,7 +64,7 @@ void WriteTrialTable(const ResultStore& store, bool with_times,
   const RunDescription run = store.Description();
   write(Header(run.factors, with_times));
   std::vector<std::string> beginnings, labels;
-  for (std::uint32_t c = 0; c < run.conditions.size(); ++c) beginnings.push_back(BeginningOf(run, c));
+  for (std::uint32_t c = 0; c < run.conditions.size(); ++c) beginnings.push_back(FormatRowBeginning(run, c));
   for (const DescribedEstimator& estimator : run.estimators) labels.push_back(CsvField(estimator.label));
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     std::string rows;

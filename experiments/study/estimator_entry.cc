@@ -21,7 +21,7 @@ void ReadOptions(const Place& place, const YAML::Node& node, EstimatorSpec* spec
       FindOption(spec->name, parameters, option).SetFromText(Scalar(place, text, option));
     });
   }
-  spec->options = ValuesOf(parameters);
+  spec->options = ListValues(parameters);
 }
 
 // {process: COMMAND} is short for the estimator `process` with that command, {answers: FILE} for `answers`
@@ -48,7 +48,7 @@ Parameter BudgetParameter(double* budget_ms) {
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller) {
   EstimatorSpec spec;
-  std::set<std::string> known = StudyKeysOf("estimator");
+  std::set<std::string> known = ListStudyKeys("estimator");
   known.insert(keys_of_caller.begin(), keys_of_caller.end());
   for (const auto& [key, value] : Entries(place, node, block, known)) {
     const bool is_short = key == "process" || key == "answers" || key == kConformEstimator;

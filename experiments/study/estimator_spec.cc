@@ -21,7 +21,7 @@ void SetOptions(EstimatorSpec* spec, const Settings& options) {
   for (const auto& [option, value] : options) {
     FindOption(spec->name, parameters, option).SetFromText(value);
   }
-  spec->options = ValuesOf(parameters);
+  spec->options = ListValues(parameters);
 }
 
 Settings AnswersOptions(const std::string& path) {

@@ -48,7 +48,7 @@ std::string ValueAt(const DrawnRange& range, bool is_whole, double u) {
 }
 
 // A side of a restriction as a number; false: the draw has none.
-bool NumberOf(const Settings& resolved, const std::string& side, double* number) {
+bool ReadSide(const Settings& resolved, const std::string& side, double* number) {
   if (ParseReal(side, number)) return true;
   const std::string* value = FindValue(resolved, side);
   return value != nullptr && ParseReal(*value, number);
@@ -56,7 +56,7 @@ bool NumberOf(const Settings& resolved, const std::string& side, double* number)
 
 bool Meets(const Settings& resolved, const Restriction& restriction) {
   double left = 0.0, right = 0.0;
-  if (!NumberOf(resolved, restriction.left, &left) || !NumberOf(resolved, restriction.right, &right))
+  if (!ReadSide(resolved, restriction.left, &left) || !ReadSide(resolved, restriction.right, &right))
     return true;
   if (restriction.comparison == "<") return left < right;
   if (restriction.comparison == "<=") return left <= right;
@@ -79,12 +79,12 @@ class Drawer {
     Settings settings = study_.data;
     for (const DrawnKey& drawn : population_.keys) {
       if (!IsChoice(drawn.key) || !IsWith(drawn, settings)) continue;
-      settings.emplace_back(drawn.key, ValueAt(drawn.range, false, point[AxisOf(drawn.key)]));
+      settings.emplace_back(drawn.key, ValueAt(drawn.range, false, point[FindAxis(drawn.key)]));
     }
     const std::map<std::string, bool>& is_whole = KeysWith(settings);
     const Settings resolved_choices = ResolveSettings(settings);
-    for (const auto& [key, drawn] : NumbersOf(resolved_choices, is_whole))
-      settings.emplace_back(key, ValueAt(drawn->range, is_whole.at(key), point[AxisOf(key)]));
+    for (const auto& [key, drawn] : ListDrawnNumbers(resolved_choices, is_whole))
+      settings.emplace_back(key, ValueAt(drawn->range, is_whole.at(key), point[FindAxis(key)]));
     const Settings resolved = ResolveSettings(settings);
     PopulationDraw draw{number, {}, {}};
     for (const std::string& key : keys_) {
@@ -109,7 +109,7 @@ class Drawer {
     return static_cast<size_t>(last) + 1;
   }
 
-  size_t AxisOf(const std::string& key) const {
+  size_t FindAxis(const std::string& key) const {
     return static_cast<size_t>(std::ranges::find(keys_, key) - keys_.begin());
   }
 
@@ -126,8 +126,8 @@ class Drawer {
   }
 
   // Of each key that is no choice and is there, what it is drawn from: what stands deepest.
-  std::map<std::string, const DrawnKey*> NumbersOf(const Settings& resolved,
-                                                   const std::map<std::string, bool>& known) const {
+  std::map<std::string, const DrawnKey*> ListDrawnNumbers(const Settings& resolved,
+                                                          const std::map<std::string, bool>& known) const {
     std::map<std::string, const DrawnKey*> numbers;
     for (const DrawnKey& drawn : population_.keys) {
       if (IsChoice(drawn.key) || !known.contains(drawn.key) || !IsWith(drawn, resolved)) continue;
@@ -163,11 +163,18 @@ std::vector<PopulationDraw> DrawPopulation(const Study& study) {
   return draws;
 }
 
+std::optional<int> FindDraw(const std::vector<std::string>& factors, const std::vector<std::string>& levels) {
+  for (size_t f = 0; f < factors.size(); ++f)
+    if (factors[f] == kDrawFactor) return std::stoi(levels[f]);
+  return std::nullopt;
+}
+
 int CountDraws(const Population& population) {
   return population.draws.empty() ? population.number : static_cast<int>(population.draws.size());
 }
 
-std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused) {
+std::string DescribePopulationIdentity(const Population& population,
+                                       const std::vector<RefusedDraw>& refused) {
   std::string text =
       fmt::format("{}{}\n", population.draws.empty() ? kDrawsLine : kChosenLine, CountDraws(population));
   for (const RefusedDraw& draw : refused)

@@ -62,6 +62,9 @@ std::vector<std::string> ListDrawnKeys(const Population& population);
 // Of the draws; a chosen one of sobol or random may be beyond Population::number.
 int CountDraws(const Population& population);
 
+// The number of the draw that a condition is of, by the names of its factors; nothing without kDrawFactor.
+std::optional<int> FindDraw(const std::vector<std::string>& factors, const std::vector<std::string>& levels);
+
 struct PopulationDraw {
   int number = 0;
   std::vector<std::string> levels;  // one per key of ListDrawnKeys; kNotDrawn
@@ -81,7 +84,7 @@ struct RefusedDraw {
 // Lines of a run's identity for them, and what such an identity says, in words: how many draws there were,
 // how many are not among the conditions, and the reasons with an example of each, the most frequent first.
 // Empty: no population.
-std::string IdentityOf(const Population& population, const std::vector<RefusedDraw>& refused);
+std::string DescribePopulationIdentity(const Population& population, const std::vector<RefusedDraw>& refused);
 std::string DescribePopulation(const std::string& identity);
 // Whether such an identity is of draws that are a sample of a population: of neither a grid nor chosen draws.
 bool IsSampleOfPopulation(const std::string& identity);

@@ -109,7 +109,7 @@ Population LoadPopulation(const std::string& name, PopulationText* text) {
   Population population;
   PopulationText unused;
   PopulationText& said = text == nullptr ? unused : *text;
-  for (const auto& [key, node] : Entries(place, root, "population", StudyKeysOf("population"))) {
+  for (const auto& [key, node] : Entries(place, root, "population", ListStudyKeys("population"))) {
     if (key == "description") said.description = Scalar(place, node, key);
     if (key == "source") said.source = Scalar(place, node, key);
     if (key == "reasons") said.reasons = ReadTexts(place, node, key);
@@ -123,7 +123,7 @@ Population LoadPopulation(const std::string& name, PopulationText* text) {
 
 Population ReadPopulation(const Place& place, const YAML::Node& node) {
   Population population;
-  const auto entries = Entries(place, node, "conditions", StudyKeysOf("conditions"));
+  const auto entries = Entries(place, node, "conditions", ListStudyKeys("conditions"));
   if (node["population"]) {
     const std::string name = Scalar(place, node["population"], "population");
     const std::filesystem::path path = std::filesystem::path(place.path()).parent_path() / name;

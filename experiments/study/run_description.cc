@@ -11,7 +11,7 @@ DescribedEstimator Describe(const EstimatorSpec& spec) {
   return estimator;
 }
 
-Settings AdempOf(const Study& study) {
+Settings ListAdempParts(const Study& study) {
   Settings parts;
   Ademp ademp = study.ademp.value_or(Ademp());
   for (const auto& [key, text] : Parts(ademp)) {
@@ -32,7 +32,7 @@ RunDescription Describe(const StudyPlan& plan) {
   RunDescription run;
   run.study = plan.study.name;
   run.description = plan.study.description;
-  run.ademp = AdempOf(plan.study);
+  run.ademp = ListAdempParts(plan.study);
   run.seed = plan.study.seed;
   run.trials = plan.study.trials;
   run.repeats_per_scene = plan.study.repeats_per_scene;
@@ -48,6 +48,6 @@ RunDescription Describe(const StudyPlan& plan) {
   return run;
 }
 
-Settings TextsOf(FailureBounds bounds) { return ValuesOf(Parameters(bounds)); }
+Settings ListBounds(FailureBounds bounds) { return ListValues(Parameters(bounds)); }
 
 }  // namespace rcme

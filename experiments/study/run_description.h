@@ -56,6 +56,6 @@ struct RunDescription {
 RunDescription Describe(const StudyPlan& plan);
 
 // The failure bounds, one by one, as (name, text): "max_rotation_error_deg", "3".
-Settings TextsOf(FailureBounds bounds);
+Settings ListBounds(FailureBounds bounds);
 
 }  // namespace rcme

@@ -87,7 +87,7 @@ void CheckIsWhole(const Place& place, const YAML::Node& node) {
 }
 
 StatedHypothesis ReadHypothesis(const Place& place, const YAML::Node& node, const StatableNames& names) {
-  const auto entries = Entries(place, node, "hypotheses", StudyKeysOf("hypothesis"));
+  const auto entries = Entries(place, node, "hypotheses", ListStudyKeys("hypothesis"));
   CheckIsWhole(place, node);
   StatedHypothesis hypothesis;
   if (node["at_most"]) hypothesis.direction = StatedDirection::kAtMost;

@@ -61,7 +61,7 @@ Rows OneAtATime(const Study& study) {
 
 }  // namespace
 
-std::vector<std::string> LevelsOf(const PopulationDraw& draw, const std::vector<std::string>& of_factors) {
+std::vector<std::string> JoinLevels(const PopulationDraw& draw, const std::vector<std::string>& of_factors) {
   std::vector<std::string> levels = {fmt::format("{}", draw.number)};
   levels.insert(levels.end(), draw.levels.begin(), draw.levels.end());
   levels.insert(levels.end(), of_factors.begin(), of_factors.end());
@@ -106,14 +106,14 @@ Rows DesignRows(const Study& study) {
     if (rows.size() + of_factors.size() > kMaxConditions)
       throw InputError(
           fmt::format("conditions: more than {} draws and combinations of levels", kMaxConditions));
-    for (const std::vector<std::string>& levels : of_factors) rows.push_back(LevelsOf(draw, levels));
+    for (const std::vector<std::string>& levels : of_factors) rows.push_back(JoinLevels(draw, levels));
   }
   return rows;
 }
 
 bool IsEstimatorOption(const std::string& factor) { return factor.find('.') != std::string::npos; }
 
-Settings SettingsOf(const Study& study, const std::vector<std::string>& levels) {
+Settings CombineSettings(const Study& study, const std::vector<std::string>& levels) {
   Settings settings = study.data;
   const std::vector<std::string> names = FactorNames(study);
   for (size_t f = 0; f < std::min(levels.size(), names.size()); ++f) {
@@ -123,7 +123,7 @@ Settings SettingsOf(const Study& study, const std::vector<std::string>& levels) 
   return settings;
 }
 
-std::vector<EstimatorSpec> EstimatorsOf(const Study& study, const std::vector<std::string>& levels) {
+std::vector<EstimatorSpec> ResolveEstimators(const Study& study, const std::vector<std::string>& levels) {
   std::vector<EstimatorSpec> estimators = study.estimators;
   const std::vector<std::string> names = FactorNames(study);
   for (size_t f = 0; f < std::min(levels.size(), names.size()); ++f) {

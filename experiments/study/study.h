@@ -62,7 +62,7 @@ struct Study {
   std::vector<EstimatorSpec> estimators;
   FailureBounds failure;
   std::vector<StatedHypothesis> hypotheses;  // what its run is expected to show; no run depends on them
-  std::optional<Tuning> tuning;  // what `rcme tune` does with it
+  std::optional<Tuning> tuning;              // what `rcme tune` does with it
 };
 
 // The parts of an Ademp with their keys, in order.
@@ -77,16 +77,16 @@ std::vector<std::string> FactorNames(const Study& study);
 std::vector<std::vector<std::string>> DesignRows(const Study& study);
 // Those of the factors alone, and the levels of a draw with such a row.
 std::vector<std::vector<std::string>> FactorRows(const Study& study);
-std::vector<std::string> LevelsOf(const PopulationDraw& draw, const std::vector<std::string>& of_factors);
+std::vector<std::string> JoinLevels(const PopulationDraw& draw, const std::vector<std::string>& of_factors);
 
 // The settings of a condition: those of `data`, then its levels but for options of estimators.
-Settings SettingsOf(const Study& study, const std::vector<std::string>& levels);
+Settings CombineSettings(const Study& study, const std::vector<std::string>& levels);
 
 // Whether a factor is an option of an estimator: LABEL.OPTION.
 bool IsEstimatorOption(const std::string& factor);
 
 // The estimators of a condition: those of the study with the options that are levels of it.
-std::vector<EstimatorSpec> EstimatorsOf(const Study& study, const std::vector<std::string>& levels);
+std::vector<EstimatorSpec> ResolveEstimators(const Study& study, const std::vector<std::string>& levels);
 
 // Throws InputError where options of estimators are factors; `who` cannot take them.
 void RequireFixedOptions(const Study& study, const std::string& who);

@@ -66,7 +66,7 @@ Parameter CommonScenesParameter(bool* common_scenes) {
 // An entry of the list of estimators; {file: tuned.yaml} is that file's, seen from the study's folder.
 EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
   if (!node.IsMap() || !node["file"])
-    return ReadEstimatorEntry(place, node, "estimators", StudyKeysOf("estimators"));
+    return ReadEstimatorEntry(place, node, "estimators", ListStudyKeys("estimators"));
   EstimatorSpec spec;
   std::string label;
   for (const auto& [key, value] : Entries(place, node, "estimators: file", {"file", "label"})) {
@@ -101,7 +101,7 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
 }
 
 // What the hypotheses of a study may name, after its factors' levels are canonical.
-StatableNames NamesOf(const Study& study) {
+StatableNames ListStatableNames(const Study& study) {
   StatableNames names;
   for (const EstimatorSpec& spec : study.estimators) names.estimators.push_back(spec.label);
   for (const Factor& factor : study.factors) names.factors.emplace_back(factor.key, factor.levels);
@@ -110,7 +110,7 @@ StatableNames NamesOf(const Study& study) {
 
 Ademp ReadAdemp(const Place& place, const YAML::Node& node) {
   Ademp ademp;
-  const auto entries = Entries(place, node, "ademp", StudyKeysOf("ademp"));
+  const auto entries = Entries(place, node, "ademp", ListStudyKeys("ademp"));
   for (const auto& [key, text] : Parts(ademp)) {
     const auto entry = std::ranges::find(entries, key, &std::pair<std::string, YAML::Node>::first);
     if (entry == entries.end()) place.Fail(node, fmt::format("ademp: key '{}' is missing", key));
@@ -246,7 +246,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
   const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
   Study study;
   study.name = std::filesystem::path(path).stem().string();
-  for (const auto& [key, node] : Entries(place, root, "study", StudyKeysOf("study"))) {
+  for (const auto& [key, node] : Entries(place, root, "study", ListStudyKeys("study"))) {
     if (key == "name") study.name = Name(place, node, key);
     if (key == "description") study.description = Scalar(place, node, key);
     if (key == "seed") {
@@ -285,7 +285,8 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
   place.At(root["data"] ? root["data"] : root, [&] { study.data = WithCalibration(study.data); });
   FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
-  if (root["hypotheses"]) study.hypotheses = ReadHypotheses(place, root["hypotheses"], NamesOf(study));
+  if (root["hypotheses"])
+    study.hypotheses = ReadHypotheses(place, root["hypotheses"], ListStatableNames(study));
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
   return study;
 }

@@ -117,7 +117,7 @@ std::vector<StudyKey> StudyKeys() {
   return keys;
 }
 
-std::set<std::string> StudyKeysOf(const std::string& block) {
+std::set<std::string> ListStudyKeys(const std::string& block) {
   std::set<std::string> names;
   for (const StudyKey& key : StudyKeys()) {
     if (key.block == block) names.insert(key.name);

@@ -13,8 +13,9 @@ inline constexpr double kLeastBudgetMs = 1e-6, kMostBudgetMs = 1e9;
 
 // A key of one block of the file. The blocks: "study" (the top), "ademp", "estimators" (what an
 // entry of the list may be beside an estimator), "estimator" (such an entry, or an estimator file),
-// "failure", "hypothesis" (an entry of the list), "conditions", "population" (a file of one), "tune". The keys of `data` and `factors` are those
-// of the data (DescribeSettings), those of an estimator's `options` are its parameters.
+// "failure", "hypothesis" (an entry of the list), "conditions", "population" (a file of one), "tune". The
+// keys of `data` and `factors` are those of the data (DescribeSettings), those of an estimator's `options`
+// are its parameters.
 struct StudyKey {
   std::string block, name;
   std::string value;  // the default; empty: none
@@ -25,6 +26,6 @@ struct StudyKey {
 std::vector<StudyKey> StudyKeys();
 
 // The names of a block's keys.
-std::set<std::string> StudyKeysOf(const std::string& block);
+std::set<std::string> ListStudyKeys(const std::string& block);
 
 }  // namespace rcme

@@ -107,7 +107,7 @@ std::map<std::string, std::string> ByKey(const Settings& flat, std::vector<std::
   return values;
 }
 
-std::vector<std::string> DifferencesOf(const YAML::Node& locked, const YAML::Node& run) {
+std::vector<std::string> ListStudyDifferences(const YAML::Node& locked, const YAML::Node& run) {
   const std::vector<std::string> added = OnlyIn(LabelsIn(run), LabelsIn(locked));
   const std::vector<std::string> gone = OnlyIn(LabelsIn(locked), LabelsIn(run));
   const Settings before = FlatStudy(locked, gone), after = FlatStudy(run, added);
@@ -241,7 +241,7 @@ std::vector<std::string> DeviationsFrom(const StudyLock& lock, const std::string
   const YAML::Node run = ParseYaml(study_yaml, "the study", LockFileKind());
   std::vector<std::string> deviations;
   try {
-    deviations = DifferencesOf(locked, run);
+    deviations = ListStudyDifferences(locked, run);
   } catch (const YAML::Exception&) {
     return {"the study: is not one that this program can compare with the lock"};
   }

@@ -32,7 +32,7 @@ std::string ResolvedConditions(const StudyPlan& plan) {
   std::string text;
   for (const Condition& condition : plan.conditions) {
     if (!has_choice) continue;
-    const Settings settings = ResolveSettings(SettingsOf(plan.study, condition.levels));
+    const Settings settings = ResolveSettings(CombineSettings(plan.study, condition.levels));
     text += fmt::format("# condition {}:{}\n", condition.index,
                         TextOfSettings(settings, plan.study.population.has_value()));
   }
@@ -47,7 +47,7 @@ std::string Identity(const StudyPlan& plan) {
   same.hypotheses.clear();
   std::erase_if(same.data, [](const auto& setting) { return setting.first == "folder"; });  // its data count
   std::string identity = ToYaml(same) + ResolvedConditions(plan);
-  if (same.population) identity += IdentityOf(*same.population, plan.refused);
+  if (same.population) identity += DescribePopulationIdentity(*same.population, plan.refused);
   for (const Condition& condition : plan.conditions) {
     // Those of draws are not looked for here: the settings decide them.
     if (same.population && !condition.source->ChosenParts().empty()) continue;
@@ -73,8 +73,8 @@ struct RowConditions {
   std::vector<Condition> conditions;
 };
 
-RowConditions ConditionsOf(const Study& study, const std::vector<std::string>& levels) {
-  const Settings settings = SettingsOf(study, levels);
+RowConditions MakeRowConditions(const Study& study, const std::vector<std::string>& levels) {
+  const Settings settings = CombineSettings(study, levels);
   DataSources made =
       MakeDataSources(settings, study.population ? BaselineSearch::kWithFirstScene : BaselineSearch::kNow);
   RowConditions row{std::move(made.implied_factor), {}};
@@ -108,7 +108,7 @@ void AppendPopulation(StudyPlan* plan) {
       continue;
     }
     for (const std::vector<std::string>& levels : of_factors)
-      Append(ConditionsOf(plan->study, LevelsOf(draw, levels)), plan);
+      Append(MakeRowConditions(plan->study, JoinLevels(draw, levels)), plan);
   }
   if (plan->conditions.empty()) {
     throw InputError(fmt::format("conditions: none of {} draws meets what is given; the first: {}",
@@ -128,7 +128,7 @@ void MakeEstimatorsOfConditions(StudyPlan* plan) {
     }
     const auto [found, is_new] = made.try_emplace(options);
     if (is_new) {
-      for (const EstimatorSpec& spec : EstimatorsOf(plan->study, condition.levels))
+      for (const EstimatorSpec& spec : ResolveEstimators(plan->study, condition.levels))
         found->second.push_back(Make(spec));
     }
     condition.estimators = found->second;
@@ -143,8 +143,8 @@ std::int64_t StudyPlan::NumTrials() const {
   return sum;
 }
 
-const std::vector<std::shared_ptr<const MotionEstimator>>& EstimatorsOf(const StudyPlan& plan,
-                                                                        const Condition& condition) {
+const std::vector<std::shared_ptr<const MotionEstimator>>& ResolveEstimators(const StudyPlan& plan,
+                                                                             const Condition& condition) {
   return condition.estimators.empty() ? plan.estimators : condition.estimators;
 }
 
@@ -190,7 +190,7 @@ StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
     AppendPopulation(&plan);
   } else {
     for (const std::vector<std::string>& levels : DesignRows(plan.study))
-      Append(ConditionsOf(plan.study, levels), &plan);
+      Append(MakeRowConditions(plan.study, levels), &plan);
   }
   if (estimators == PlanEstimators::kMade) MakeEstimators(&plan);
   plan.study_yaml = ToYaml(plan.study);
@@ -200,7 +200,7 @@ StudyPlan MakePlan(const Study& given, PlanEstimators estimators) {
 
 StudyPlan MakeConditionPlan(const Study& study, const std::vector<std::string>& levels) {
   StudyPlan plan = BeginPlan(study, PlanEstimators::kMade);
-  Append(ConditionsOf(plan.study, levels), &plan);
+  Append(MakeRowConditions(plan.study, levels), &plan);
   MakeEstimators(&plan);
   return plan;
 }

@@ -36,8 +36,8 @@ struct StudyPlan {
 };
 
 // The estimators that a condition's trials ask.
-const std::vector<std::shared_ptr<const MotionEstimator>>& EstimatorsOf(const StudyPlan& plan,
-                                                                        const Condition& condition);
+const std::vector<std::shared_ptr<const MotionEstimator>>& FindEstimators(const StudyPlan& plan,
+                                                                          const Condition& condition);
 
 // Names the random streams of a trial, but for their purpose (data_source.h).
 StreamName NameOfTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial);

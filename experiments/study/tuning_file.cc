@@ -97,7 +97,8 @@ TunedOption ReadOption(const Place& place, const YAML::Node& node, const std::st
   const std::unique_ptr<EstimatorModel> model = Configure(spec);
   const std::vector<Parameter> parameters = model->Parameters();
   place.At(node, [&] { FindOption(spec.name, parameters, option); });
-  if (IsCommand(spec, option)) place.Fail(node, name + ": a command, or a file that may bring one, cannot be tuned; leave it out");
+  if (IsCommand(spec, option))
+    place.Fail(node, name + ": a command, or a file that may bring one, cannot be tuned; leave it out");
   const Parameter& parameter = FindOption(spec.name, parameters, option);
   std::set<std::string> seen;
   for (const auto& [text, line] : GivenLevels(place, node, name)) {
@@ -140,7 +141,7 @@ const EstimatorSpec& TunedEstimator(const Tuning& tuning, const std::vector<Esti
 Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<EstimatorSpec>& estimators) {
   Tuning tuning;
   const std::vector<Parameter> parameters = Parameters(tuning);
-  for (const auto& [key, value] : Entries(place, node, "tune", StudyKeysOf("tune"))) {
+  for (const auto& [key, value] : Entries(place, node, "tune", ListStudyKeys("tune"))) {
     if (key == "options") continue;
     place.At(value, [&, key = key, value = value] {
       FindParameter(parameters, key).SetFromText(Scalar(place, value, "tune: " + key));

@@ -14,7 +14,7 @@ RelativePose NearestPose(const std::array<RelativePose, 4>& poses, const Relativ
 }
 
 double NormalizedErrorOfF(const LinearMotion& estimate, const RelativePose& pose_true) {
-  return NormalizedErrorSquared(estimate.fit.LocalCoordinates(LinearModelOf(pose_true)),
+  return NormalizedErrorSquared(estimate.fit.LocalCoordinates(ComputeLinearModel(pose_true)),
                                 estimate.LocalCovarianceOfF());
 }
 

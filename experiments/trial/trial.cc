@@ -22,7 +22,7 @@ bool HasRotation(MotionStatus status) {
 
 // An answer that is not valid covers nothing. The truth's own error adds to the estimate's: the two are
 // independent.
-double NeesOf(const MotionEstimate& estimate, const Truth& truth) {
+double ComputeNees(const MotionEstimate& estimate, const Truth& truth) {
   if (estimate.status != MotionStatus::kOk) return kInfinity;
   const RelativePose& pose = estimate.cam2_from_cam1;
   Matrix5d covariance = estimate.pose_cov;
@@ -40,7 +40,7 @@ void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord
   if (!truth.is_direction_known) return;
   if (HasMotion(estimate.status))
     record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
-  if (WasSimulated(*record) && !HasRefused(*record)) record->nees = NeesOf(estimate, truth);
+  if (WasSimulated(*record) && !HasRefused(*record)) record->nees = ComputeNees(estimate, truth);
 }
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
@@ -145,7 +145,7 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   TrialResult result;
   result.data = condition.source->Make(NameOfScene(plan, condition, trial));
   result.problem = Describe(result.data, condition, trial);
-  const auto& estimators = EstimatorsOf(plan, condition);
+  const auto& estimators = FindEstimators(plan, condition);
   result.estimates.resize(estimators.size());
   result.records.resize(estimators.size());
   for (size_t turn = 0; turn < estimators.size(); ++turn) {
@@ -178,7 +178,7 @@ TrialResult RunTrialOfDraw(const StudyPlan& plan, const Condition& condition, st
   TrialRecord record = ScoreJudged(nothing, result.data, 0.0);
   record.condition = condition.index;
   record.trial = trial;
-  for (; record.estimator < EstimatorsOf(plan, condition).size(); ++record.estimator)
+  for (; record.estimator < FindEstimators(plan, condition).size(); ++record.estimator)
     result.records.push_back(record);
   return result;
 }

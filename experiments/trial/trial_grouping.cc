@@ -1,6 +1,5 @@
 #include "experiments/trial/trial_grouping.h"
 
-#include <algorithm>
 #include <optional>
 #include <set>
 
@@ -35,16 +34,12 @@ std::int64_t TrialGrouping::FindGroup(const Condition& condition, std::uint32_t 
     const auto pairs = static_cast<std::uint32_t>(condition.source->NumTrials(1));
     return MakeGroup(scenes_.at(*scene), is_new_condition ? 0 : trial % pairs);
   }
-  if (is_new_condition) return MakeGroup(FindDraw(condition), 0);
+  if (is_new_condition) {  // conditions of one draw differ in the factors alone
+    const std::optional<int> draw = FindDraw(plan_.factor_names, condition.levels);
+    return MakeGroup(draw ? std::int64_t{*draw} : std::int64_t{condition.index}, 0);
+  }
   const auto repeats = static_cast<std::uint32_t>(plan_.study.repeats_per_scene);
   return MakeGroup(plan_.study.common_scenes ? 0 : condition.index, trial / repeats);
-}
-
-// Conditions of one draw differ in the factors alone.
-std::int64_t TrialGrouping::FindDraw(const Condition& condition) const {
-  const auto factor = std::ranges::find(plan_.factor_names, kDrawFactor);
-  if (factor == plan_.factor_names.end()) return condition.index;
-  return std::stoll(condition.levels.at(static_cast<size_t>(factor - plan_.factor_names.begin())));
 }
 
 NewProblem UsualNewProblem(const StudyPlan& plan) {

@@ -25,8 +25,6 @@ class TrialGrouping {
   std::int64_t FindGroup(const Condition& condition, std::uint32_t trial) const;
 
  private:
-  std::int64_t FindDraw(const Condition& condition) const;
-
   const StudyPlan& plan_;
   NewProblem new_problem_;
   std::map<std::string, std::int64_t> scenes_;

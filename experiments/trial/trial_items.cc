@@ -42,7 +42,7 @@ void GetTrialItems(const StudyPlan& plan, std::uint32_t trials_of_item, const Co
 void RequireUnweighted(const StudyPlan& plan, const std::string& command) {
   for (const Condition& condition : plan.conditions) {
     if (condition.source->ChosenParts().empty()) continue;
-    for (const auto& [key, value] : SettingsOf(plan.study, condition.levels))
+    for (const auto& [key, value] : CombineSettings(plan.study, condition.levels))
       if (key == "tilted_to" && value != "none")
         throw InputError(command + ": the trials of this study are weighted (tilted_to); leave that out");
   }

@@ -2,7 +2,7 @@
 
 namespace rcme {
 
-TrialOutcome OutcomeOf(const TrialRecord& record, const FailureBounds& bounds) {
+TrialOutcome ClassifyOutcome(const TrialRecord& record, const FailureBounds& bounds) {
   if (HasRefused(record)) return TrialOutcome::kRefusal;
   if (HasFailed(record, bounds)) return TrialOutcome::kFailure;
   return IsScored(record) ? TrialOutcome::kSuccess : TrialOutcome::kNotScored;
@@ -23,7 +23,8 @@ const char* Name(TrialOutcome outcome) {
 }
 
 std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds) {
-  return record.status == MotionStatus::kOk ? Name(OutcomeOf(record, bounds)) : StatusName(record.status);
+  return record.status == MotionStatus::kOk ? Name(ClassifyOutcome(record, bounds))
+                                            : StatusName(record.status);
 }
 
 }  // namespace rcme

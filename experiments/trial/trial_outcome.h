@@ -10,7 +10,7 @@ namespace rcme {
 // kNotScored: the truth is not known, or the trial was not simulated.
 enum class TrialOutcome { kSuccess, kFailure, kRefusal, kNotScored };
 
-TrialOutcome OutcomeOf(const TrialRecord& record, const FailureBounds& bounds);
+TrialOutcome ClassifyOutcome(const TrialRecord& record, const FailureBounds& bounds);
 
 // "success", "failure", "refusal", "not_scored".
 const char* Name(TrialOutcome outcome);

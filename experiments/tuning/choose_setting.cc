@@ -50,7 +50,7 @@ std::vector<size_t> Proposed(const Tuning& tuning, const std::vector<SettingCoun
 
 // In the order of how surely they meet the target; of equals first the one with most of what is to be least,
 // which is the more careful one.
-std::vector<size_t> PathOf(const Tuning& tuning, const std::vector<SettingCount>& explored) {
+std::vector<size_t> OrderSettings(const Tuning& tuning, const std::vector<SettingCount>& explored) {
   std::vector<std::tuple<double, double, size_t>> path;
   for (const size_t s : Proposed(tuning, explored)) {
     path.emplace_back(PValue(tuning, explored[s]), -Objective(tuning, explored[s]), s);
@@ -145,7 +145,7 @@ Choice ChooseLeastRisk(const Tuning& tuning, const std::vector<SettingCount>& ex
   return choice;
 }
 
-Verdict VerdictOf(const ErrorCount& count, double at_most) {
+Verdict DecideSetting(const ErrorCount& count, double at_most) {
   return DecideEquivalence(ExactBinomialInterval(count.errors, count.n), {-kInfinity, at_most});
 }
 
@@ -160,9 +160,10 @@ bool HasRefusalLimit(const Tuning& tuning) {
   return LimitsFailures(tuning.target) && tuning.max_refusal < 1.0;
 }
 
-Verdict VerdictOf(const Tuning& tuning, const SettingCount& count) {
-  std::vector<std::optional<Verdict>> verdicts = {VerdictOf(TargetedCount(tuning, count), tuning.at_most)};
-  if (HasRefusalLimit(tuning)) verdicts.emplace_back(VerdictOf(count.Refusal(), tuning.max_refusal));
+Verdict DecideSetting(const Tuning& tuning, const SettingCount& count) {
+  std::vector<std::optional<Verdict>> verdicts = {
+      DecideSetting(TargetedCount(tuning, count), tuning.at_most)};
+  if (HasRefusalLimit(tuning)) verdicts.emplace_back(DecideSetting(count.Refusal(), tuning.max_refusal));
   return *Together(verdicts);
 }
 
@@ -175,7 +176,7 @@ Choice ChooseSetting(const Tuning& tuning, const std::vector<std::string>& setti
                      const std::vector<SettingCount>& explored, const std::vector<SettingCount>& calibrated) {
   if (tuning.target == TuneTarget::kRisk) return ChooseLeastRisk(tuning, explored, calibrated);
   Choice choice;
-  choice.path = PathOf(tuning, explored);
+  choice.path = OrderSettings(tuning, explored);
   std::vector<double> p_values;
   for (const size_t s : choice.path) p_values.push_back(PValue(tuning, calibrated[s]));
   choice.num_certified = CountCertified(p_values, tuning.delta);

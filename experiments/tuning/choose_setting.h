@@ -35,7 +35,7 @@ bool HasRefusalLimit(const Tuning& tuning);
 
 // Whether a setting meets the target on the trials of a count: it holds if the whole 95 % interval of every
 // rate that it limits lies below the limit, it does not if one lies above.
-Verdict VerdictOf(const Tuning& tuning, const SettingCount& count);
+Verdict DecideSetting(const Tuning& tuning, const SettingCount& count);
 
 // cost_of_failure * failure rate + cost_of_refusal * refusal rate.
 double Risk(const Tuning& tuning, const SettingCount& count);

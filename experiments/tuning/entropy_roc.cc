@@ -28,8 +28,8 @@ void AddSamples(const HypothesisTrace& trace, const Truth& truth, TrialEntropies
   }
 }
 
-TrialEntropies EntropiesOf(const LoopInspection& estimator, const TrialData& data, StreamName name,
-                           const FailureBounds& bounds) {
+TrialEntropies MeasureTrialEntropies(const LoopInspection& estimator, const TrialData& data, StreamName name,
+                                     const FailureBounds& bounds) {
   TrialEntropies entropies;
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
   const HypothesisTrace trace = estimator.Trace(data.problem, rng);
@@ -66,7 +66,7 @@ bool AreDifferent(const std::vector<double>& good, const std::vector<double>& ba
 
 // For each trial of all conditions the number of its scene: pairs of one real scene share images, a simulated
 // trial draws a scene of its own.
-std::vector<size_t> ScenesOf(const StudyPlan& plan, std::int64_t trials_per_condition) {
+std::vector<size_t> NumberScenes(const StudyPlan& plan, std::int64_t trials_per_condition) {
   std::vector<size_t> scenes;
   std::map<std::string, size_t> common;
   size_t num_scenes = 0;
@@ -114,15 +114,16 @@ EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials) {
     const TrialData& data = *simulated.made;
     for (size_t e = 0; e < estimators.size(); ++e) {
       if (!estimators[e]) continue;
-      entropies[e][static_cast<size_t>(index)] = EntropiesOf(*estimators[e], data, name, plan.study.failure);
+      entropies[e][static_cast<size_t>(index)] =
+          MeasureTrialEntropies(*estimators[e], data, name, plan.study.failure);
     }
   });
   return entropies;
 }
 
-std::vector<EntropyRoc> RocsOf(const StudyPlan& plan, const EntropiesOfTrials& entropies) {
+std::vector<EntropyRoc> ComputeRocs(const StudyPlan& plan, const EntropiesOfTrials& entropies) {
   const auto num_trials = static_cast<std::int64_t>(entropies.front().size() / plan.conditions.size());
-  const std::vector<size_t> scenes = ScenesOf(plan, num_trials);
+  const std::vector<size_t> scenes = NumberScenes(plan, num_trials);
   std::vector<EntropyRoc> rocs;
   for (size_t e = 0; e < entropies.size(); ++e) {
     AddRoc(e, "samples", entropies[e], scenes, &TrialEntropies::good_sample, &TrialEntropies::bad_sample,

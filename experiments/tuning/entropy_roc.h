@@ -36,6 +36,6 @@ EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials);
 
 // For every estimator of the plan that has entropies; without those where no good or no bad one was seen. The
 // trials are the same of every condition.
-std::vector<EntropyRoc> RocsOf(const StudyPlan& plan, const EntropiesOfTrials& entropies);
+std::vector<EntropyRoc> ComputeRocs(const StudyPlan& plan, const EntropiesOfTrials& entropies);
 
 }  // namespace rcme

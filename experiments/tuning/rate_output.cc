@@ -7,22 +7,20 @@
 
 namespace rcme {
 
-double RateOf(const ErrorCount& count) {
+double ComputeRate(const ErrorCount& count) {
   return static_cast<double>(count.errors) / static_cast<double>(count.n);
 }
 
 Estimate EstimateRate(const ErrorCount& count) {
-  return {RateOf(count), ExactBinomialInterval(count.errors, count.n)};
+  return {ComputeRate(count), ExactBinomialInterval(count.errors, count.n)};
 }
 
 std::string RateForTable(const ErrorCount& count) { return FormatEstimate(EstimateRate(count), kPercent); }
 
 nlohmann::ordered_json RateAsJson(const ErrorCount& count) {
-  const Interval interval = ExactBinomialInterval(count.errors, count.n);
-  return {{"value", count.n > 0 ? nlohmann::ordered_json(RateOf(count)) : nullptr},
-          {"lower", interval.lower},
-          {"upper", interval.upper},
-          {"n", count.n}};
+  nlohmann::ordered_json json = RenderJsonBounds(EstimateRate(count));
+  json["n"] = count.n;
+  return json;
 }
 
 }  // namespace rcme

@@ -10,7 +10,7 @@
 namespace rcme {
 
 // NaN where n is 0.
-double RateOf(const ErrorCount& count);
+double ComputeRate(const ErrorCount& count);
 
 // With the exact 95 % interval.
 Estimate EstimateRate(const ErrorCount& count);

@@ -74,7 +74,7 @@ class TrialDecisions {
   }
 
   Decided JudgedOutcome(const MotionEstimate& estimate) const {
-    return {OutcomeOf(Score(estimate, data_, 0.0), bounds_), estimate.failure_probability};
+    return {ClassifyOutcome(Score(estimate, data_, 0.0), bounds_), estimate.failure_probability};
   }
 
   StreamName name_;

@@ -22,7 +22,7 @@ std::string TraceKey(const Settings& options) {
   return key;
 }
 
-std::string KeyOf(const Settings& options) {
+std::string MakeSettingKey(const Settings& options) {
   std::string key;
   for (const auto& [option, value] : options) key += value + ' ';
   return key;
@@ -66,10 +66,10 @@ bool AddEstimators(SettingPlan* plan) {
     const std::unique_ptr<EstimatorModel> model = Configure(setting.spec);
     plan->estimators.push_back(model->Make());
     model->LiftLimits();
-    const Settings without_limits = ValuesOf(model->Parameters());
+    const Settings without_limits = ListValues(model->Parameters());
     has_limits = has_limits || without_limits != setting.spec.options;
     plan->greatest_probability.push_back(FindProbabilityLimit(setting.spec.options, without_limits));
-    std::shared_ptr<const MotionEstimator>& estimator = shared[KeyOf(without_limits)];
+    std::shared_ptr<const MotionEstimator>& estimator = shared[MakeSettingKey(without_limits)];
     if (!estimator) estimator = model->Make();
     plan->without_limits.push_back(estimator);
   }

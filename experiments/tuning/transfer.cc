@@ -71,7 +71,7 @@ void CheckFamilies(const StudyPlan& plan, const std::vector<Family>& families) {
 
 }  // namespace
 
-std::vector<Family> FamiliesOf(const StudyPlan& plan, const std::string& by) {
+std::vector<Family> ListFamilies(const StudyPlan& plan, const std::string& by) {
   std::vector<Family> families = FamiliesBy(plan, by);
   CheckFamilies(plan, families);
   return families;
@@ -81,7 +81,7 @@ TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& setting
                                const TuningSource& source) {
   const Tuning& tuning = *plan.study.tuning;
   TransferResult result;
-  result.families = FamiliesOf(plan, by);
+  result.families = ListFamilies(plan, by);
   result.settings = DescribeEachSetting(tuning, settings);
   const TuningTrials trials(tuning);
   const SettingCounts explored = source.count(trials.explore), calibrated = source.count(trials.calibrate);

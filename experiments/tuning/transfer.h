@@ -24,10 +24,10 @@ struct TransferResult {
 // The conditions, or those that have a level of the factor `by` in common. Throws InputError if there is no
 // such factor, if there are fewer than two families, if one has too few trials (CheckTrialsSuffice), or for a
 // target on the risk.
-std::vector<Family> FamiliesOf(const StudyPlan& plan, const std::string& by);
+std::vector<Family> ListFamilies(const StudyPlan& plan, const std::string& by);
 
 // Tunes on every family alone and measures every choice on all of them. All settings are measured in the same
-// trials, so the matrix takes no more estimation than one tuning. Throws as FamiliesOf and CountOutcomes.
+// trials, so the matrix takes no more estimation than one tuning. Throws as ListFamilies and CountOutcomes.
 TransferResult MeasureTransfer(const StudyPlan& plan, const SettingPlan& settings, const std::string& by,
                                const TuningSource& source);
 

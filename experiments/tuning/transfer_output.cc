@@ -23,7 +23,7 @@ std::vector<std::string> OthersWith(Verdict verdict, const Tuning& tuning, const
   for (size_t other = 0; other < result.families.size(); ++other) {
     if (other == family) continue;
     const SettingCount& count = result.verified[other][*result.families[family].choice.setting];
-    if (VerdictOf(tuning, count) == verdict) words.push_back(result.families[other].words);
+    if (DecideSetting(tuning, count) == verdict) words.push_back(result.families[other].words);
   }
   return words;
 }
@@ -81,7 +81,7 @@ std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, c
                        {"failure", RateAsJson(count.Failure())},
                        {"refusal", RateAsJson(count.Refusal())},
                        {"false_refusal", RateAsJson(count.FalseRefusal())},
-                       {"verdict", Name(VerdictOf(tuning, count))}});
+                       {"verdict", Name(DecideSetting(tuning, count))}});
     }
   }
   const Json json = {{"study", plan.study.name},

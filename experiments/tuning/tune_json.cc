@@ -7,6 +7,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/loop_inspection.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/study/tuning_file.h"
@@ -47,7 +48,7 @@ Settings InNumbers(EstimatorSpec spec) {
 
 // The levels of the tuned options at which another estimator is the tuned one; null if it differs in more, or
 // has a word ("auto") where the levels are numbers.
-Json LevelsOf(const Tuning& tuning, const EstimatorSpec& tuned, const EstimatorSpec& other) {
+Json RenderTunedLevels(const Tuning& tuning, const EstimatorSpec& tuned, const EstimatorSpec& other) {
   if (tuned.name != other.name) return nullptr;
   const Settings tuned_options = InNumbers(tuned), other_options = InNumbers(other);
   Settings levels;
@@ -73,7 +74,7 @@ Json OthersAsJson(const Tuning& tuning, const std::vector<VerifiedEstimator>& es
   for (size_t e = 1; e < estimators.size(); ++e) {
     Json other = {{"label", estimators[e].spec.label},
                   {"words", "as in the study"},
-                  {"levels", LevelsOf(tuning, estimators.front().spec, estimators[e].spec)}};
+                  {"levels", RenderTunedLevels(tuning, estimators.front().spec, estimators[e].spec)}};
     other.update(EstimatorAsJson(estimators[e]));
     others.push_back(std::move(other));
   }
@@ -82,7 +83,7 @@ Json OthersAsJson(const Tuning& tuning, const std::vector<VerifiedEstimator>& es
 
 // Accepted is what has psi at most mu. A good model is a positive, and the lower its psi the higher its
 // score.
-std::vector<RocPoint> CurveOf(const EntropyRoc& roc) {
+std::vector<RocPoint> ComputeEntropyCurve(const EntropyRoc& roc) {
   const auto scores = [](std::vector<double> psi) {
     for (double& x : psi) x = -x;
     return psi;
@@ -115,20 +116,18 @@ Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
   const RansacOptions& options = FindInspection(*plan.estimators[roc.estimator])->options();
   const double mu = options.MuOrDefault();
   const bool is_printed = options.reading == Reading::kAsPrinted;
-  const std::vector<RocPoint> curve = CurveOf(roc);
+  const std::vector<RocPoint> curve = ComputeEntropyCurve(roc);
   const RocPoint at_mu = PointAt(curve, mu);
-  return {
-      {"estimator", spec.label},
-      {"population", roc.population},
-      {"score", is_printed ? "psi, nats" : "excess entropy, nats"},
-      {"auc",
-       {{"value", roc.area.value}, {"lower", roc.area.interval.lower}, {"upper", roc.area.interval.upper}}},
-      {"num_good", roc.good.size()},
-      {"num_bad", roc.bad.size()},
-      {"curve", CurveAsJson(curve)},
-      {"marks", Json::array({{{"words", fmt::format("mu = {}", mu)},
-                              {"false_accept_rate", at_mu.false_positive_rate},
-                              {"true_accept_rate", at_mu.true_positive_rate}}})}};
+  return {{"estimator", spec.label},
+          {"population", roc.population},
+          {"score", is_printed ? "psi, nats" : "excess entropy, nats"},
+          {"auc", RenderJsonBounds({roc.area.value, roc.area.interval})},
+          {"num_good", roc.good.size()},
+          {"num_bad", roc.bad.size()},
+          {"curve", CurveAsJson(curve)},
+          {"marks", Json::array({{{"words", fmt::format("mu = {}", mu)},
+                                  {"false_accept_rate", at_mu.false_positive_rate},
+                                  {"true_accept_rate", at_mu.true_positive_rate}}})}};
 }
 
 // Per setting, whether it is on the Pareto front: none fails and is refused as seldom, and one of the two

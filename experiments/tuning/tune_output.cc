@@ -29,7 +29,7 @@ std::string DescribeTrials(const StudyPlan& plan) {
 }
 
 // Of all trials of the tuning.
-std::string DescribeMissingTrials(const StudyPlan& plan, const TuneResult& result) {
+std::string DescribeMissingTuningTrials(const StudyPlan& plan, const TuneResult& result) {
   const Tuning& tuning = *plan.study.tuning;
   std::int64_t num_trials = 0, num_simulated = 0;
   const auto add = [&](const std::vector<SettingCount>& counts, int per_condition) {
@@ -51,8 +51,8 @@ Table MakeVerifiedTable(const TuneResult& result) {
                Column::Estimated("as tuned", kPercent), Column::Count("n"),
                Column::Number("optimism (tuned minus verified, % points)", {100.0, "", "+.2f"})}};
   const auto add = [&](const char* name, const ErrorCount& fresh, const ErrorCount& seen) {
-    table.rows.push_back(
-        {name, EstimateRate(fresh), fresh.n, EstimateRate(seen), seen.n, RateOf(seen) - RateOf(fresh)});
+    table.rows.push_back({name, EstimateRate(fresh), fresh.n, EstimateRate(seen), seen.n,
+                          ComputeRate(seen) - ComputeRate(fresh)});
   };
   add("failure", verified.Failure(), tuned.Failure());
   add("refusal", verified.Refusal(), tuned.Refusal());
@@ -108,7 +108,7 @@ std::string DescribeVerdict(const Tuning& tuning, const TuneResult& result) {
     return fmt::format("verified risk {:.4g}; bound {:.4g}, exceeded with probability {} at most",
                        Risk(tuning, verified), result.choice.risk_bound, tuning.delta);
   }
-  switch (VerdictOf(tuning, verified)) {
+  switch (DecideSetting(tuning, verified)) {
     case Verdict::kHolds:
       return "on fresh trials the target holds (95 % intervals)";
     case Verdict::kDoesNotHold:
@@ -139,7 +139,7 @@ Table MakeChosenTable(const Tuning& tuning, const SettingPlan& settings, const R
   for (size_t i = 0; i < chosen.size(); ++i) {
     const size_t s = chosen[i];
     const SettingCount& count = repetitions.reference[s];
-    const Verdict verdict = VerdictOf(tuning, count);
+    const Verdict verdict = DecideSetting(tuning, count);
     if (i >= kMaxChosenRows && verdict == Verdict::kHolds) continue;
     table.rows.push_back({names[s], repetitions.num_chosen[s], EstimateRate(count.Failure()),
                           EstimateRate(count.Refusal()), EstimateRate(count.FalseRefusal()), Name(verdict)});
@@ -155,7 +155,7 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
   std::string text =
       FormatParagraph(fmt::format("{}: {} settings of {}, {}", plan.study.name, result.settings.size(),
                                   tuning.estimator, DescribeTrials(plan))) +
-      FormatParagraph("Target: " + DescribeTarget(tuning)) + DescribeMissingTrials(plan, result);
+      FormatParagraph("Target: " + DescribeTarget(tuning)) + DescribeMissingTuningTrials(plan, result);
   if (!result.choice.setting) return text + FormatParagraph("Not reached: " + result.choice.why);
   text +=
       FormatParagraph(fmt::format("Tuned: {}{}; {}", result.settings[*result.choice.setting],
@@ -208,8 +208,8 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
   return text;
 }
 
-std::vector<std::pair<std::string, std::string>> ProvenanceOf(const StudyPlan& plan,
-                                                              const TuneResult& result) {
+std::vector<std::pair<std::string, std::string>> DescribeProvenance(const StudyPlan& plan,
+                                                                    const TuneResult& result) {
   const Tuning& tuning = *plan.study.tuning;
   const size_t s = result.choice.setting.value();
   const auto rates = [](const SettingCount& count) {

@@ -17,7 +17,7 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
                                const Repetitions& repetitions);
 
 // Where the tuned estimator comes from and what it was seen to do: (key, text) pairs for its file.
-std::vector<std::pair<std::string, std::string>> ProvenanceOf(const StudyPlan& plan,
-                                                              const TuneResult& result);
+std::vector<std::pair<std::string, std::string>> DescribeProvenance(const StudyPlan& plan,
+                                                                    const TuneResult& result);
 
 }  // namespace rcme

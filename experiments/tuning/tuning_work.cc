@@ -25,22 +25,22 @@ size_t FirstGroup(const StudyPlan& plan, Kind kind) {
   return static_cast<size_t>(kind) * plan.conditions.size();
 }
 
-Kind KindOf(const StudyPlan& plan, const ItemPlace& place) {
+Kind FindKind(const StudyPlan& plan, const ItemPlace& place) {
   return static_cast<Kind>(place.group / plan.conditions.size());
 }
 
-size_t ConditionOf(const StudyPlan& plan, const ItemPlace& place) {
+size_t FindConditionNumber(const StudyPlan& plan, const ItemPlace& place) {
   return place.group % plan.conditions.size();
 }
 
-TrialRange RangeOf(const StudyPlan& plan, Kind kind) {
+TrialRange FindTrialRange(const StudyPlan& plan, Kind kind) {
   const TuningTrials trials(*plan.study.tuning);
   if (kind == Kind::kExplore) return trials.explore;
   return kind == Kind::kCalibrate ? trials.calibrate : trials.verify;
 }
 
-TrialRange TrialsOf(const StudyPlan& plan, const ItemPlace& place) {
-  const TrialRange all = RangeOf(plan, KindOf(plan, place));
+TrialRange FindItemTrials(const StudyPlan& plan, const ItemPlace& place) {
+  const TrialRange all = FindTrialRange(plan, FindKind(plan, place));
   const auto first = all.first + static_cast<std::uint32_t>(place.item) * kTrialsOfItem;
   return {first, std::min(first + kTrialsOfItem, all.end)};
 }
@@ -69,7 +69,7 @@ TuningWork PlanWork(const StudyPlan& plan, const std::string& work, size_t num_k
   TuningWork made{
       {work, "block", Identity(plan), {}}, 2 * plan.conditions.size(), num_first * plan.conditions.size()};
   for (size_t k = 0; k < num_kinds; ++k) {
-    const TrialRange range = RangeOf(plan, static_cast<Kind>(k));
+    const TrialRange range = FindTrialRange(plan, static_cast<Kind>(k));
     const size_t num_items = (range.end - range.first + kTrialsOfItem - 1) / kTrialsOfItem;
     for (const Condition& condition : plan.conditions) {
       made.items.groups.push_back({fmt::format("{} of condition {}", kKinds[k], condition.index), num_items});
@@ -85,24 +85,19 @@ Json CountsAsJson(const std::vector<SettingCount>& counts) {
   return json;
 }
 
-// What no trials can have given is damage, whatever the checksums say.
-void RequirePossible(bool is_possible, const char* what) {
-  if (!is_possible) throw std::invalid_argument(fmt::format("its counts cannot be: {}", what));
-}
-
 // Of so many trials, or of those of them that could be simulated.
 void AddCounts(const Json& json, std::int64_t num_trials, bool is_drawn, std::vector<SettingCount>* counts) {
   RequireSize(json, counts->size());
   for (size_t s = 0; s < counts->size(); ++s) {
     RequireSize(json[s], 5);
     const std::int64_t n = CountFrom(json[s][0], num_trials);
-    RequirePossible(n == num_trials || is_drawn, "fewer trials than there are");
+    RequirePossible(n == num_trials || is_drawn, "counts", "fewer trials than there are");
     const auto number = [&](size_t i) { return CountFrom(json[s][i], n); };
     const SettingCount count{n, number(1), number(2), number(3), number(4)};
-    RequirePossible(count.failures + count.refusals <= n, "more failures and refusals than trials");
-    RequirePossible(count.false_refusals <= count.refusals, "more false refusals than refusals");
-    RequirePossible(count.false_refusals <= count.good, "more false refusals than good trials");
-    RequirePossible(count.good - count.false_refusals <= n - count.refusals,
+    RequirePossible(count.failures + count.refusals <= n, "counts", "more failures and refusals than trials");
+    RequirePossible(count.false_refusals <= count.refusals, "counts", "more false refusals than refusals");
+    RequirePossible(count.false_refusals <= count.good, "counts", "more false refusals than good trials");
+    RequirePossible(count.good - count.false_refusals <= n - count.refusals, "counts",
                     "more good trials than were refused or not");
     (*counts)[s] += count;
   }
@@ -125,12 +120,12 @@ VerifiedEstimator VerifiedFrom(const Json& json, std::int64_t n, std::int64_t nu
   const VerifiedEstimator one{
       {}, {number(0), n}, {number(1), n}, {number(2), n}, {number(3), number(4), number(5), number(6)}};
   const PairedCounts& paired = one.against_first;
-  RequirePossible(one.failure.errors + one.refusal.errors == one.failure_or_refusal.errors,
+  RequirePossible(one.failure.errors + one.refusal.errors == one.failure_or_refusal.errors, "counts",
                   "failures and refusals are not their sum");
-  RequirePossible(paired.n() == n, "the pairs are not the trials");
-  RequirePossible(paired.both + paired.second_only == one.failure_or_refusal.errors,
+  RequirePossible(paired.n() == n, "counts", "the pairs are not the trials");
+  RequirePossible(paired.both + paired.second_only == one.failure_or_refusal.errors, "counts",
                   "the pairs have other failures and refusals");
-  RequirePossible(paired.both + paired.first_only == num_bad_of_first,
+  RequirePossible(paired.both + paired.first_only == num_bad_of_first, "counts",
                   "the pairs have other failures and refusals of the first estimator");
   return one;
 }
@@ -142,7 +137,7 @@ void AddVerified(const Json& json, std::int64_t num_trials, bool is_drawn,
   RequireSize(json[0], 7);
   std::int64_t n = 0;  // of them could be simulated
   for (size_t i = 3; i < 7; ++i) n += CountFrom(json[0][i], num_trials - n);
-  RequirePossible(n == num_trials || is_drawn, "the pairs are not the trials");
+  RequirePossible(n == num_trials || is_drawn, "counts", "the pairs are not the trials");
   const std::int64_t num_bad_of_first = CountFrom(json[0][2], n);
   for (size_t e = 0; e < estimators->size(); ++e) {
     const VerifiedEstimator one = VerifiedFrom(json[e], n, num_bad_of_first);
@@ -185,16 +180,16 @@ void SetEntropies(const Json& json, size_t first, size_t num_trials, EntropiesOf
         if (!number.is_null()) (*entropies)[e][first + trial].*kEntropies[k] = NumberFrom(number);
       }
       const TrialEntropies& one = (*entropies)[e][first + trial];
-      RequirePossible(!(one.good_winner && one.bad_winner), "a trial has two winners");
+      RequirePossible(!(one.good_winner && one.bad_winner), "counts", "a trial has two winners");
     }
   }
 }
 
 std::string ComputeBlock(const StudyPlan& plan, const SettingPlan& settings, std::optional<size_t> tuned,
                          const ItemPlace& place) {
-  const StudyPlan one = OneCondition(plan, ConditionOf(plan, place));
-  const TrialRange trials = TrialsOf(plan, place);
-  const Kind kind = KindOf(plan, place);
+  const StudyPlan one = OneCondition(plan, FindConditionNumber(plan, place));
+  const TrialRange trials = FindItemTrials(plan, place);
+  const Kind kind = FindKind(plan, place);
   if (kind == Kind::kEntropies) return EntropiesAsJson(MeasureEntropies(one, trials)).dump();
   if (kind == Kind::kPlainCalls) {
     return VerifiedAsJson(VerifyEstimators(PlanWithTuned(one, settings, tuned.value()), trials)).dump();
@@ -203,7 +198,7 @@ std::string ComputeBlock(const StudyPlan& plan, const SettingPlan& settings, std
 }
 
 std::int64_t CountTrialsIn(const StudyPlan& plan, const ItemPlace& place) {
-  const TrialRange trials = TrialsOf(plan, place);
+  const TrialRange trials = FindItemTrials(plan, place);
   return trials.end - trials.first;
 }
 
@@ -224,7 +219,7 @@ void AddRepetition(const Json& json, const Tuning& tuning, Repetitions* repetiti
   }
   const auto chosen = static_cast<size_t>(CountFrom(json, std::ssize(repetitions->num_chosen) - 1));
   ++repetitions->num_chosen[chosen];
-  const Verdict verdict = VerdictOf(tuning, repetitions->reference[chosen]);
+  const Verdict verdict = DecideSetting(tuning, repetitions->reference[chosen]);
   repetitions->num_violated += verdict == Verdict::kDoesNotHold;
   repetitions->num_undecided += verdict == Verdict::kUndecided;
 }
@@ -276,7 +271,8 @@ TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const 
                       const WorkResults& results) {
   const auto count = [&](TrialRange range) {
     Kind kind = Kind::kExplore;
-    while (RangeOf(plan, kind).first != range.first) kind = static_cast<Kind>(static_cast<size_t>(kind) + 1);
+    while (FindTrialRange(plan, kind).first != range.first)
+      kind = static_cast<Kind>(static_cast<size_t>(kind) + 1);
     const size_t first = FirstGroup(plan, kind), num_conditions = plan.conditions.size();
     SettingCounts counts(num_conditions, std::vector<SettingCount>(settings.settings.size()));
     ReadResults(work.items, results, first, first + num_conditions,
@@ -302,7 +298,7 @@ TuningSource CountsIn(const StudyPlan& plan, const SettingPlan& settings, const 
 }
 
 EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningWork& work, const WorkResults& results) {
-  const TrialRange range = RangeOf(plan, Kind::kEntropies);
+  const TrialRange range = FindTrialRange(plan, Kind::kEntropies);
   const size_t num_trials = range.end - range.first, first = FirstGroup(plan, Kind::kEntropies);
   EntropiesOfTrials entropies(plan.estimators.size(),
                               std::vector<TrialEntropies>(num_trials * plan.conditions.size()));

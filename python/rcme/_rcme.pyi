@@ -1,4 +1,4 @@
-"""The half of the package that is C++; python/module.cc."""
+"""The half of the package that is C++; python/module.cc and the sources beside it."""
 
 from collections.abc import Callable
 from typing import Any

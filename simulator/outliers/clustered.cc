@@ -35,7 +35,7 @@ class ClusteredOutliers : public OutlierLaw {
     }
     for (const std::uint32_t point : points) {
       const Correspondence& centre = centres[rng.IntegerBelow(static_cast<std::uint32_t>(num_clusters_))];
-      const Correspondence noise = NoiseOf(matched, point);
+      const Correspondence noise = ComputeMatchNoise(matched, point);
       matched.matches[point] = DrawMatch(matched.matches[point], noise, centre, matched.scene, rng);
     }
   }

@@ -78,7 +78,7 @@ class EpipolarOutliers : public OutlierLaw {
     }
     const auto num_points = static_cast<std::uint32_t>(scene.points_in_cam1.size());
     for (const std::uint32_t point : points) {
-      const Correspondence noise = NoiseOf(matched, point);
+      const Correspondence noise = ComputeMatchNoise(matched, point);
       std::uint32_t on_ray_of = point;
       std::optional<Eigen::Vector2d> x2_px = DrawOnRay(scene, point, rng);
       for (int draw = 0; !x2_px; ++draw) {

@@ -46,7 +46,7 @@ class MovingObject : public OutlierLaw {
     if (points.empty()) return;
     const std::vector<Correspondence> exact = DrawObject(points.size(), matched.scene, rng);
     for (size_t k = 0; k < points.size(); ++k) {
-      const Correspondence noise = NoiseOf(matched, points[k]);
+      const Correspondence noise = ComputeMatchNoise(matched, points[k]);
       matched.matches[points[k]] = {exact[k].x1_px + noise.x1_px, exact[k].x2_px + noise.x2_px};
     }
   }

@@ -22,7 +22,7 @@ Eigen::Vector2d CancelInImage1(const Camera& camera1, const Eigen::Vector3d& poi
 
 }  // namespace
 
-PointConstraint ConstraintOf(const ViewPair& view, const Eigen::Vector3d& X) {
+PointConstraint ComputePointConstraint(const ViewPair& view, const Eigen::Vector3d& X) {
   const RelativePose& pose = view.cam2_from_cam1_true;
   const Eigen::Matrix<double, 2, 3> P2 = ProjectionJacobian(view.camera2, view.InCamera2(X));
   PointConstraint constraint;
@@ -38,7 +38,7 @@ PointConstraint ConstraintOf(const ViewPair& view, const Eigen::Vector3d& X) {
   return constraint;
 }
 
-Eigen::Matrix3d RotationInformationOf(const ViewPair& view, const Eigen::Vector3d& X, double sigma_px) {
+Eigen::Matrix3d ComputeRotationInformation(const ViewPair& view, const Eigen::Vector3d& X, double sigma_px) {
   const Eigen::Matrix3d& R = view.cam2_from_cam1_true.R;
   const Eigen::Matrix<double, 2, 3> P2 = ProjectionJacobian(view.camera2, R * X);
   Eigen::Matrix<double, 2, 4> gradients_px;  // of two numbers: d x2 less what d x1 explains

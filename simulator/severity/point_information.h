@@ -16,11 +16,11 @@ struct PointConstraint {
   Eigen::Matrix<double, 1, 5> gradient_motion;
   Eigen::Vector2d line_direction;  // in image 2: where the point moves with its depth (not of length 1)
 };
-PointConstraint ConstraintOf(const ViewPair& view, const Eigen::Vector3d& point_in_cam1);
+PointConstraint ComputePointConstraint(const ViewPair& view, const Eigen::Vector3d& point_in_cam1);
 
 // Without translation the depth is free and two numbers are left: the information on the rotation (3x3,
 // rad^-2).
-Eigen::Matrix3d RotationInformationOf(const ViewPair& view, const Eigen::Vector3d& point_in_cam1,
-                                      double sigma_px);
+Eigen::Matrix3d ComputeRotationInformation(const ViewPair& view, const Eigen::Vector3d& point_in_cam1,
+                                           double sigma_px);
 
 }  // namespace rcme

@@ -39,8 +39,8 @@ void MeasureImages(const Scene& scene, const Observation& observation, Severity*
 
 void MeasureParallax(const Scene& scene, const Points& points, Severity* severity) {
   std::vector<double> angles_deg = ParallaxesDeg(scene, points);
-  severity->parallax_median_deg = QuantileOf(angles_deg, 0.5);
-  severity->parallax_p10_deg = QuantileOf(angles_deg, 0.1);
+  severity->parallax_median_deg = ComputeQuantile(angles_deg, 0.5);
+  severity->parallax_p10_deg = ComputeQuantile(angles_deg, 0.1);
 }
 
 double Planarity(const Points& points) {
@@ -81,7 +81,7 @@ void MeasureMotionInformation(const Scene& scene, const Points& points, double s
   Matrix5d information = Matrix5d::Zero();
   Moments chance;
   for (const Eigen::Vector3d& point : points) {
-    const PointConstraint constraint = ConstraintOf(scene, point);
+    const PointConstraint constraint = ComputePointConstraint(scene, point);
     information += constraint.gradient_motion.transpose() * constraint.gradient_motion /
                    (sigma_px * sigma_px * constraint.gradient_px.squaredNorm());
     chance.Add(
@@ -106,7 +106,8 @@ void MeasureMotionInformation(const Scene& scene, const Points& points, double s
 void MeasureRotationInformation(const Scene& scene, const Points& points, double sigma_px,
                                 Severity* severity) {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& point : points) information += RotationInformationOf(scene, point, sigma_px);
+  for (const Eigen::Vector3d& point : points)
+    information += ComputeRotationInformation(scene, point, sigma_px);
   const Eigen::Vector3d eigenvalues =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(information).eigenvalues();
   severity->log10_condition = std::log10(eigenvalues(2) / eigenvalues(0));

@@ -209,7 +209,7 @@ template <typename Matches>
 void RefineWinnerIn(const Matches& matches, const Trial& trial) {
   MotionEstimate estimate;
   RefineWinner(matches, {}, InstantiateModel<EightPoint>(trial.data.problem, trial.winner),
-               matches.SetOf(IndicesOf(trial.support)), &estimate);
+               matches.MakeSet(ListIndices(trial.support)), &estimate);
   DoNotOptimize(estimate);
 }
 void RefineWinnerFast(const Trial& trial) {

@@ -9,7 +9,7 @@
 namespace rcme {
 namespace {
 
-StreamName NameOf(std::uint32_t trial) { return {1, 0, trial, 0}; }
+StreamName MakeTrialName(std::uint32_t trial) { return {1, 0, trial, 0}; }
 
 }  // namespace
 
@@ -24,11 +24,11 @@ TrialData MakeBenchmarkData(int num_matches, std::uint32_t trial, const std::str
                  .sources[0]
                  .second;
   }
-  return source->Make(NameOf(trial));
+  return source->Make(MakeTrialName(trial));
 }
 
 BenchmarkTrial::BenchmarkTrial(int num_matches, std::uint32_t trial)
-    : name(NameOf(trial)), data(MakeBenchmarkData(num_matches, trial)), blocks(data.problem) {
+    : name(MakeTrialName(trial)), data(MakeBenchmarkData(num_matches, trial)), blocks(data.problem) {
   for (const Correspondence& match : data.problem.matches) {
     x1.emplace_back(static_cast<float>(match.x1_px.x()), static_cast<float>(match.x1_px.y()));
     x2.emplace_back(static_cast<float>(match.x2_px.x()), static_cast<float>(match.x2_px.y()));
@@ -39,7 +39,7 @@ BenchmarkTrial::BenchmarkTrial(int num_matches, std::uint32_t trial)
   for (int i = 0; i < num_matches; ++i) {
     if (data.truth.is_inlier_true[static_cast<size_t>(i)]) inliers.push_back(i);
   }
-  inlier_mask = MaskOf(inliers, blocks);
+  inlier_mask = MakeMask(inliers, blocks);
   start = Retract(*data.truth.cam2_from_cam1_true, Vector5d::Constant(0.01));
   refined = RefineBySampson(blocks, inlier_mask, start, Loss::kSquared);
 }

@@ -39,38 +39,38 @@ struct Stages {
   std::vector<ExplainedMode> modes;
 };
 
-const Stages& StagesOf(const BenchmarkTrial& trial) {
+const Stages& FindStages(const BenchmarkTrial& trial) {
   static std::map<std::uint32_t, Stages> known;  // by trial
   return known.try_emplace(trial.name.trial, trial).first->second;
 }
 
 void Search(const BenchmarkTrial& trial) {
-  const Stages& stages = StagesOf(trial);
+  const Stages& stages = FindStages(trial);
   RandomStream rng = StreamFor(trial.name, StreamPurpose::kSampling);
   DoNotOptimize(SearchHypotheses(trial.blocks, stages.score_matches, stages.options, rng));
 }
 void Modes(const BenchmarkTrial& trial) {
-  const Stages& stages = StagesOf(trial);
+  const Stages& stages = FindStages(trial);
   DoNotOptimize(FindModes(trial.blocks, stages.prior, stages.search.candidates,
                           static_cast<size_t>(stages.options.num_modes)));
 }
 void Explanations(const BenchmarkTrial& trial) {
-  const Stages& stages = StagesOf(trial);
+  const Stages& stages = FindStages(trial);
   DoNotOptimize(ExplainMatches(trial.data.problem, trial.blocks, stages.prior, stages.options, stages.found));
 }
 void Weights(const BenchmarkTrial& trial) {
-  const Stages& stages = StagesOf(trial);
+  const Stages& stages = FindStages(trial);
   const MotionBounds bounds{kRadPerDeg * stages.options.max_rotation_error_deg,
                             kRadPerDeg * stages.options.max_direction_error_deg};
   DoNotOptimize(WeighModes(stages.modes, bounds, stages.prior, stages.options));
 }
 void ComputeSandwich(const BenchmarkTrial& trial) {
-  const ExplainedMode& mode = StagesOf(trial).modes.front();
+  const ExplainedMode& mode = FindStages(trial).modes.front();
   const Matrix5d inverse = InverseOfObserved(trial.blocks, mode.mode);
   DoNotOptimize(SandwichCovariance(mode.mode, mode.explanation, inverse));
 }
 void MixtureSums200(const BenchmarkTrial& trial) {
-  const Mode& mode = StagesOf(trial).modes.front().mode;
+  const Mode& mode = FindStages(trial).modes.front().mode;
   for (int i = 0; i < kNumHypotheses; ++i)
     DoNotOptimize(SumMixture(trial.blocks, mode.used, mode.pose, mode.mixture));
 }

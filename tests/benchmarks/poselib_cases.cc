@@ -12,7 +12,7 @@ namespace rcme {
 #ifdef RCME_HAS_POSELIB
 namespace {
 
-poselib::Camera CameraOf(const Camera& camera) {
+poselib::Camera MakePoseLibCamera(const Camera& camera) {
   return {"PINHOLE", {camera.fx, camera.fy, camera.cx, camera.cy}, -1, -1};
 }
 
@@ -38,7 +38,8 @@ void EstimateRelativePose(const BenchmarkTrial& trial) {
     x1.push_back(match.x1_px);
     x2.push_back(match.x2_px);
   }
-  benchmark::DoNotOptimize(CallPoseLib(x1, x2, CameraOf(problem.camera1), CameraOf(problem.camera2)));
+  benchmark::DoNotOptimize(
+      CallPoseLib(x1, x2, MakePoseLibCamera(problem.camera1), MakePoseLibCamera(problem.camera2)));
 }
 
 }  // namespace

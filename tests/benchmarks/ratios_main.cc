@@ -47,8 +47,8 @@ Extent Quick() {
 Extent Tiny() { return {6, 1e-6, 1, {100, 200}, {8, 16}, {10, 20}, 4}; }
 
 // One run of a case is one call per trial.
-Task TaskOf(const std::string& name, const BenchmarkCase& timed, const std::vector<BenchmarkTrial>& trials,
-            int num_trials) {
+Task MakeTask(const std::string& name, const BenchmarkCase& timed, const std::vector<BenchmarkTrial>& trials,
+              int num_trials) {
   const auto run = [&trials, num_trials, call = timed.call] {
     for (int i = 0; i < num_trials; ++i) call(trials[static_cast<size_t>(i)]);
   };
@@ -75,15 +75,15 @@ void AddGrowingProblems(const Extent& extent, const std::vector<BenchmarkCase>& 
   const int num_trials = std::min(extent.num_trials, 4);
   for (const int n : extent.num_matches) {
     trials[n] = MakeBenchmarkTrials(n, num_trials);
-    tasks->push_back(TaskOf(SizedName("n", n), PrcmeCase(kNumHypotheses), trials[n], num_trials));
+    tasks->push_back(MakeTask(SizedName("n", n), PrcmeCase(kNumHypotheses), trials[n], num_trials));
     tasks->push_back(
-        TaskOf(SizedName("n_scoring", n), FindCase(cases, "score_as_printed/fast"), trials[n], num_trials));
+        MakeTask(SizedName("n_scoring", n), FindCase(cases, "score_as_printed/fast"), trials[n], num_trials));
     tasks->push_back(
-        TaskOf(SizedName("n_calibrated", n), CalibratedCase("rcme_calibrated"), trials[n], num_trials));
+        MakeTask(SizedName("n_calibrated", n), CalibratedCase("rcme_calibrated"), trials[n], num_trials));
   }
   for (const int iterations : extent.num_iterations) {
     tasks->push_back(
-        TaskOf(SizedName("iterations", iterations), PrcmeCase(iterations), BenchmarkTrials(), num_trials));
+        MakeTask(SizedName("iterations", iterations), PrcmeCase(iterations), BenchmarkTrials(), num_trials));
   }
 }
 
@@ -114,7 +114,7 @@ void AddStudies(const Extent& extent, std::vector<Task>* tasks) {
 std::vector<Task> MakeTasks(const Extent& extent, const std::vector<BenchmarkCase>& cases) {
   std::vector<Task> tasks;
   for (const BenchmarkCase& timed : cases)
-    tasks.push_back(TaskOf(timed.name, timed, BenchmarkTrials(), extent.num_trials));
+    tasks.push_back(MakeTask(timed.name, timed, BenchmarkTrials(), extent.num_trials));
   AddGrowingProblems(extent, cases, &tasks);
   AddStudies(extent, &tasks);
   tasks.push_back(
@@ -152,7 +152,8 @@ PerRound ShareOfPeak(const PerRound& scan_seconds, int operations, const PerRoun
   return share;
 }
 
-std::vector<PerRound> SeriesOf(const Times& times, const std::string& series, const std::vector<int>& sizes) {
+std::vector<PerRound> ListSeries(const Times& times, const std::string& series,
+                                 const std::vector<int>& sizes) {
   std::vector<PerRound> seconds;
   for (const int size : sizes) seconds.push_back(times.at(SizedName(series, size)));
   return seconds;
@@ -220,7 +221,7 @@ void AddExponents(const Extent& extent, const Times& times, std::vector<Ratio>* 
     ratios->push_back({"exponent_" + series,
                        fmt::format("slope of log time over log size, sizes {} to {}: {}", sizes.front(),
                                    sizes.back(), meaning),
-                       Exponent(sizes, SeriesOf(times, series, sizes))});
+                       Exponent(sizes, ListSeries(times, series, sizes))});
   };
   add("n", extent.num_matches, "whole call of prcme (as printed, N = 200) over n");
   add("n_scoring", extent.num_matches, "scoring of 200 hypotheses as printed over n");
@@ -239,24 +240,24 @@ std::vector<Ratio> MakeRatios(const Extent& extent, const Times& times) {
   return ratios;
 }
 
-ordered_json BoundsOf(const MeasuredQuantile& median) {
+ordered_json RenderBounds(const MeasuredQuantile& median) {
   return {{"lower", median.interval.lower}, {"upper", median.interval.upper}};
 }
 
 ordered_json Described(const PerRound& values, double unit = 1.0) {
   PerRound scaled = values;
   for (double& value : scaled) value *= unit;
-  const MeasuredQuantile median = MedianOf(scaled);
-  ordered_json described = BoundsOf(median);
+  const MeasuredQuantile median = MeasureMedian(scaled);
+  ordered_json described = RenderBounds(median);
   described["median"] = median.value;
   return described;
 }
 
 void WriteRatios(const std::vector<Ratio>& ratios, ordered_json* out) {
   for (const Ratio& ratio : ratios) {
-    const MeasuredQuantile median = MedianOf(ratio.values);
+    const MeasuredQuantile median = MeasureMedian(ratio.values);
     (*out)["ratios"][ratio.name] = median.value;
-    (*out)["intervals"][ratio.name] = BoundsOf(median);
+    (*out)["intervals"][ratio.name] = RenderBounds(median);
     (*out)["meanings"][ratio.name] = ratio.meaning;
   }
 }

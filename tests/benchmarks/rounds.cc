@@ -16,7 +16,7 @@ double Now(Task::Clock clock) {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double SecondsOf(const Task& task, int num_runs) {
+double MeasureSeconds(const Task& task, int num_runs) {
   const double start = Now(task.clock);
   for (int i = 0; i < num_runs; ++i) task.run();
   return Now(task.clock) - start;
@@ -28,9 +28,9 @@ struct Repetition {
 };
 
 // The second of two runs counts: the first one fills caches.
-Repetition RepetitionOf(const Task& task, double least_seconds) {
+Repetition ChooseRepetition(const Task& task, double least_seconds) {
   task.run();
-  const double seconds = std::max(SecondsOf(task, 1), 1e-9);
+  const double seconds = std::max(MeasureSeconds(task, 1), 1e-9);
   return {std::max(1, static_cast<int>(std::ceil(least_seconds / seconds))), seconds < 10.0 * least_seconds};
 }
 
@@ -39,7 +39,7 @@ Repetition RepetitionOf(const Task& task, double least_seconds) {
 std::map<std::string, PerRound> MeasureRounds(const std::vector<Task>& tasks, int num_rounds,
                                               double least_seconds) {
   std::vector<Repetition> repetitions;
-  for (const Task& task : tasks) repetitions.push_back(RepetitionOf(task, least_seconds));
+  for (const Task& task : tasks) repetitions.push_back(ChooseRepetition(task, least_seconds));
   std::vector<size_t> order(tasks.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::mt19937 rng(1);
@@ -50,7 +50,7 @@ std::map<std::string, PerRound> MeasureRounds(const std::vector<Task>& tasks, in
       const Task& task = tasks[i];
       const auto [num_runs, warms_up] = repetitions[i];
       if (warms_up) task.run();
-      seconds[task.name].push_back(SecondsOf(task, num_runs) / (num_runs * task.num_calls));
+      seconds[task.name].push_back(MeasureSeconds(task, num_runs) / (num_runs * task.num_calls));
     }
   }
   return seconds;
@@ -76,6 +76,6 @@ PerRound Exponent(const std::vector<int>& sizes, const std::vector<PerRound>& se
   return slopes;
 }
 
-MeasuredQuantile MedianOf(const PerRound& values) { return MeasureQuantile(values, 0.5); }
+MeasuredQuantile MeasureMedian(const PerRound& values) { return MeasureQuantile(values, 0.5); }
 
 }  // namespace rcme

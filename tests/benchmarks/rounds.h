@@ -36,6 +36,6 @@ PerRound Quotient(const PerRound& numerator, const PerRound& denominator);
 PerRound Exponent(const std::vector<int>& sizes, const std::vector<PerRound>& seconds);
 
 // Median over rounds with its distribution-free interval, confidence 95 % (from six rounds on).
-MeasuredQuantile MedianOf(const PerRound& values);
+MeasuredQuantile MeasureMedian(const PerRound& values);
 
 }  // namespace rcme

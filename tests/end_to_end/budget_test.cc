@@ -47,10 +47,10 @@ TEST_F(BudgetProgram, WritesTheStudyWithItsEfforts) {
   const Study before = ParseStudy(SmallStudyYaml(), "small.yaml"), after = LoadStudy(out_);
   ASSERT_EQ(after.estimators.size(), 2u);
   for (size_t e = 0; e < 2; ++e) {
-    EXPECT_GT(std::stoi(OptionOf(after.estimators[e], "num_iterations")), 20) << after.estimators[e].label;
+    EXPECT_GT(std::stoi(ReadOption(after.estimators[e], "num_iterations")), 20) << after.estimators[e].label;
     for (const auto& [option, value] : before.estimators[e].options) {
       if (option == "num_iterations") continue;
-      EXPECT_EQ(OptionOf(after.estimators[e], option), value) << option;
+      EXPECT_EQ(ReadOption(after.estimators[e], option), value) << option;
     }
     EXPECT_EQ(after.estimators[e].budget_ms.value_or(kTimeMs),
               kTimeMs);  // not there where it was not reached

@@ -183,7 +183,7 @@ std::string WithBlanks(std::string rows) {
   return rows;
 }
 
-std::vector<std::string> LinesOf(const std::string& text) {
+std::vector<std::string> SplitLines(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -207,7 +207,7 @@ TEST(Estimate, SaysWhatItRestsOn) {
   EXPECT_THAT(too_large.out, testing::HasSubstr("--sigma 0."));
   EXPECT_THAT(too_large.out, testing::HasSubstr("not stated by this estimator"));
   // No line is wider than a terminal, but for the estimator's own sentence, the first.
-  const std::vector<std::string> lines = LinesOf(RunRcme({"estimate", path}).out);
+  const std::vector<std::string> lines = SplitLines(RunRcme({"estimate", path}).out);
   for (size_t i = 1; i < lines.size(); ++i) EXPECT_LE(lines[i].size(), 100u) << lines[i];
 }
 
@@ -257,13 +257,13 @@ TEST(Estimate, AFolderGivesALineForEachFileAndFailsForABadOne) {
   const ProgramResult lines = RunRcme({"estimate", folder.Path("pairs"), "--json", "--estimator", "rcme"});
   EXPECT_EQ(lines.exit_code, 2);
   std::vector<std::string> statuses;
-  for (const std::string& line : LinesOf(lines.out))
+  for (const std::string& line : SplitLines(lines.out))
     statuses.push_back(nlohmann::json::parse(line)["status"]);
   EXPECT_EQ(statuses, (std::vector<std::string>{"ok", "ok", "invalid_input", "too_few_matches"}));
   // Each answer is that of its file alone.
   nlohmann::json alone = Estimate(folder.Path("pairs/b.csv"), "rcme");
   alone["file"] = folder.Path("pairs/b.csv");
-  EXPECT_EQ(nlohmann::json::parse(LinesOf(lines.out)[1]), alone);
+  EXPECT_EQ(nlohmann::json::parse(SplitLines(lines.out)[1]), alone);
 }
 
 }  // namespace

@@ -37,12 +37,12 @@ class Parts : public testing::Test {
   };
 
   std::string Part(int number) const { return folder_.Path(fmt::format("part_{}.json", number)); }
-  Words PartsOf(int count) const {
+  Words ListParts(int count) const {
     Words parts;
     for (int number = 1; number <= count; ++number) parts.push_back(Part(number));
     return parts;
   }
-  Words ShardOf(const Work& work, int number, int count) const {
+  Words MakeShardCommand(const Work& work, int number, int count) const {
     return work.command + Words{"--shard", fmt::format("{}/{}", number, count), "--out", Part(number)};
   }
   static void KillAfter(const Words& command, std::chrono::milliseconds time) {
@@ -53,7 +53,7 @@ class Parts : public testing::Test {
   // One round of all shards, of which three are killed, one is cut off and one is lost; `merge` then names
   // that.
   void RunRound(const Work& work, int count, const Words& more, int exit_code) const {
-    const auto shard = [&](int number) { return ShardOf(work, number, count) + more; };
+    const auto shard = [&](int number) { return MakeShardCommand(work, number, count) + more; };
     for (const int number : {2, 3, 5}) {
       if (number <= count) KillAfter(shard(number), std::chrono::milliseconds(40 * number));
     }
@@ -68,7 +68,7 @@ class Parts : public testing::Test {
   int RunRoundsOfFile(const Work& work, int count) const {
     const Words merge = work.command + Words{"--out", folder_.Path("merged"), "--round", round_, "--merge"};
     for (int num_rounds = 1; num_rounds < 15; ++num_rounds) {
-      const ProgramResult merged = RunRcme(merge + PartsOf(count));
+      const ProgramResult merged = RunRcme(merge + ListParts(count));
       if (merged.exit_code == 0) return num_rounds;
       EXPECT_EQ(merged.exit_code, 75) << merged.err;
       RunRound(work, count, {"--round", round_}, 0);
@@ -79,7 +79,7 @@ class Parts : public testing::Test {
   void LoseAndMakeAgain(const Work& work, int count) const {
     const std::string lost = folder_.Path("lost");
     std::filesystem::rename(Part(4), lost);
-    Words others = PartsOf(count);
+    Words others = ListParts(count);
     others.erase(others.begin() + 3);
     const std::string out = folder_.Path("no");
     const ProgramResult merge = RunRcme(work.command + Words{"--out", out, "--merge"} + others);
@@ -87,7 +87,7 @@ class Parts : public testing::Test {
     EXPECT_EQ(merge.out, "4\n");
     EXPECT_FALSE(std::filesystem::exists(out));
     const Words round = work.has_round_files ? Words{"--round", round_} : Words{};
-    const Words again = ShardOf(work, 4, count) + round;
+    const Words again = MakeShardCommand(work, 4, count) + round;
     const ProgramResult first = RunRcme(again);
     EXPECT_EQ(first.exit_code, work.has_rounds ? 75 : 0) << first.err;
     if (work.has_rounds) {
@@ -109,10 +109,10 @@ class Parts : public testing::Test {
     for (const int count : counts) {
       for (int number = 1; number <= count; ++number) std::filesystem::remove(Part(number));
       RunRound(work, count, {}, work.has_rounds ? 75 : 0);
-      if (work.has_rounds) RunRound(work, count, Words{"--merged"} + PartsOf(count), 0);
+      if (work.has_rounds) RunRound(work, count, Words{"--merged"} + ListParts(count), 0);
       EXPECT_TRUE(!work.has_round_files || RunRoundsOfFile(work, count) >= 2);
       if (count >= 7) LoseAndMakeAgain(work, count);
-      Words parts = PartsOf(count);
+      Words parts = ListParts(count);
       std::ranges::reverse(parts);
       std::vector<Words> groupings = {parts};
       if (count == 7 && work.has_rounds) {
@@ -172,11 +172,12 @@ TEST_F(Parts, OfATuningThatCertifiesNothing) {
   const ProgramResult one = RunRcme(command + Words{"--out", out, "--figures", whole});
   EXPECT_EQ(one.exit_code, 2) << one.err;
   const Work work{command, {}, true};
-  for (int number = 1; number <= 2; ++number) EXPECT_EQ(RunRcme(ShardOf(work, number, 2)).exit_code, 75);
-  const ProgramResult second = RunRcme(ShardOf(work, 1, 2) + Words{"--merged"} + PartsOf(2));
+  for (int number = 1; number <= 2; ++number)
+    EXPECT_EQ(RunRcme(MakeShardCommand(work, number, 2)).exit_code, 75);
+  const ProgramResult second = RunRcme(MakeShardCommand(work, 1, 2) + Words{"--merged"} + ListParts(2));
   EXPECT_EQ(second.exit_code, 0) << second.err;
   const ProgramResult merge =
-      RunRcme(command + Words{"--out", out, "--figures", merged, "--merge"} + PartsOf(2));
+      RunRcme(command + Words{"--out", out, "--figures", merged, "--merge"} + ListParts(2));
   EXPECT_EQ(merge.exit_code, 2);
   EXPECT_EQ(merge.out, one.out);
   EXPECT_EQ(ReadBytes(merged + "/tune.json"), ReadBytes(whole + "/tune.json"));

@@ -34,7 +34,7 @@ std::string Csv(const std::string& run) {
 // So many trials that no run of a test ends.
 constexpr int kEndless = 2'000'000'000;
 
-std::uintmax_t SizeOf(const std::string& path) {
+std::uintmax_t ReadFileSize(const std::string& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   return error ? 0 : size;
@@ -44,9 +44,9 @@ std::uintmax_t SizeOf(const std::string& path) {
 class EndlessRun {
  public:
   EndlessRun(const std::string& study, const std::string& out, std::uintmax_t growth)
-      : size_before_(SizeOf(out)), program_(RcmeCommand(RunArguments(study, out, kEndless, 2))) {
+      : size_before_(ReadFileSize(out)), program_(RcmeCommand(RunArguments(study, out, kEndless, 2))) {
     const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(5);
-    while (SizeOf(out) < size_before_ + growth && !program_.HasEnded() &&
+    while (ReadFileSize(out) < size_before_ + growth && !program_.HasEnded() &&
            std::chrono::steady_clock::now() < limit) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }

@@ -18,7 +18,7 @@ constexpr std::uint32_t kNumTrials = 12;
 MotionProblem MakeFixedProblem(std::uint32_t trial) { return TwoCameraProblem(120, 0.5, 0.3, trial); }
 
 // Every number of an estimate, as bits.
-std::vector<std::uint64_t> BitsOf(const MotionEstimate& e) {
+std::vector<std::uint64_t> ListBits(const MotionEstimate& e) {
   std::vector<std::uint64_t> bits;
   const auto add = [&bits](double value) { bits.push_back(std::bit_cast<std::uint64_t>(value)); };
   for (const RelativePose& pose : {e.cam2_from_cam1, e.initial_pose}) {
@@ -50,7 +50,7 @@ class Determinism
   }
   static std::vector<std::uint64_t> Estimate(const MotionEstimator& estimator, std::uint32_t trial) {
     RandomStream rng({1, 9, trial, 4});
-    return BitsOf(estimator.Estimate(MakeFixedProblem(trial), rng));
+    return ListBits(estimator.Estimate(MakeFixedProblem(trial), rng));
   }
 };
 
@@ -91,7 +91,7 @@ TEST_P(Determinism, TheSameBytesFromEveryInstructionSet) {
   });
 }
 
-std::string NameOf(const testing::TestParamInfo<Determinism::ParamType>& instance) {
+std::string FormatInstance(const testing::TestParamInfo<Determinism::ParamType>& instance) {
   const bool is_printed = std::get<Reading>(instance.param) == Reading::kAsPrinted;
   const bool is_fast = std::get<Implementation>(instance.param) == Implementation::kFast;
   return std::get<std::string>(instance.param) + (is_printed ? "_printed" : "_rank_aware") +
@@ -103,13 +103,13 @@ INSTANTIATE_TEST_SUITE_P(Estimators, Determinism,
                                           testing::Values(Reading::kAsPrinted, Reading::kRankAware),
                                           testing::Values(Implementation::kFast, Implementation::kReference),
                                           testing::Values(MinimalSolver::kEightPoint)),
-                         NameOf);
+                         FormatInstance);
 INSTANTIATE_TEST_SUITE_P(FivePoint, Determinism,
                          testing::Combine(testing::Values("standard", "rcme"),
                                           testing::Values(Reading::kAsPrinted, Reading::kRankAware),
                                           testing::Values(Implementation::kFast),
                                           testing::Values(MinimalSolver::kFivePoint)),
-                         NameOf);
+                         FormatInstance);
 
 }  // namespace
 }  // namespace rcme

@@ -47,8 +47,9 @@ Cause CauseAfterTheLoop(const Variant& variant, const MotionProblem& problem, co
 constexpr const char* kMissedModel = "missed model";
 
 template <typename Solver>
-Cause FindCauseOf(const Variant& variant, const MotionProblem& problem, std::uint32_t trial,
-                  Difference difference, const MotionEstimate& fast, const MotionEstimate& reference) {
+Cause FindDifferenceCause(const Variant& variant, const MotionProblem& problem, std::uint32_t trial,
+                          Difference difference, const MotionEstimate& fast,
+                          const MotionEstimate& reference) {
   if (difference == Difference::kMissedModel) return {kMissedModel, 0.0};
   const RansacOptions options = variant.Options();
   const bool tests_sample = variant.estimator == "rcme" && Solver::kSampleTestDof > 0;
@@ -66,8 +67,8 @@ Cause FindCauseOf(const Variant& variant, const MotionProblem& problem, std::uin
 Cause FindCause(const Variant& variant, const MotionProblem& problem, std::uint32_t trial,
                 Difference difference, const MotionEstimate& fast, const MotionEstimate& reference) {
   return variant.solver == MinimalSolver::kFivePoint
-             ? FindCauseOf<FivePoint>(variant, problem, trial, difference, fast, reference)
-             : FindCauseOf<EightPoint>(variant, problem, trial, difference, fast, reference);
+             ? FindDifferenceCause<FivePoint>(variant, problem, trial, difference, fast, reference)
+             : FindDifferenceCause<EightPoint>(variant, problem, trial, difference, fast, reference);
 }
 
 struct Disagreement {

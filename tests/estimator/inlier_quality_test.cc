@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-InlierScore ScoreOf(const std::vector<double>& entropies) {
+InlierScore MakeScore(const std::vector<double>& entropies) {
   InlierScore score;
   for (const double h : entropies) score.AddInlier(h);
   return score;
@@ -27,7 +27,7 @@ TEST(InlierScore, WelfordAgreesWithTwoPasses) {
     const long double mean = sum / 500.0L;
     long double sum_squares = 0.0L;
     for (const double h : entropies) sum_squares += (h - mean) * (h - mean);
-    const InlierScore score = ScoreOf(entropies);
+    const InlierScore score = MakeScore(entropies);
     EXPECT_EQ(score.num_inliers, 500);
     EXPECT_NEAR(score.mean_entropy, static_cast<double>(mean), 1e-13 * (1.0 + std::abs(offset)));
     EXPECT_NEAR(score.sum_squares, static_cast<double>(sum_squares), 1e-9 * static_cast<double>(sum_squares));
@@ -35,14 +35,14 @@ TEST(InlierScore, WelfordAgreesWithTwoPasses) {
 }
 
 TEST(InlierScore, MeanOfNegativeEntropiesIsNegative) {
-  EXPECT_DOUBLE_EQ(ScoreOf({-4.0, -2.0, -3.0}).mean_entropy, -3.0);
+  EXPECT_DOUBLE_EQ(MakeScore({-4.0, -2.0, -3.0}).mean_entropy, -3.0);
 }
 
 TEST(ZStatistic, ByHand) {
   // Mean 2, s = 2 (n - 1 = 2), s / sqrt(3): Z = (2 - 1) sqrt(3) / 2.
-  EXPECT_DOUBLE_EQ(ZStatistic(ScoreOf({0.0, 2.0, 4.0}), 1.0), std::sqrt(3.0) / 2.0);
-  EXPECT_DOUBLE_EQ(ZStatistic(ScoreOf({0.0, 2.0, 4.0}), 3.0), -std::sqrt(3.0) / 2.0);
-  EXPECT_EQ(ZStatistic(ScoreOf({0.0, 2.0, 4.0}), 2.0), 0.0);
+  EXPECT_DOUBLE_EQ(ZStatistic(MakeScore({0.0, 2.0, 4.0}), 1.0), std::sqrt(3.0) / 2.0);
+  EXPECT_DOUBLE_EQ(ZStatistic(MakeScore({0.0, 2.0, 4.0}), 3.0), -std::sqrt(3.0) / 2.0);
+  EXPECT_EQ(ZStatistic(MakeScore({0.0, 2.0, 4.0}), 2.0), 0.0);
 }
 
 TEST(ZStatistic, WithoutInliersIsInfinite) {
@@ -52,7 +52,7 @@ TEST(ZStatistic, WithoutInliersIsInfinite) {
 
 TEST(ZStatistic, OneInlierOrNoSpreadIsTheLimitOfSmallSpread) {
   for (const std::vector<double>& entropies : {std::vector<double>{1.0}, {1.0, 1.0, 1.0}}) {
-    const InlierScore score = ScoreOf(entropies);
+    const InlierScore score = MakeScore(entropies);
     EXPECT_EQ(ZStatistic(score, 0.5), kInfinity);
     EXPECT_EQ(ZStatistic(score, 1.5), -kInfinity);
     EXPECT_EQ(ZStatistic(score, 1.0), -kInfinity) << "psi <= mu counts as good";

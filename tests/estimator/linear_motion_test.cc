@@ -44,7 +44,7 @@ TEST(EstimateLinearMotion, CovarianceOfFCoversInTheLimitOfSmallNoise) {
       RandomProblem random = MakeRandomProblem(rng, {.num_matches = m});
       AddNoise(1e-4, rng, &random.problem);
       const LinearMotion motion = EstimateLinearMotion(random.problem).value();
-      const Vector8d error = motion.fit.LocalCoordinates(LinearModelOf(random.pose_true));
+      const Vector8d error = motion.fit.LocalCoordinates(ComputeLinearModel(random.pose_true));
       const double nees = NormalizedErrorSquared(error, motion.LocalCovarianceOfF());
       count.Add(nees <= limit);
       count_larger.Add(nees / 1.25 <= limit);

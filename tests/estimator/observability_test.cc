@@ -213,8 +213,8 @@ TEST(DirectionNotObservable, TheSameFromTheReferenceAndFromPieces) {
   EXPECT_GE(num, 5);
 }
 
-double ShareOf(const MotionProblem& problem, const std::vector<int>& fitted, const RelativePose& pose,
-               const Eigen::Matrix2d& direction_cov) {
+double ComputeNoiseShare(const MotionProblem& problem, const std::vector<int>& fitted,
+                         const RelativePose& pose, const Eigen::Matrix2d& direction_cov) {
   return NoiseShareOfDirection(direction_cov, SumDirectionNoise(problem, fitted, pose, direction_cov));
 }
 
@@ -230,7 +230,7 @@ TEST(NoiseShareOfDirection, IsOneWithoutParallaxAndNothingWithMuch) {
     const std::vector<int> all = ReferenceMatches(random.problem, RefinementError::kSampson).All();
     const Matrix5d information = SampsonInformation(random.problem, all, random.pose_true);
     const Eigen::Matrix2d direction_cov = information.bottomRightCorner<2, 2>().inverse();
-    sum += ShareOf(random.problem, all, random.pose_true, direction_cov) / 40.0;
+    sum += ComputeNoiseShare(random.problem, all, random.pose_true, direction_cov) / 40.0;
   }
   EXPECT_GT(
       sum,
@@ -240,7 +240,7 @@ TEST(NoiseShareOfDirection, IsOneWithoutParallaxAndNothingWithMuch) {
   AddNoise(0.5, rng, &near.problem);
   const std::vector<int> all = ReferenceMatches(near.problem, RefinementError::kSampson).All();
   const Matrix5d cov = SampsonInformation(near.problem, all, near.pose_true).inverse();
-  EXPECT_LT(ShareOf(near.problem, all, near.pose_true, cov.bottomRightCorner<2, 2>()), 0.02);
+  EXPECT_LT(ComputeNoiseShare(near.problem, all, near.pose_true, cov.bottomRightCorner<2, 2>()), 0.02);
 }
 
 class DirectionNoise : public OnEveryTarget {};
@@ -261,7 +261,8 @@ TEST_F(DirectionNoise, IsThatOfTheReference) {
       Run([&] {
         const MatchBlocks blocks(random.problem);
         const BlockMatches matches(random.problem, blocks, RefinementError::kSampson);
-        const Eigen::Matrix2d noise = matches.SumDirectionNoise(matches.SetOf(fitted), random.pose_true, cov);
+        const Eigen::Matrix2d noise =
+            matches.SumDirectionNoise(matches.MakeSet(fitted), random.pose_true, cov);
         EXPECT_LE((noise - expected).norm(), 1e-9 * expected.norm()) << n << ", " << variance;
       });
     }

@@ -87,10 +87,10 @@ TEST(SampsonCovariance, AgreesWithTheEquationsInLongDouble) {
     AddNoise(2.0, rng, &random.problem);
     const Matrix5d pose_cov = RandomPoseCov(0.003, rng);
     const Correspondence& match = random.problem.matches[0];
-    const Eigen::Matrix4d cov =
-        CovarianceOfSampsonVector(FundamentalOf(random), FundamentalTangent(random), pose_cov, 0.5, match);
+    const Eigen::Matrix4d cov = CovarianceOfSampsonVector(ComputeFundamental(random),
+                                                          FundamentalTangent(random), pose_cov, 0.5, match);
     const Textbook textbook =
-        TextbookDistance(FundamentalOf(random), FundamentalTangent(random), pose_cov, 0.5, match);
+        TextbookDistance(ComputeFundamental(random), FundamentalTangent(random), pose_cov, 0.5, match);
     EXPECT_LT((cov - textbook.cov.cast<double>()).norm(), 1e-10 * cov.norm());
     EXPECT_GT(cov.norm(), 0.01);
   }
@@ -108,10 +108,10 @@ void CompareWithTextbook(double max_exponent, std::uint32_t purpose) {
     const double std_dev = std::exp2(-rng.Uniform(4.0, max_exponent));
     const Matrix5d pose_cov = RandomPoseCov(std_dev, rng);
     const Textbook textbook =
-        TextbookDistance(FundamentalOf(random), FundamentalTangent(random), pose_cov, 0.5, match);
+        TextbookDistance(ComputeFundamental(random), FundamentalTangent(random), pose_cov, 0.5, match);
     if (!(textbook.condition < 1e11)) continue;
     ++num_compared;
-    const AsPrintedTest test(ModelOf(random, pose_cov), 0.5);
+    const AsPrintedTest test(ComputeUncertainModel(random, pose_cov), 0.5);
     PointResidual residual;
     ASSERT_NEAR(test.Distance(match, &residual), textbook.d2, 1e-6 * textbook.d2) << "motion to " << std_dev;
     ASSERT_EQ(residual.d2, Distance(test, match));
@@ -144,13 +144,13 @@ TEST(AsPrintedTest, KnownMotionMeasuresTheDistanceFromTheEpipoles) {
     const Eigen::Vector2d epipole1 = random.problem.camera1.Project(center2_in_1);
     const Eigen::Vector2d epipole2 = random.problem.camera2.Project(random.pose_true.t);
     const double squared_px = (match.x1_px - epipole1).squaredNorm() + (match.x2_px - epipole2).squaredNorm();
-    const double residual_px = std::sqrt(SquaredSampsonDistance(FundamentalOf(random), match));
+    const double residual_px = std::sqrt(SquaredSampsonDistance(ComputeFundamental(random), match));
     // The statistic is a difference of numbers (distance / residual)^2 times larger.
     const double lost = squared_px / (residual_px * residual_px);
     if (lost > 1e8) continue;
     ++num_compared;
     const double d2 = squared_px / 0.25;
-    ASSERT_NEAR(Distance(AsPrintedTest(ModelOf(random, Matrix5d::Zero()), 0.5), match), d2,
+    ASSERT_NEAR(Distance(AsPrintedTest(ComputeUncertainModel(random, Matrix5d::Zero()), 0.5), match), d2,
                 1e-12 * lost * d2);
   }
   EXPECT_GT(num_compared, 500);
@@ -162,7 +162,7 @@ TEST(AsPrintedTest, DeterminantFallsWithTheSixthPowerOfG) {
   RandomStream rng({.seed = 1, .purpose = 205});
   for (int i = 0; i < 50; ++i) {
     const RandomProblem random = MakeRandomProblem(rng, {.num_matches = 1});
-    const UncertainFundamental model = ModelOf(random, RandomPoseCov(0.001, rng));
+    const UncertainFundamental model = ComputeUncertainModel(random, RandomPoseCov(0.001, rng));
     const Correspondence exact = random.problem.matches[0];
     const Eigen::Vector4d unit = EvaluateConstraint(model.F, exact).gradient.normalized();
     const auto at = [&](double distance_px) {
@@ -205,13 +205,13 @@ TEST(RankAwareTest, IsTheResidualOverItsOwnStandardDeviation) {
     AddNoise(2.0, rng, &random.problem);
     const Correspondence& match = random.problem.matches[0];
     const Matrix5d pose_cov = RandomPoseCov(0.003, rng);
-    const Eigen::Matrix3d F = FundamentalOf(random);
+    const Eigen::Matrix3d F = ComputeFundamental(random);
     const std::array<Eigen::Matrix3d, 5> dF_dp = FundamentalTangent(random);
     const EpipolarConstraint c = EvaluateConstraint(F, match);
     Vector5d g_p;
     for (int k = 0; k < 5; ++k) g_p(k) = EvaluateConstraint(dF_dp[static_cast<size_t>(k)], match).g;
     const double s2 = 0.25 + g_p.dot(pose_cov * g_p) / c.squared_gradient();
-    const RankAwareTest test(ModelOf(random, pose_cov), 0.5);
+    const RankAwareTest test(ComputeUncertainModel(random, pose_cov), 0.5);
     PointResidual residual;
     const double d2 = c.g * c.g / (c.squared_gradient() * s2);
     EXPECT_NEAR(test.Distance(match, &residual), d2, 1e-11 * d2);
@@ -233,12 +233,12 @@ TEST(RankAwareTest, KnownMotionHasNoExcessEntropyAndTheKnownPoseDistance) {
   for (int i = 0; i < 50; ++i) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 1});
     AddNoise(2.0, rng, &random.problem);
-    const RankAwareTest test(ModelOf(random, Matrix5d::Zero()), 0.5);
-    const KnownPoseTest known(FundamentalOf(random), 0.5);
+    const RankAwareTest test(ComputeUncertainModel(random, Matrix5d::Zero()), 0.5);
+    const KnownPoseTest known(ComputeFundamental(random), 0.5);
     EXPECT_NEAR(Entropy(test, random.problem.matches[0]), 0.0, 1e-15);
     const double d2 = Distance(known, random.problem.matches[0]);
     EXPECT_NEAR(Distance(test, random.problem.matches[0]), d2, 1e-12 * d2);
-    EXPECT_NEAR(d2, 4.0 * SquaredSampsonDistance(FundamentalOf(random), random.problem.matches[0]),
+    EXPECT_NEAR(d2, 4.0 * SquaredSampsonDistance(ComputeFundamental(random), random.problem.matches[0]),
                 1e-12 * d2);
   }
 }
@@ -258,7 +258,8 @@ TEST(PointTests, UnitsOfPixelsMatterAsStated) {
     }
     const Correspondence match = random.problem.matches[0];
     const Correspondence scaled_match{kScale * match.x1_px, kScale * match.x2_px};
-    const UncertainFundamental model = ModelOf(random, pose_cov), scaled_model = ModelOf(scaled, pose_cov);
+    const UncertainFundamental model = ComputeUncertainModel(random, pose_cov),
+                               scaled_model = ComputeUncertainModel(scaled, pose_cov);
 
     const RankAwareTest rank_aware(model, 0.5), scaled_rank_aware(scaled_model, 0.5 * kScale);
     PointResidual residual, scaled_residual;
@@ -291,7 +292,7 @@ KnownMotionCoverage MeasureKnownMotion(double sigma_px, double assumed_px, std::
   for (int motion = 0; motion < 2000; ++motion) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 20});
     AddNoise(sigma_px, rng, &random.problem);
-    const UncertainFundamental model = ModelOf(random, Matrix5d::Zero());
+    const UncertainFundamental model = ComputeUncertainModel(random, Matrix5d::Zero());
     const RankAwareTest rank_aware(model, assumed_px);
     const AsPrintedTest as_printed(model, assumed_px);
     for (const Correspondence& match : random.problem.matches) {

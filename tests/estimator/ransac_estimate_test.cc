@@ -302,7 +302,7 @@ struct Verdict {
   std::vector<int> inliers;
   friend bool operator==(const Verdict&, const Verdict&) = default;
 };
-Verdict VerdictOf(const RansacOptions& options, const MotionProblem& problem) {
+Verdict ReadVerdict(const RansacOptions& options, const MotionProblem& problem) {
   const MotionEstimate e = EstimateWith(*MakeRansac("rcme", options), problem);
   return {e.status,
           e.counts.num_candidates,
@@ -323,8 +323,8 @@ TEST(RansacEstimate, RankAwareVerdictsDoNotDependOnTheUnitOfLength) {
     options.selection = selection;
     for (std::uint32_t trial = 0; trial < 20; ++trial) {
       const MotionProblem problem = MakeProblem(0.2, 150, trial);
-      const Verdict verdict = VerdictOf(options, problem);
-      EXPECT_EQ(verdict, VerdictOf(options, InUnits(problem, 1000))) << "trial " << trial;
+      const Verdict verdict = ReadVerdict(options, problem);
+      EXPECT_EQ(verdict, ReadVerdict(options, InUnits(problem, 1000))) << "trial " << trial;
       num_passed += verdict.num_candidates;
       num_poor += verdict.num_poor_inlier_sets;
     }
@@ -336,8 +336,8 @@ TEST(RansacEstimate, RankAwareVerdictsDoNotDependOnTheUnitOfLength) {
 // As printed, h grows by 4 log(1000) = 27.6 nats, and mu = -3.53 px refuses everything.
 TEST(RansacEstimate, PrintedVerdictsDependOnTheUnitOfLength) {
   const MotionProblem problem = MakeProblem(0.1, 150, 0);
-  EXPECT_EQ(VerdictOf({}, problem).status, MotionStatus::kOk);
-  EXPECT_EQ(VerdictOf({}, InUnits(problem, 1000)).status, MotionStatus::kNoCandidate);
+  EXPECT_EQ(ReadVerdict({}, problem).status, MotionStatus::kOk);
+  EXPECT_EQ(ReadVerdict({}, InUnits(problem, 1000)).status, MotionStatus::kNoCandidate);
 }
 
 }  // namespace

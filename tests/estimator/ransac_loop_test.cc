@@ -47,7 +47,7 @@ LoopResult RunByCount(const RansacOptions& options, int num_matches, Search& sea
 }
 
 template <typename Solver>
-MinimalSolver ChoiceOf() {
+MinimalSolver FindSolverChoice() {
   for (const auto& [name, choice] : SolverNames()) {
     const bool is_it = VisitSolver(
         choice, []<typename Other>(std::type_identity<Other>) { return std::is_same_v<Solver, Other>; });
@@ -78,7 +78,8 @@ void ExpectNoAllocationPerHypothesisOrPoint(MinimalSolver solver, const MakeAndR
 template <typename Solver, typename PointTest>
 void ExpectReferenceDoesNotAllocate() {
   ExpectNoAllocationPerHypothesisOrPoint(
-      ChoiceOf<Solver>(), [](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+      FindSolverChoice<Solver>(),
+      [](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
         ReferenceSearch<CountOf<PointTest>, Solver> search(problem, options, rng);
         const long before = num_allocations;
         RunByCount(options, static_cast<int>(problem.matches.size()), search);
@@ -89,7 +90,8 @@ void ExpectReferenceDoesNotAllocate() {
 template <typename Solver>
 void ExpectBlocksDoNotAllocate(BlockReading reading) {
   ExpectNoAllocationPerHypothesisOrPoint(
-      ChoiceOf<Solver>(), [&](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
+      FindSolverChoice<Solver>(),
+      [&](const MotionProblem& problem, const RansacOptions& options, RandomStream& rng) {
         const MatchBlocks matches(problem);
         BlockSearch<Solver> search(problem, matches, options, {reading, true, true}, rng);
         const long before = num_allocations;

@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-Thresholds ThresholdsOf(double point, double range) {
+Thresholds MakeThresholds(double point, double range) {
   Thresholds thresholds;
   thresholds.point = point;
   thresholds.outlier_cost = std::log(range);
@@ -24,7 +24,7 @@ double DensityAt(double e) { return std::exp(-0.5 * e * e) / std::sqrt(2.0 * std
 // 0 + 1 + 3 within 3.84, two beyond it.
 TEST(MsacScore, IsTheTruncatedSum) {
   const double far = std::numeric_limits<double>::infinity();
-  EXPECT_DOUBLE_EQ(MsacScore::Cost(std::vector<double>{0.0, 1.0, 3.0, 5.0, far}, ThresholdsOf(3.84, 1e3)),
+  EXPECT_DOUBLE_EQ(MsacScore::Cost(std::vector<double>{0.0, 1.0, 3.0, 5.0, far}, MakeThresholds(3.84, 1e3)),
                    4.0 + 2.0 * 3.84);
 }
 
@@ -34,7 +34,7 @@ TEST(MlesacScore, OfOneMatchIsAClosedForm) {
     const double v = 50.0, phi = DensityAt(e);
     const double odds = std::pow(phi * v, 3);
     const double expected = -std::log((odds * phi + 1.0 / v) / (1.0 + odds));
-    EXPECT_NEAR(MlesacScore::Cost(std::vector<double>{e * e}, ThresholdsOf(3.84, v)), expected, 1e-12) << e;
+    EXPECT_NEAR(MlesacScore::Cost(std::vector<double>{e * e}, MakeThresholds(3.84, v)), expected, 1e-12) << e;
   }
 }
 
@@ -50,13 +50,13 @@ TEST(MlesacScore, FindsTheShareOfRightMatches) {
     squared.push_back(e * e);
     of_truth -= std::log(kShare * DensityAt(e) + (1.0 - kShare) / kRange);
   }
-  const double cost = MlesacScore::Cost(squared, ThresholdsOf(3.84, kRange));
+  const double cost = MlesacScore::Cost(squared, MakeThresholds(3.84, kRange));
   EXPECT_NEAR(cost, of_truth, 10.0);
 }
 
 TEST(MlesacScore, IsFiniteWhereAllAreWrong) {
   const std::vector<double> squared = {1e5, 1e300, std::numeric_limits<double>::infinity()};
-  EXPECT_TRUE(std::isfinite(MlesacScore::Cost(squared, ThresholdsOf(3.84, 1e3))));
+  EXPECT_TRUE(std::isfinite(MlesacScore::Cost(squared, MakeThresholds(3.84, 1e3))));
 }
 
 }  // namespace

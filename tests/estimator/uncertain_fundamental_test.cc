@@ -17,8 +17,8 @@ TEST(UncertainFundamental, WhitenedDerivativesCarryTheCovariance) {
   for (int i = 0; i < 100; ++i) {
     const RandomProblem random = MakeRandomProblem(rng, {.num_matches = 1});
     const Matrix5d pose_cov = RandomPoseCov(0.01, rng);
-    const UncertainFundamental model = ModelOf(random, pose_cov);
-    EXPECT_LT((model.F - FundamentalOf(random)).norm(), 1e-16);
+    const UncertainFundamental model = ComputeUncertainModel(random, pose_cov);
+    EXPECT_LT((model.F - ComputeFundamental(random)).norm(), 1e-16);
     const std::array<Eigen::Matrix3d, 5> dF_dp = FundamentalTangent(random);
     Eigen::Matrix<double, 9, 5> tangent, whitened;
     for (int k = 0; k < 5; ++k) {

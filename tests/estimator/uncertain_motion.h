@@ -10,7 +10,7 @@
 
 namespace rcme {
 
-inline Eigen::Matrix3d FundamentalOf(const RandomProblem& random) {
+inline Eigen::Matrix3d ComputeFundamental(const RandomProblem& random) {
   return FundamentalFromEssential(EssentialFromPose(random.pose_true), random.problem.camera1,
                                   random.problem.camera2);
 }
@@ -23,7 +23,7 @@ inline std::array<Eigen::Matrix3d, 5> FundamentalTangent(const RandomProblem& ra
   return tangent;
 }
 
-inline UncertainFundamental ModelOf(const RandomProblem& random, const Matrix5d& pose_cov) {
+inline UncertainFundamental ComputeUncertainModel(const RandomProblem& random, const Matrix5d& pose_cov) {
   return UncertainFundamental::From(random.pose_true, pose_cov, random.problem.camera1,
                                     random.problem.camera2)
       .value();

@@ -144,7 +144,7 @@ TEST(YamlBomb, AliasesThatStandForLittleAreFine) {
       "  - {name: rcme, label: a, options: &o {num_iterations: 20}}\n"
       "  - {name: rcme, label: b, options: *o}\n",
       "a.yaml");
-  EXPECT_EQ(OptionOf(study.estimators.at(1), "num_iterations"), "20");
+  EXPECT_EQ(ReadOption(study.estimators.at(1), "num_iterations"), "20");
 }
 
 TEST(YamlBomb, TooManyCombinationsAreRefusedBeforeTheyAreBuilt) {

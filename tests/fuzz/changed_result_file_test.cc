@@ -174,7 +174,7 @@ TEST_F(ChangedResultFile, RowsLostDoubledSwappedAndForeign) {
 // To read one trial not all are read: the one that is must be sound, and one that is not found is looked for.
 TEST_F(ChangedResultFile, ASingleTrialIsNeverTakenForAnother) {
   const auto read = [&](std::uint32_t trial) {
-    return ResultStore::OpenForReading(path_).RecordsOf(1, trial).size();
+    return ResultStore::OpenForReading(path_).ReadTrialRecords(1, trial).size();
   };
   const std::string trial = " WHERE condition = 1 AND trial = 3";
   ASSERT_TRUE(Change("UPDATE trials SET seconds = seconds + 1e-9" + trial));

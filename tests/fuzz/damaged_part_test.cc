@@ -53,7 +53,7 @@ struct DividedTables {
 
 class DamagedParts : public testing::Test {
  protected:
-  Paths PathsOf(const std::string& work) const {
+  Paths ListPaths(const std::string& work) const {
     Paths paths;
     for (std::uint32_t number = 1; number <= kNumShards; ++number)
       paths.push_back(folder_.Path(fmt::format("{}_{}.part", work, number)));
@@ -68,7 +68,7 @@ class DamagedParts : public testing::Test {
 
   DividedTables Tuning() const {
     const TuningWork work = PlanTuningWork(plan_);
-    const Paths paths = PathsOf("tuning");
+    const Paths paths = ListPaths("tuning");
     for (int round = 0; round < 2; ++round) {
       const WorkResults merged = round == 0 ? WorkResults{} : MergeParts(work.items, paths);
       for (std::uint32_t n = 1; n <= kNumShards; ++n) TuningPart(work, merged, n, paths);
@@ -78,7 +78,7 @@ class DamagedParts : public testing::Test {
       RequireWhole(work.items, merged);
       const TuneResult result =
           Tune(plan_, settings_, Unreached::kStop, CountsIn(plan_, settings_, work, merged));
-      const auto rocs = RocsOf(plan_, EntropiesIn(plan_, work, merged));
+      const auto rocs = ComputeRocs(plan_, EntropiesIn(plan_, work, merged));
       return TuneAsTable(plan_, result, rocs) + TuneAsJson(plan_, settings_, result, rocs);
     };
     return {"tuning", paths, tables};
@@ -86,7 +86,7 @@ class DamagedParts : public testing::Test {
 
   DividedTables Transfer() const {
     const TuningWork work = PlanTransferWork(plan_);
-    const Paths paths = PathsOf("transfer");
+    const Paths paths = ListPaths("transfer");
     for (std::uint32_t n = 1; n <= kNumShards; ++n) TuningPart(work, {}, n, paths);
     const auto tables = [this, work, paths] {
       const WorkResults merged = MergeParts(work.items, paths);
@@ -117,7 +117,7 @@ class DamagedParts : public testing::Test {
   }
 
   DividedTables Audit() const {
-    const Paths paths = PathsOf("audit");
+    const Paths paths = ListPaths("audit");
     const rcme::Audit plan = PlanAudit(Claims(), {});
     for (std::uint32_t n = 1; n <= kNumShards; ++n) {
       Runner runner = Runner::OfShard(PlanAuditBlocks(plan), {n, kNumShards}, paths[n - 1], 1);
@@ -143,7 +143,7 @@ class DamagedParts : public testing::Test {
     work.reference->num_samples = 4;
     work.reference->num_draws = 10;
     work.reference->num_noises = 20;
-    const Paths paths = PathsOf("map");
+    const Paths paths = ListPaths("map");
     for (std::uint32_t n = 1; n <= kNumShards; ++n) {
       Runner runner = Runner::OfShard(PlanMapWork(work), {n, kNumShards}, paths[n - 1], 1);
       GetMapResults(work, &runner);
@@ -230,7 +230,7 @@ class DamagedParts : public testing::Test {
 
   const TempFolder folder_;
   const StudyPlan plan_ = PlanInPieces();
-  const SettingPlan settings_ = SettingsOf(plan_);
+  const SettingPlan settings_ = MakeTunedSettings(plan_);
 };
 
 // Other bytes than these: a bit, a byte, a digit or a run of bytes changed, lost, doubled or moved, or the

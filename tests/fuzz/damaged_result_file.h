@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "experiments/run/run_study.h"
+#include "experiments/run/store/new_trials.h"
+#include "experiments/run/store/salvage.h"
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/statistics/trial_table.h"
-#include "experiments/run/store/new_trials.h"
-#include "experiments/run/store/salvage.h"
-#include "experiments/run/run_study.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -37,7 +37,7 @@ inline bool Execute(const std::string& path, const std::string& sql) {
 }
 
 // All that the commands say of a run: its summary with the times, its comparison, every record.
-inline std::string ResultsOf(const std::string& path) {
+inline std::string ReadAllResults(const std::string& path) {
   const ResultStore store = ResultStore::OpenForReading(path);
   std::string text = SummaryAsCsv(Summarize(store, /*with_times=*/true)) +
                      ComparisonAsCsv(Compare(store, "")) + store.Plan().study_yaml;
@@ -47,7 +47,7 @@ inline std::string ResultsOf(const std::string& path) {
                       run.origin.program, run.origin.instruction_set);
   for (const DescribedEstimator& estimator : run.estimators) text += fmt::format(" {}", estimator.options);
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
-    for (const TrialRecord& record : store.RecordsOf(trial % 2, trial)) text += RecordText(record);
+    for (const TrialRecord& record : store.ReadTrialRecords(trial % 2, trial)) text += RecordText(record);
   }
   return text;
 }
@@ -68,7 +68,7 @@ class DamagedResultFile : public testing::Test {
     }
     EXPECT_TRUE(Execute(path, fmt::format("PRAGMA page_size = {}; VACUUM", kPage)));
     bytes_ = new std::string(ReadBytes(path));
-    results_ = new std::string(ResultsOf(path));
+    results_ = new std::string(ReadAllResults(path));
   }
   static void TearDownTestSuite() {
     delete folder_;
@@ -87,7 +87,7 @@ class DamagedResultFile : public testing::Test {
   // failure.
   FileOutcome Read(const std::string& what) {
     try {
-      EXPECT_EQ(ResultsOf(path_) == *results_, true) << what << ": changed in silence";
+      EXPECT_EQ(ReadAllResults(path_) == *results_, true) << what << ": changed in silence";
       return FileOutcome::kSame;
     } catch (const InputError& error) {
       EXPECT_NE(std::string(error.what()).find(path_), std::string::npos) << what << ": " << error.what();

@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-std::vector<std::string> LinesOf(const std::string& text, const TextLimits& limits = {1000, 1000}) {
+std::vector<std::string> ReadLines(const std::string& text, const TextLimits& limits = {1000, 1000}) {
   TextLines lines("text", ReadFrom(text), limits);
   std::vector<std::string> all;
   for (std::string_view line; lines.Next(&line);) all.emplace_back(line);
@@ -22,22 +22,22 @@ std::vector<std::string> LinesOf(const std::string& text, const TextLimits& limi
 using Lines = std::vector<std::string>;
 
 TEST(TextLines, AreThoseOfGetline) {
-  EXPECT_EQ(LinesOf(""), Lines{});
-  EXPECT_EQ(LinesOf("\n"), Lines{""});
-  EXPECT_EQ(LinesOf("a"), Lines{"a"});
-  EXPECT_EQ(LinesOf("a\n\nb\n"), (Lines{"a", "", "b"}));
+  EXPECT_EQ(ReadLines(""), Lines{});
+  EXPECT_EQ(ReadLines("\n"), Lines{""});
+  EXPECT_EQ(ReadLines("a"), Lines{"a"});
+  EXPECT_EQ(ReadLines("a\n\nb\n"), (Lines{"a", "", "b"}));
   const std::string longer(100'000, 'x');  // than the buffer
-  EXPECT_EQ(LinesOf(longer + "\n" + longer, {200'000, 1 << 20}), (Lines{longer, longer}));
+  EXPECT_EQ(ReadLines(longer + "\n" + longer, {200'000, 1 << 20}), (Lines{longer, longer}));
 }
 
 TEST(TextLines, AreNotFollowedFar) {
-  EXPECT_EQ(LinesOf("1234\n", {4, 100}), Lines{"1234"});
+  EXPECT_EQ(ReadLines("1234\n", {4, 100}), Lines{"1234"});
   EXPECT_TRUE(ThrowsInputError(
       [] {
-        LinesOf("1\n12345\n", {4, 100});
+        ReadLines("1\n12345\n", {4, 100});
       },
       {"text:2: the line is too long; at most 4 bytes"}));
-  EXPECT_TRUE(ThrowsInputError([] { LinesOf("1\n2\n3\n", {4, 5}); }, {"text:3: the text is too long"}));
+  EXPECT_TRUE(ThrowsInputError([] { ReadLines("1\n2\n3\n", {4, 5}); }, {"text:3: the text is too long"}));
   size_t num_read = 0;
   const auto endless = [&](char* buffer, size_t size) {
     std::fill_n(buffer, size, '\0');

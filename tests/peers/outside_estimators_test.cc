@@ -23,7 +23,7 @@ namespace {
 
 using testing::HasSubstr;
 
-MotionProblem ProblemOf(std::uint64_t seed) {
+MotionProblem DrawNoisyProblem(std::uint64_t seed) {
   RandomStream rng({seed, 0, 1, 0});
   MotionProblem problem = MakeRandomProblem(rng, {.num_matches = 20}).problem;
   AddNoise(problem.sigma_px, rng, &problem);
@@ -55,7 +55,7 @@ std::unique_ptr<MotionEstimator> Process(const std::string& command, const std::
 
 MotionEstimate Ask(const MotionEstimator& estimator, std::uint64_t seed = 1) {
   RandomStream rng({seed, 0, 0, 0});
-  return estimator.Estimate(ProblemOf(seed), rng);
+  return estimator.Estimate(DrawNoisyProblem(seed), rng);
 }
 
 TEST(OutsideCovariance, IsThatOfTheTangent) {
@@ -92,7 +92,7 @@ TEST(OutsideCovariance, OrderAndSignsOfTheSixComponents) {
 }
 
 TEST(AnswerJson, ProblemsAreReadBackBitForBit) {
-  const MotionProblem problem = ProblemOf(3);
+  const MotionProblem problem = DrawNoisyProblem(3);
   const std::string line = ProblemAsJson(problem, 7);
   EXPECT_EQ(line.back(), '\n');
   EXPECT_EQ(line.find('\n'), line.size() - 1);
@@ -170,8 +170,8 @@ TEST(AnswerJson, ListsAreNestedUpToThreeDeep) {
   EXPECT_THAT(AnswerFromJson(pose + "[[[[1]]]]}").fault, HasSubstr("lists within lists"));
 }
 
-MotionEstimate EstimateOf(const OutsideAnswer& answer) {
-  return CallOutside(ProblemOf(1), [&] { return answer; });
+MotionEstimate EstimateWithAnswer(const OutsideAnswer& answer) {
+  return CallOutside(DrawNoisyProblem(1), [&] { return answer; });
 }
 
 // Of inliers that are none of the 20 matches, or one of them twice, no covariance is made.
@@ -179,11 +179,11 @@ TEST(CallOutside, InliersThatAreNotValidGiveNoCovariance) {
   OutsideAnswer answer;
   answer.t = Eigen::Vector3d::UnitX();
   answer.inliers = {19, 1, 2, 3, 4, 5, 6, 7};
-  EXPECT_GT(EstimateOf(answer).pose_cov(0, 0), 0.0);
+  EXPECT_GT(EstimateWithAnswer(answer).pose_cov(0, 0), 0.0);
   for (const int wrong : {20, 7, -1}) {
     answer.inliers->front() = wrong;
     MotionEstimate estimate;
-    ASSERT_NO_THROW(estimate = EstimateOf(answer)) << wrong;
+    ASSERT_NO_THROW(estimate = EstimateWithAnswer(answer)) << wrong;
     EXPECT_EQ(estimate.pose_cov, MotionEstimate().pose_cov) << wrong;
     EXPECT_THAT(estimate.inliers, testing::Contains(wrong));
   }
@@ -195,10 +195,10 @@ TEST(CallOutside, MessagesAreShortAndPrintable) {
   OutsideAnswer answer;
   answer.status = MotionStatus::kTooUncertain;
   answer.message = std::string(5000, 'x');
-  EXPECT_EQ(EstimateOf(answer).message, shortened);
+  EXPECT_EQ(EstimateWithAnswer(answer).message, shortened);
   answer.message = "a\nb\033";
-  EXPECT_EQ(EstimateOf(answer).message, "a\\nb\\x1B");
-  const MotionEstimate none = CallOutside(ProblemOf(1), []() -> OutsideAnswer {
+  EXPECT_EQ(EstimateWithAnswer(answer).message, "a\\nb\\x1B");
+  const MotionEstimate none = CallOutside(DrawNoisyProblem(1), []() -> OutsideAnswer {
     throw NoOutsideAnswer(MotionStatus::kNoAnswer, std::string(5000, 'x'));
   });
   EXPECT_EQ(none.status, MotionStatus::kNoAnswer);
@@ -208,9 +208,9 @@ TEST(CallOutside, MessagesAreShortAndPrintable) {
 TEST(CallOutside, TheTimeElsewhereIsTheAnswers) {
   OutsideAnswer answer;
   answer.t = Eigen::Vector3d::UnitX();
-  EXPECT_TRUE(std::isnan(EstimateOf(answer).seconds_elsewhere));
+  EXPECT_TRUE(std::isnan(EstimateWithAnswer(answer).seconds_elsewhere));
   answer.seconds = 0.25;
-  EXPECT_EQ(EstimateOf(answer).seconds_elsewhere, 0.25);
+  EXPECT_EQ(EstimateWithAnswer(answer).seconds_elsewhere, 0.25);
 }
 
 TEST(AnswerJson, AnAnswerBelongsToTheProblemOfItsId) {
@@ -276,7 +276,7 @@ TEST(ProcessEstimator, TimeOutsCrashesAndNonsenseAreStatuses) {
 
 // A problem of some hundred kilobytes, which no socket holds, that is read, and one that is not.
 TEST(ProcessEstimator, AProblemLargerThanAnyBuffer) {
-  MotionProblem problem = ProblemOf(1);
+  MotionProblem problem = DrawNoisyProblem(1);
   const std::vector<Correspondence> few = problem.matches;
   while (problem.matches.size() < 10'000)
     problem.matches.insert(problem.matches.end(), few.begin(), few.end());
@@ -304,7 +304,7 @@ TEST(AnswersEstimator, LooksUpTheProblemById) {
   const TempFolder folder;
   const std::string path = folder.Path("answers.jsonl");
   RandomStream rng({1, 0, 0, 0});
-  const std::string id = ProblemId(ProblemOf(1), SeedForOutside(rng));
+  const std::string id = ProblemId(DrawNoisyProblem(1), SeedForOutside(rng));
   std::string line = "{\"id\": \"" + id;
   line += "\", \"R\": [1,0,0,0,1,0,0,0,1], \"t\": [1,0,0]}\n";
   std::ofstream(path) << line << "{\"id\": \"other\", \"R\": [1]}\n";

@@ -30,7 +30,7 @@ inline std::vector<std::string> ChoicesOfPeers() {
   for (const EstimatorEntry& entry : PeerEntries()) {
     const std::unique_ptr<EstimatorModel> model = entry.make();
     for (const Parameter& option : model->Parameters()) {
-      if (!WordsOf(option).empty() && std::ranges::count(choices, option.name()) == 0)
+      if (!ListChoiceWords(option).empty() && std::ranges::count(choices, option.name()) == 0)
         choices.push_back(option.name());
     }
   }

@@ -25,7 +25,7 @@ struct Matches {
 const Eigen::Matrix3d kR = RotationFromVector({0.0, 0.035, 0.0});
 const Eigen::Vector3d kT(0.8, 0.6, 0.0);
 
-Matches MatchesOf(int n) {
+Matches MakeMatches(int n) {
   RandomStream rng({.seed = 1, .purpose = 79});
   Matches made;
   for (int i = 0; i < n; ++i) {
@@ -54,7 +54,7 @@ TwoViewOptions Options() {
 }
 
 TEST(TwoViewInitializer, GivesTheEstimatorsOwnAnswer) {
-  const Matches m = MatchesOf(200);
+  const Matches m = MakeMatches(200);
   const TwoViewMotion motion = TwoViewInitializer(Options()).Estimate(m.points1, m.points2);
   ASSERT_EQ(motion.verdict, TwoViewVerdict::kGood) << motion.message;
   EXPECT_EQ(motion.status, "ok");
@@ -85,7 +85,7 @@ TEST(TwoViewInitializer, GivesTheEstimatorsOwnAnswer) {
 }
 
 TEST(TwoViewInitializer, SigmasAreOnePerMatchInAnyUnit) {
-  const Matches m = MatchesOf(100);
+  const Matches m = MakeMatches(100);
   const TwoViewInitializer initializer(Options());
   std::vector<double> sigmas(m.points1.size(), 3.0);
   EXPECT_EQ(cv::norm(initializer.Estimate(m.points1, m.points2, sigmas).R,
@@ -99,7 +99,7 @@ TEST(TwoViewInitializer, SigmasAreOnePerMatchInAnyUnit) {
 
 // A point of a right match in camera 1's frame projects onto its key point: within three pixels.
 TEST(TwoViewInitializer, TriangulatesWhatAgrees) {
-  const Matches m = MatchesOf(200);
+  const Matches m = MakeMatches(200);
   const TwoViewMotion motion = TwoViewInitializer(Options()).Estimate(m.points1, m.points2);
   int num_points = 0;
   for (size_t i = 0; i < m.points1.size(); ++i) {
@@ -114,7 +114,7 @@ TEST(TwoViewInitializer, TriangulatesWhatAgrees) {
 }
 
 TEST(TwoViewInitializer, TakesKeyPointsAndMatchesAsOrbSlam2HasThem) {
-  const Matches m = MatchesOf(100);
+  const Matches m = MakeMatches(100);
   std::vector<cv::KeyPoint> keys1, keys2;
   std::vector<int> matches12;
   keys1.emplace_back(cv::Point2f(5, 5), 31.0F);  // without a match
@@ -143,7 +143,7 @@ TEST(TwoViewInitializer, TakesKeyPointsAndMatchesAsOrbSlam2HasThem) {
 }
 
 TEST(TwoViewInitializer, LevelsAreOfTheRiskAskedFor) {
-  const Matches m = MatchesOf(200);
+  const Matches m = MakeMatches(200);
   TwoViewOptions options = Options();
   options.integrity_risk = 0.1;
   const TwoViewMotion often = TwoViewInitializer(options).Estimate(m.points1, m.points2);
@@ -170,7 +170,7 @@ PoseOfRos PoseFrom(const RosPose& ros) {
 }
 
 TEST(RosPose, IsThatOfCamera2InCamera1) {
-  const Matches m = MatchesOf(200);
+  const Matches m = MakeMatches(200);
   const TwoViewMotion motion = TwoViewInitializer(Options()).Estimate(m.points1, m.points2);
   const PoseOfRos pose = PoseFrom(ComputeRosPose(motion));
   EXPECT_NEAR(pose.position.norm(), 1.0, 1e-12);
@@ -255,7 +255,7 @@ TEST(RosPose, CovarianceIsThatOfDrawnMotions) {
 
 TEST(TwoViewInitializer, AnswersBadMatchesWithAStatus) {
   const TwoViewInitializer initializer(Options());
-  Matches m = MatchesOf(60);
+  Matches m = MakeMatches(60);
   EXPECT_EQ(initializer.Estimate({}, {}).verdict, TwoViewVerdict::kRefused);
   EXPECT_EQ(initializer.Estimate({}, {}).status, "too_few_matches");
   const std::vector<cv::Point2f> same(60, cv::Point2f(10, 10));
@@ -267,7 +267,7 @@ TEST(TwoViewInitializer, AnswersBadMatchesWithAStatus) {
   const TwoViewMotion unequal = initializer.Estimate(m.points1, m.points2);
   EXPECT_EQ(unequal.verdict, TwoViewVerdict::kBadInput);
   EXPECT_NE(unequal.message.find("59 points of image 1 and 60"), std::string::npos) << unequal.message;
-  m = MatchesOf(60);
+  m = MakeMatches(60);
   m.points2[7].x = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(initializer.Estimate(m.points1, m.points2).verdict, TwoViewVerdict::kBadInput);
   m.points2[7].x = std::numeric_limits<float>::infinity();
@@ -278,7 +278,7 @@ TEST(TwoViewInitializer, WithoutAProbabilityNoMotionIsGood) {
   TwoViewOptions options = Options();
   options.estimator = "standard";
   options.options = {};
-  const Matches m = MatchesOf(200);
+  const Matches m = MakeMatches(200);
   EXPECT_EQ(TwoViewInitializer(options).Estimate(m.points1, m.points2).verdict, TwoViewVerdict::kDoubtful);
 }
 

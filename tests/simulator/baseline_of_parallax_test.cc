@@ -27,7 +27,7 @@ Moments MedianParallaxesDeg(const SceneGenerator& scenes, std::uint32_t num_scen
     RandomStream rng({.seed = 1, .trial = trial, .purpose = 1});
     const Scene scene = scenes.Generate(rng);
     std::vector<double> angles_deg = ParallaxesDeg(scene, scene.points_in_cam1);
-    medians.Add(QuantileOf(angles_deg, 0.5));
+    medians.Add(ComputeQuantile(angles_deg, 0.5));
   }
   return medians;
 }

@@ -160,11 +160,11 @@ TEST(OrderStatistic, IsThatOfTheSortedList) {
   std::vector<double> sorted = values;
   std::ranges::sort(sorted);
   for (const size_t rank : {0, 1, 18, 36}) EXPECT_EQ(ValueOfRank(rank, &values), sorted[rank]);
-  EXPECT_EQ(QuantileOf(values, 0.0), sorted[0]);
-  EXPECT_EQ(QuantileOf(values, 0.99), sorted[35]);  // rank 35.64
-  EXPECT_EQ(QuantileOf(values, 1.0), sorted[36]);
+  EXPECT_EQ(ComputeQuantile(values, 0.0), sorted[0]);
+  EXPECT_EQ(ComputeQuantile(values, 0.99), sorted[35]);  // rank 35.64
+  EXPECT_EQ(ComputeQuantile(values, 1.0), sorted[36]);
   std::vector<double> none;
-  EXPECT_TRUE(std::isnan(QuantileOf(none, 0.5)));
+  EXPECT_TRUE(std::isnan(ComputeQuantile(none, 0.5)));
 }
 
 // Student's t itself: the share of |t| > 3 by the scales' normal laws against its closed form with one and

@@ -13,15 +13,15 @@
 namespace rcme {
 namespace {
 
-double ErrorOf(Binning binning, int num_bins) {
+double ComputeExampleError(Binning binning, int num_bins) {
   return ExpectedCalibrationError(BinForecasts(ExampleForecasts(), binning, num_bins));
 }
 
 TEST(CalibrationError, KnownAnswers) {
-  EXPECT_NEAR(ErrorOf(Binning::kEqualWidth, 4), 0.10625, 1e-12);
-  EXPECT_NEAR(ErrorOf(Binning::kEqualMass, 4), 0.10625, 1e-12);
-  EXPECT_NEAR(ErrorOf(Binning::kEqualWidth, 10), 0.20625, 1e-12);
-  EXPECT_NEAR(ErrorOf(Binning::kEqualMass, 10), 0.18125, 1e-12);
+  EXPECT_NEAR(ComputeExampleError(Binning::kEqualWidth, 4), 0.10625, 1e-12);
+  EXPECT_NEAR(ComputeExampleError(Binning::kEqualMass, 4), 0.10625, 1e-12);
+  EXPECT_NEAR(ComputeExampleError(Binning::kEqualWidth, 10), 0.20625, 1e-12);
+  EXPECT_NEAR(ComputeExampleError(Binning::kEqualMass, 10), 0.18125, 1e-12);
   RandomStream rng({.seed = 1, .purpose = 420});
   EXPECT_NEAR(MeasureCalibrationError(ExampleForecasts(), Binning::kEqualMass, 10, 1, rng).value, 0.18125,
               1e-12);

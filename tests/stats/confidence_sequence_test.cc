@@ -21,7 +21,7 @@ constexpr int kTrials = 10'000;
 struct Band {
   std::vector<int> lowest, highest;
 };
-Band BandOf(double p, const std::function<Interval(int, int)>& interval) {
+Band FindBand(double p, const std::function<Interval(int, int)>& interval) {
   Band band{{0}, {0}};
   for (int n = 1; n <= kTrials; ++n) {
     int low = band.lowest.back(), high = band.highest.back() + 1;
@@ -106,8 +106,8 @@ TEST(ConfidenceSequence, WatchedAfterEveryTrialItExcludesTheTruthAtMostAsOftenAs
   // Exact probabilities over 10,000 looks, no random numbers. The exact interval watched like that excludes
   // the truth in about half of the studies.
   for (const double p : {0.5, 0.95}) {
-    const Band sequence = BandOf(p, [](int s, int n) { return ConfidenceSequence(s, n); });
-    const Band exact = BandOf(p, [](int s, int n) { return ExactBinomialInterval(s, n); });
+    const Band sequence = FindBand(p, [](int s, int n) { return ConfidenceSequence(s, n); });
+    const Band exact = FindBand(p, [](int s, int n) { return ExactBinomialInterval(s, n); });
     const double of_sequence = ProbabilityOfEverExcluding(p, sequence);
     const double of_exact = ProbabilityOfEverExcluding(p, exact);
     EXPECT_LE(of_sequence, 0.05) << "p = " << p;
@@ -134,14 +134,14 @@ TEST(ConfidenceSequence, WatchedAfterEveryTrialItExcludesTheTruthAtMostAsOftenAs
 TEST(ConfidenceSequence, HasPower) {
   // A claimed coverage of 0.95 that is 0.93: excluded within 10,000 trials with probability above 0.99
   // (exact).
-  EXPECT_GT(ProbabilityOfEverExcluding(0.93, BandOf(0.93,
-                                                    [](int s, int n) {
-                                                      Interval of_claim = ConfidenceSequence(s, n);
-                                                      of_claim.lower -= 0.02,
-                                                          of_claim.upper -=
-                                                          0.02;  // holds 0.93 where the interval holds 0.95
-                                                      return of_claim;
-                                                    })),
+  EXPECT_GT(ProbabilityOfEverExcluding(0.93, FindBand(0.93,
+                                                      [](int s, int n) {
+                                                        Interval of_claim = ConfidenceSequence(s, n);
+                                                        of_claim.lower -= 0.02,
+                                                            of_claim.upper -=
+                                                            0.02;  // holds 0.93 where the interval holds 0.95
+                                                        return of_claim;
+                                                      })),
             0.99);
 }
 

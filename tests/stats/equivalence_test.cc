@@ -14,7 +14,7 @@ namespace rcme {
 namespace {
 
 // P(the exact interval of n trials at `rate` gives this verdict): exact sum.
-double ProbabilityOf(Verdict verdict, int n, double rate, double nominal, double margin) {
+double ComputeProbability(Verdict verdict, int n, double rate, double nominal, double margin) {
   double sum = 0.0;
   for (int k = 0; k <= n; ++k) {
     const double log_p = std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) +
@@ -50,13 +50,13 @@ TEST(Equivalence, WrongVerdictsAreAsRareAsTheIntervalSays) {
   // less. Absence of evidence is no evidence: with 100 trials a rate of 0.9 is never called equivalent to
   // 0.95 +- 0.02.
   for (const double border : {0.93, 0.97}) {
-    EXPECT_LE(ProbabilityOf(Verdict::kHolds, 5000, border, 0.95, 0.02), 0.025);
-    EXPECT_GT(ProbabilityOf(Verdict::kHolds, 5000, border, 0.95, 0.02), 0.015);
-    EXPECT_LE(ProbabilityOf(Verdict::kDoesNotHold, 5000, border, 0.95, 0.02), 0.025);
-    EXPECT_GT(ProbabilityOf(Verdict::kDoesNotHold, 5000, border, 0.95, 0.02), 0.015);
+    EXPECT_LE(ComputeProbability(Verdict::kHolds, 5000, border, 0.95, 0.02), 0.025);
+    EXPECT_GT(ComputeProbability(Verdict::kHolds, 5000, border, 0.95, 0.02), 0.015);
+    EXPECT_LE(ComputeProbability(Verdict::kDoesNotHold, 5000, border, 0.95, 0.02), 0.025);
+    EXPECT_GT(ComputeProbability(Verdict::kDoesNotHold, 5000, border, 0.95, 0.02), 0.015);
   }
-  EXPECT_EQ(ProbabilityOf(Verdict::kHolds, 100, 0.95, 0.95, 0.02), 0.0);
-  EXPECT_GT(ProbabilityOf(Verdict::kUndecided, 100, 0.95, 0.95, 0.02), 0.9);
+  EXPECT_EQ(ComputeProbability(Verdict::kHolds, 100, 0.95, 0.95, 0.02), 0.0);
+  EXPECT_GT(ComputeProbability(Verdict::kUndecided, 100, 0.95, 0.95, 0.02), 0.9);
 }
 
 TEST(TrialsToDecide, DecidesWithThePowerAskedFor) {
@@ -74,13 +74,14 @@ TEST(TrialsToDecide, DecidesWithThePowerAskedFor) {
       {0.999, 0.99, 0.02, Verdict::kHolds}};  // the upper border is beyond 1: only one can be crossed
   for (const auto& each : kCases) {
     const int n = static_cast<int>(std::ceil(TrialsToDecide(each.rate, Around(each.nominal, each.margin))));
-    const double power = ProbabilityOf(each.verdict, n, each.rate, each.nominal, each.margin);
+    const double power = ComputeProbability(each.verdict, n, each.rate, each.nominal, each.margin);
     EXPECT_GT(power, 0.86) << "rate " << each.rate << ", n = " << n;
     RecordProperty("power_at_" + std::to_string(each.rate),
                    std::to_string(power) + " n=" + std::to_string(n));
     // Half as many are too few, where the normal term decides.
     if (n > 300) {
-      EXPECT_LT(ProbabilityOf(each.verdict, n / 2, each.rate, each.nominal, each.margin), 0.75) << each.rate;
+      EXPECT_LT(ComputeProbability(each.verdict, n / 2, each.rate, each.nominal, each.margin), 0.75)
+          << each.rate;
     }
   }
   // By hand, 1.281552 and 1.644854 the normal quantiles of 0.9 and 0.95: (1.959964 + 1.644854)^2 * 0.95 *

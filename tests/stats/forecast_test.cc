@@ -82,7 +82,7 @@ TEST(Forecast, IntervalsCoverWhereEventsAreRare) {
       }
       brier.Add(MeasureBrierScore(forecasts).interval.Contains(truth));
       share.Add(MeasureShareHappened(forecasts).interval.Contains(0.9 * few + 0.1 * many));
-      student.Add(MeasureClusteredMean(scores, ClustersOf(forecasts)).interval.Contains(truth));
+      student.Add(MeasureClusteredMean(scores, ListClusters(forecasts)).interval.Contains(truth));
     }
     EXPECT_GT(brier.interval().upper, 0.975) << brier;
     EXPECT_GT(share.interval().upper, 0.95) << share;

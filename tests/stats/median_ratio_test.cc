@@ -18,10 +18,10 @@ double ChiSquare5(RandomStream& rng) {
   return sum;
 }
 
-TEST(MedianOf, ByHand) {
-  EXPECT_EQ(MedianOf({3.0, 1.0, 2.0}), 2.0);
-  EXPECT_EQ(MedianOf({4.0, 1.0, 2.0, 3.0}), 2.5);
-  EXPECT_TRUE(std::isnan(MedianOf({})));
+TEST(ComputeMedian, ByHand) {
+  EXPECT_EQ(ComputeMedian({3.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(ComputeMedian({4.0, 1.0, 2.0, 3.0}), 2.5);
+  EXPECT_TRUE(std::isnan(ComputeMedian({})));
 }
 
 TEST(RatioOfMedians, WithoutValuesThereIsNone) {

@@ -100,7 +100,7 @@ class Tables {
   std::map<std::tuple<std::string, std::string, std::string, int>, Extremes> extremes_;
 };
 
-RandomStream StreamOf(std::uint32_t cell, std::uint32_t purpose) {
+RandomStream MakeStream(std::uint32_t cell, std::uint32_t purpose) {
   return RandomStream({.seed = 2, .trial = cell, .purpose = purpose});
 }
 
@@ -118,7 +118,7 @@ struct Sizes {
   ConditionWeights weights;
 };
 
-std::vector<int> TrialsOf(const Sizes& sizes, int num_conditions) {
+std::vector<int> ListTrials(const Sizes& sizes, int num_conditions) {
   std::vector<int> trials;
   for (int i = 0; i < num_conditions; ++i)
     trials.push_back(sizes.cycle[static_cast<size_t>(i) % sizes.cycle.size()]);
@@ -128,7 +128,7 @@ std::vector<int> TrialsOf(const Sizes& sizes, int num_conditions) {
 // hidden: of the conditions of the kind that fewer have, less than three are expected, and the others have
 // events too, so that a sample without the few looks complete; rare: fewer than five events of the size that
 // conditions give them are expected.
-std::string RegimeOf(Shape shape, int num_conditions, double p, double rho) {
+std::string ClassifyRegime(Shape shape, int num_conditions, double p, double rho) {
   if (rho > 0.0 && shape == Shape::kNeverOrHigh) {
     const double share_of_never = 1.0 - p / (p + rho * (1.0 - p));
     if (share_of_never < 0.5 && num_conditions * share_of_never < 3.0) return "hidden";
@@ -143,8 +143,8 @@ std::string RegimeOf(Shape shape, int num_conditions, double p, double rho) {
 
 void MeasureRateCell(const Cell& cell, const RateLaw& law, const Sizes& sizes, int repetitions,
                      std::uint32_t number, Tables* tables) {
-  RandomStream rng = StreamOf(number, 160);
-  const std::vector<int> trials = TrialsOf(sizes, cell.num_conditions);
+  RandomStream rng = MakeStream(number, 160);
+  const std::vector<int> trials = ListTrials(sizes, cell.num_conditions);
   Coverage coverage;
   for (int repetition = 0; repetition < repetitions; ++repetition) {
     const PopulationRate rate = MeasurePopulationRate(DrawConditions(law, trials, rng), sizes.weights);
@@ -164,7 +164,8 @@ void MeasureRates(const std::string& grid, const std::vector<int>& all_condition
         for (const Sizes& sizes : all_sizes) {
           for (const int m : all_conditions) {
             const Cell cell{
-                "rate", grid, RegimeOf(shape, m, p, rho), rho == 0.0 ? "equal" : name, sizes.name, m, rho, p};
+                "rate", grid, ClassifyRegime(shape, m, p, rho), rho == 0.0 ? "equal" : name, sizes.name, m,
+                rho,    p};
             MeasureRateCell(cell, law, sizes, repetitions, number++, tables);
           }
         }
@@ -215,7 +216,7 @@ void MeasureDifferences(int repetitions, Tables* tables) {
     const double sd = std::hypot(law.common_sd, law.own_sd);
     const double truth = MeanRate(law.first, sd) - MeanRate(law.second, sd);
     for (const int m : {6, 30, 200}) {
-      RandomStream rng = StreamOf(number++, 161);
+      RandomStream rng = MakeStream(number++, 161);
       Coverage coverage;
       for (int repetition = 0; repetition < repetitions; ++repetition) {
         std::vector<ConditionPair> pairs;
@@ -254,7 +255,7 @@ void MeasureMeans(int repetitions, Tables* tables) {
   std::uint32_t number = 0;
   for (const MeanLaw& law : kMeanLaws) {
     for (const int m : {6, 30, 200}) {
-      RandomStream rng = StreamOf(number++, 162);
+      RandomStream rng = MakeStream(number++, 162);
       Coverage coverage;
       for (int repetition = 0; repetition < repetitions; ++repetition) {
         std::vector<Moments> conditions(static_cast<size_t>(m));
@@ -295,7 +296,7 @@ void MeasureMedians(const std::string& grid, const std::vector<int>& all_conditi
   for (const MeanLaw& law : kMeanLaws) {
     const double truth = ComputeMedian(law);
     for (const int m : all_conditions) {
-      RandomStream rng = StreamOf(number++, 166);
+      RandomStream rng = MakeStream(number++, 166);
       Coverage coverage;
       for (int repetition = 0; repetition < repetitions; ++repetition) {
         std::vector<StreamMedian> conditions(static_cast<size_t>(m));
@@ -343,11 +344,11 @@ std::vector<Forecast> DrawForecasts(const ForecastLaw& law, int num_conditions, 
 void MeasureCalibrationErrors(int repetitions, Tables* tables) {
   std::uint32_t number = 0;
   for (const ForecastLaw& law : kForecastLaws) {
-    RandomStream truth_rng = StreamOf(number, 163);
+    RandomStream truth_rng = MakeStream(number, 163);
     const double truth = ExpectedCalibrationError(
         BinForecasts(DrawForecasts(law, 400'000, 5, truth_rng), Binning::kEqualWidth, 10));
     for (const int m : {6, 30, 200}) {
-      RandomStream rng = StreamOf(number, 164), samples = StreamOf(number, 165);
+      RandomStream rng = MakeStream(number, 164), samples = MakeStream(number, 165);
       ++number;
       Coverage coverage;
       coverage.has_pooled = false;

@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-std::vector<ConditionCount> CountsOf(const std::vector<int>& events, const std::vector<int>& trials) {
+std::vector<ConditionCount> MakeCounts(const std::vector<int>& events, const std::vector<int>& trials) {
   std::vector<ConditionCount> conditions;
   for (size_t i = 0; i < events.size(); ++i)
     conditions.push_back({events[i], trials[trials.size() == 1 ? 0 : i]});
@@ -36,18 +36,18 @@ void ExpectRate(const PopulationRate& rate, const PublishedRate& published) {
 
 TEST(PopulationRate, KnownAnswers) {
   ExpectRate(
-      MeasurePopulationRate(CountsOf({0, 0, 1, 5, 0, 60}, {60})),
+      MeasurePopulationRate(MakeCounts({0, 0, 1, 5, 0, 60}, {60})),
       {0.1833333333, 0.0069636678, 0.6424525117, 0.1447213158, 0.2272455356, 0.9109436243, 5.5758620690});
-  const std::vector<ConditionCount> unequal = CountsOf({0, 0, 1, 5, 0, 6}, {60, 20, 30, 40, 50, 60});
+  const std::vector<ConditionCount> unequal = MakeCounts({0, 0, 1, 5, 0, 6}, {60, 20, 30, 40, 50, 60});
   ExpectRate(MeasurePopulationRate(unequal), {0.0430555556, 0.0013647730, 0.2727010160, 0.0204550693,
                                               0.0786921058, 0.0522340112, 79.1660489251});
   ExpectRate(
       MeasurePopulationRate(unequal, ConditionWeights::kByTrials),
       {0.0461538462, 0.0003949798, 0.3046039573, 0.0240725838, 0.0792330326, 0.0522340112, 72.1376936317});
-  ExpectRate(MeasurePopulationRate(CountsOf({29, 31, 33, 27, 30, 30}, {60})),
+  ExpectRate(MeasurePopulationRate(MakeCounts({29, 31, 33, 27, 30, 30}, {60})),
              {0.5, 0.4559952856, 0.5440047144, 0.4471459191, 0.5528540809, -0.0124327240, 360.0});
   ExpectRate(
-      MeasurePopulationRate(CountsOf({60, 60, 60, 60, 59, 60, 12, 60}, {60})),
+      MeasurePopulationRate(MakeCounts({60, 60, 60, 60, 59, 60, 12, 60}, {60})),
       {0.8979166667, 0.5156953811, 0.9986154745, 0.8672907466, 0.9235201174, 0.7793234240, 9.2170958289});
 }
 
@@ -55,8 +55,9 @@ TEST(PopulationRate, OfNonEventsIsTheMirrorImage) {
   const std::vector<int> events = {3, 0, 17, 60, 2};
   std::vector<int> others;
   for (const int k : events) others.push_back(60 - k);
-  const PopulationRate rate = MeasurePopulationRate(CountsOf(events, {60}), ConditionWeights::kEqual, 0.9);
-  const PopulationRate mirror = MeasurePopulationRate(CountsOf(others, {60}), ConditionWeights::kEqual, 0.9);
+  const PopulationRate rate = MeasurePopulationRate(MakeCounts(events, {60}), ConditionWeights::kEqual, 0.9);
+  const PopulationRate mirror =
+      MeasurePopulationRate(MakeCounts(others, {60}), ConditionWeights::kEqual, 0.9);
   EXPECT_NEAR(rate.interval.lower, 1.0 - mirror.interval.upper, 1e-12);
   EXPECT_NEAR(rate.interval.upper, 1.0 - mirror.interval.lower, 1e-12);
 }
@@ -64,36 +65,36 @@ TEST(PopulationRate, OfNonEventsIsTheMirrorImage) {
 // Without an event a condition counts as one trial: the exact interval of 0 of 6, however many trials it has.
 TEST(PopulationRate, WithoutAnEvent) {
   for (const int n : {1, 60, 1'000'000}) {
-    const PopulationRate none = MeasurePopulationRate(CountsOf(std::vector<int>(6, 0), {n}));
+    const PopulationRate none = MeasurePopulationRate(MakeCounts(std::vector<int>(6, 0), {n}));
     EXPECT_EQ(none.value, 0.0);
     EXPECT_EQ(none.interval.lower, 0.0);
     EXPECT_NEAR(none.interval.upper, ExactBinomialInterval(0, 6).upper, 1e-12);
     EXPECT_NEAR(none.of_these_conditions.upper, ExactBinomialInterval(0, 6 * n).upper, 1e-9);
     EXPECT_TRUE(std::isnan(none.effective_n));
     EXPECT_TRUE(std::isnan(none.intraclass_correlation));
-    const PopulationRate all = MeasurePopulationRate(CountsOf(std::vector<int>(6, n), {n}));
+    const PopulationRate all = MeasurePopulationRate(MakeCounts(std::vector<int>(6, n), {n}));
     EXPECT_EQ(all.interval.upper, 1.0);
     EXPECT_NEAR(all.interval.lower, 1.0 - none.interval.upper, 1e-12);
   }
 }
 
 TEST(PopulationRate, OneConditionTellsNothingOfOthers) {
-  const PopulationRate one = MeasurePopulationRate(CountsOf({7}, {60}));
+  const PopulationRate one = MeasurePopulationRate(MakeCounts({7}, {60}));
   EXPECT_NEAR(one.value, 7.0 / 60.0, 1e-15);
   EXPECT_EQ(one.interval.lower, 0.0);
   EXPECT_EQ(one.interval.upper, 1.0);
   EXPECT_NEAR(one.of_these_conditions.upper, ExactBinomialInterval(7, 60).upper, 1e-10);
   EXPECT_TRUE(std::isnan(MeasurePopulationRate({}).value));
-  EXPECT_EQ(MeasurePopulationRate(CountsOf({0, 7, 0, 3}, {0, 60, 0, 60})).num_conditions, 2);
-  EXPECT_THROW(MeasurePopulationRate(CountsOf({7}, {6})), std::invalid_argument);
-  EXPECT_THROW(MeasurePopulationRate(CountsOf({-1}, {6})), std::invalid_argument);
+  EXPECT_EQ(MeasurePopulationRate(MakeCounts({0, 7, 0, 3}, {0, 60, 0, 60})).num_conditions, 2);
+  EXPECT_THROW(MeasurePopulationRate(MakeCounts({7}, {6})), std::invalid_argument);
+  EXPECT_THROW(MeasurePopulationRate(MakeCounts({-1}, {6})), std::invalid_argument);
 }
 
 // Of conditions with one trial each the rate is a binomial's, and the intervals agree.
 TEST(PopulationRate, OfSingleTrialsIsNearlyExact) {
   std::vector<int> events(400, 0);
   std::fill(events.begin(), events.begin() + 60, 1);
-  const PopulationRate rate = MeasurePopulationRate(CountsOf(events, {1}));
+  const PopulationRate rate = MeasurePopulationRate(MakeCounts(events, {1}));
   const Interval exact = ExactBinomialInterval(60, 400);
   EXPECT_NEAR(rate.interval.lower, exact.lower, 0.002);
   EXPECT_NEAR(rate.interval.upper, exact.upper, 0.002);

@@ -16,7 +16,7 @@
 namespace rcme {
 namespace {
 
-std::vector<std::uint64_t> BitsOf(const std::vector<double>& values) {
+std::vector<std::uint64_t> ListBits(const std::vector<double>& values) {
   std::vector<std::uint64_t> bits;
   for (const double value : values) bits.push_back(std::bit_cast<std::uint64_t>(value));
   return bits;
@@ -55,7 +55,7 @@ TEST_F(OnEveryTarget, UniformsAreTheUpper53BitsOfTheWords) {
   Run([&] {
     std::vector<double> uniforms(64);
     PhiloxUniforms(kBeforeWrap, uniforms.size(), uniforms.data());
-    EXPECT_EQ(BitsOf(uniforms), BitsOf(expected));
+    EXPECT_EQ(ListBits(uniforms), ListBits(expected));
   });
 }
 
@@ -82,7 +82,7 @@ TEST_F(OnEveryTarget, NormalsAreThoseOfTheScalarFunctions) {
   Run([&] {
     std::vector<double> values(uniforms.begin(), uniforms.begin() + static_cast<std::ptrdiff_t>(size));
     NormalsFromUniforms(size, values.data());
-    EXPECT_EQ(BitsOf(values), BitsOf(expected));
+    EXPECT_EQ(ListBits(values), ListBits(expected));
   });
 }
 
@@ -105,7 +105,7 @@ TEST_F(OnEveryTarget, FillUniformIsAsManyCallsOfUniform) {
         std::vector<double> uniforms(length), expected(length);
         filled.FillUniform(uniforms);
         for (double& u : expected) u = called.Uniform();
-        ASSERT_EQ(BitsOf(uniforms), BitsOf(expected)) << length << " from word " << start;
+        ASSERT_EQ(ListBits(uniforms), ListBits(expected)) << length << " from word " << start;
         ASSERT_EQ(filled.Next64(), called.Next64()) << "after " << length << " from word " << start;
       }
     }
@@ -121,7 +121,7 @@ TEST_F(OnEveryTarget, FillNormalIsAsManyCallsOfNormal) {
           std::vector<double> normals(length), expected(length);
           filled.FillNormal(normals);
           for (double& z : expected) z = called.Normal();
-          ASSERT_EQ(BitsOf(normals), BitsOf(expected)) << length << " from word " << start;
+          ASSERT_EQ(ListBits(normals), ListBits(expected)) << length << " from word " << start;
           ASSERT_EQ(filled.Next32(), called.Next32()) << "after " << length << " from word " << start;
         }
       }

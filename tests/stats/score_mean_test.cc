@@ -17,7 +17,8 @@
 namespace rcme {
 namespace {
 
-ScoreMean MeanOf(const std::vector<std::pair<double, int>>& scores, const Interval& range = {0.0, 1.0}) {
+ScoreMean ComputeScoreMean(const std::vector<std::pair<double, int>>& scores,
+                           const Interval& range = {0.0, 1.0}) {
   ScoreMean mean(range);
   for (const auto& [score, count] : scores) mean.Add(score, count);
   return mean;
@@ -36,7 +37,7 @@ TEST(ScoreMean, KnownAnswers) {
       {{{-1.0, 2}, {0.0, 80}, {0.5, 18}}, 0.95, {-1, 1}, -0.0303711922, 0.1511978521, 0.0, 0.3441064077},
       {{{-0.1, 50}, {0.3, 50}}, 0.95, {-1, 1}, 0.0216798847, 0.1701546506, 0.0, 0.008087178411}};
   for (const auto& known : kKnown) {
-    const ScoreMean mean = MeanOf(known.scores, known.range);
+    const ScoreMean mean = ComputeScoreMean(known.scores, known.range);
     const Interval interval = mean.Sequence(known.confidence);
     const double width = known.upper - known.lower;
     EXPECT_NEAR(interval.lower, known.lower, 1e-3 * width);
@@ -48,7 +49,7 @@ TEST(ScoreMean, KnownAnswers) {
 }
 
 TEST(ScoreMean, OneSidedPValues) {
-  const ScoreMean mean = MeanOf({{0.0, 3}, {0.9, 57}});
+  const ScoreMean mean = ComputeScoreMean({{0.0, 3}, {0.9, 57}});
   double at_most_before = 0.0, at_least_before = 1.0;
   for (const double m : {0.5, 0.7, 0.8, 0.855, 0.9, 0.95}) {
     const double at_most = mean.PValueOfAtMost(m), at_least = mean.PValueOfAtLeast(m);
@@ -78,9 +79,9 @@ TEST(ScoreMean, KeepsTheMeanAndRefusesWhatIsNoScore) {
     EXPECT_THROW(mean.Add(bad), std::invalid_argument);
   for (const double bad : {0.0, 1.0, std::nan("")}) EXPECT_THROW(mean.PValue(bad), std::invalid_argument);
   // All scores at an end: nothing beyond it, the mean inside.
-  EXPECT_EQ(MeanOf({{0.0, 30}}).Sequence().lower, 0.0);
-  EXPECT_GT(MeanOf({{0.0, 30}}).Sequence().upper, 0.05);
-  EXPECT_EQ(MeanOf({{1.0, 30}}, {-1, 1}).Sequence().upper, 1.0);
+  EXPECT_EQ(ComputeScoreMean({{0.0, 30}}).Sequence().lower, 0.0);
+  EXPECT_GT(ComputeScoreMean({{0.0, 30}}).Sequence().upper, 0.05);
+  EXPECT_EQ(ComputeScoreMean({{1.0, 30}}, {-1, 1}).Sequence().upper, 1.0);
 }
 
 // A score between two points of the grid is divided between them: never a narrower interval than of the
@@ -132,7 +133,7 @@ TEST(ScoreMean, CoversWhereStudentDoesNot) {
         const double truth = 0.9 * (1.0 - p);
         Moments moments;
         for (int i = 0; i < n; ++i) moments.Add(i < zeros ? 0.0 : 0.9);
-        covered += mass * MeanOf({{0.0, zeros}, {0.9, n - zeros}}).Sequence().Contains(truth);
+        covered += mass * ComputeScoreMean({{0.0, zeros}, {0.9, n - zeros}}).Sequence().Contains(truth);
         covered_by_student += mass * StudentInterval(moments).Contains(truth);
       }
       EXPECT_GE(covered, 0.95) << n << " scores, " << p;
@@ -231,10 +232,10 @@ TEST(ScoreMean, IsNarrowerTheLessTheScoresScatter) {
     const double at = (i + 0.5) / kScores;
     uniform.Add(at), narrow.Add(0.45 + 0.1 * at);
   }
-  const ScoreMean coin = MeanOf({{0.0, kScores / 2}, {1.0, kScores / 2}});
+  const ScoreMean coin = ComputeScoreMean({{0.0, kScores / 2}, {1.0, kScores / 2}});
   const auto width = [](const ScoreMean& mean) { return mean.Sequence(kConfidence).upper - mean.mean(); };
   EXPECT_NEAR(uniform.standard_deviation(), std::sqrt(1.0 / 12.0), 1e-4);
-  EXPECT_NEAR(MeanOf({{-1.0, 30}, {1.0, 30}}, {-1.0, 1.0}).standard_deviation(), 1.0, 1e-12);
+  EXPECT_NEAR(ComputeScoreMean({{-1.0, 30}, {1.0, 30}}, {-1.0, 1.0}).standard_deviation(), 1.0, 1e-12);
   EXPECT_LT(width(uniform), 5.6 * uniform.standard_deviation() / std::sqrt(kScores));
   EXPECT_GT(width(uniform), 4.0 * uniform.standard_deviation() / std::sqrt(kScores));
   EXPECT_LT(width(narrow), 0.25 * width(uniform));

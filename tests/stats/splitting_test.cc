@@ -67,7 +67,7 @@ SplittingRate Estimate(const System& system, const SplittingEffort& effort, int 
     RandomStream rng({.seed = 1, .condition = static_cast<std::uint64_t>(r), .trial = repeat, .purpose = 90});
     replicates.push_back(Split(system, effort, pilot.levels, rng));
   }
-  return RateOf(pilot, replicates);
+  return EstimateSplittingRate(pilot, replicates);
 }
 
 constexpr SplittingEffort kSmall = {.num_particles = 100, .num_moves = 5};
@@ -180,19 +180,21 @@ TEST(SplittingRate, DoubtsWhatItHasReasonTo) {
     return all;
   };
   const std::vector<double> good = {1e-6, 1.1e-6, 0.9e-6, 1.3e-6};
-  EXPECT_TRUE(RateOf(pilot, replicates(good, 0.3, 0)).IsTrusted());
-  EXPECT_EQ(RateOf(pilot, replicates(good, 0.01, 0)).doubts, std::vector{SplittingDoubt::kMovesStuck});
-  EXPECT_EQ(RateOf(pilot, replicates(good, 0.3, 3)).doubts, std::vector{SplittingDoubt::kDrawsDisagree});
-  EXPECT_EQ(RateOf(pilot, replicates({1e-6, 1e-6, 1e-6, 1e-6, 1e-4}, 0.3, 0)).doubts,
+  EXPECT_TRUE(EstimateSplittingRate(pilot, replicates(good, 0.3, 0)).IsTrusted());
+  EXPECT_EQ(EstimateSplittingRate(pilot, replicates(good, 0.01, 0)).doubts,
+            std::vector{SplittingDoubt::kMovesStuck});
+  EXPECT_EQ(EstimateSplittingRate(pilot, replicates(good, 0.3, 3)).doubts,
+            std::vector{SplittingDoubt::kDrawsDisagree});
+  EXPECT_EQ(EstimateSplittingRate(pilot, replicates({1e-6, 1e-6, 1e-6, 1e-6, 1e-4}, 0.3, 0)).doubts,
             std::vector{SplittingDoubt::kReplicatesDisagree});
-  const SplittingRate lost = RateOf(pilot, replicates({1e-6, 1e-6, 0.0, 1e-6}, 0.3, 0));
+  const SplittingRate lost = EstimateSplittingRate(pilot, replicates({1e-6, 1e-6, 0.0, 1e-6}, 0.3, 0));
   EXPECT_EQ(lost.doubts, std::vector{SplittingDoubt::kReplicateLost});
   EXPECT_EQ(lost.interval.lower, 0.0);
   EXPECT_EQ(lost.interval.upper, 1.0);
   // None drawn of 4,000: 1 - 0.025^(1/4000).
-  EXPECT_NEAR(RateOf(pilot, replicates(good, 0.3, 0)).unseen_up_to, 9.218e-4, 1e-6);
+  EXPECT_NEAR(EstimateSplittingRate(pilot, replicates(good, 0.3, 0)).unseen_up_to, 9.218e-4, 1e-6);
   pilot.end = PilotEnd::kTooRare;
-  EXPECT_EQ(RateOf(pilot, {}).doubts, std::vector{SplittingDoubt::kNoLevels});
+  EXPECT_EQ(EstimateSplittingRate(pilot, {}).doubts, std::vector{SplittingDoubt::kNoLevels});
 }
 
 TEST(LognormalMean, KnownAnswer) {

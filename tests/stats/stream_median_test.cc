@@ -15,23 +15,23 @@
 namespace rcme {
 namespace {
 
-StreamMedian MedianOf(const std::vector<double>& values) {
+StreamMedian ComputeStreamMedian(const std::vector<double>& values) {
   StreamMedian median;
   for (const double x : values) median.Add(x);
   return median;
 }
 
 TEST(StreamMedian, ByHand) {
-  const StreamMedian median = MedianOf({4, 6, 20, 2, 30, 3});
+  const StreamMedian median = ComputeStreamMedian({4, 6, 20, 2, 30, 3});
   EXPECT_EQ(median.n(), 6);
   EXPECT_EQ(median.median(), 4.0);          // the third of six
   EXPECT_EQ(median.interval().lower, 2.0);  // 2 / 2^6 = 0.031: the least and the greatest
   EXPECT_EQ(median.interval().upper, 30.0);
-  EXPECT_EQ(MedianOf({1, 2, 3}).interval().upper, kInfinity) << "2 / 2^3 = 0.25";
+  EXPECT_EQ(ComputeStreamMedian({1, 2, 3}).interval().upper, kInfinity) << "2 / 2^3 = 0.25";
   EXPECT_TRUE(std::isnan(StreamMedian().median()));
-  EXPECT_EQ(MedianOf({-5, -1, 0, 7, kInfinity}).median(), 0.0);
-  EXPECT_EQ(MedianOf({kInfinity, 1, kInfinity}).median(), kInfinity);
-  EXPECT_THROW(MedianOf({std::nan("")}), std::invalid_argument);
+  EXPECT_EQ(ComputeStreamMedian({-5, -1, 0, 7, kInfinity}).median(), 0.0);
+  EXPECT_EQ(ComputeStreamMedian({kInfinity, 1, kInfinity}).median(), kInfinity);
+  EXPECT_THROW(ComputeStreamMedian({std::nan("")}), std::invalid_argument);
 }
 
 // Against the sorted numbers: the median is at most a cell nearer to zero, the interval encloses theirs and
@@ -43,7 +43,7 @@ TEST(StreamMedian, IsThatOfTheSortedNumbersUpToACell) {
     std::vector<double> values(300 + 37 * i);
     for (double& x : values) x = std::exp(2.0 * rng.Normal() + 1.0);
     const MeasuredQuantile sorted = MeasureQuantile(values, 0.5);
-    const StreamMedian median = MedianOf(values);
+    const StreamMedian median = ComputeStreamMedian(values);
     EXPECT_LE(median.median(), sorted.value);
     EXPECT_GE(median.median(), sorted.value * (1.0 - kCell));
     EXPECT_LE(median.interval().lower, sorted.interval.lower);

@@ -15,7 +15,7 @@
 namespace rcme {
 namespace {
 
-VarianceSplit SplitOf(const std::vector<int>& counts, int num_repeats) {
+VarianceSplit ComputeSplit(const std::vector<int>& counts, int num_repeats) {
   RepeatedEvents events(num_repeats);
   for (const int count : counts) events.AddScene(count);
   return events.Split();
@@ -45,7 +45,7 @@ TEST(VarianceSplit, KnownAnswers) {
                 // Fewer differences between scenes than chance alone makes.
                 {Times(12, {1, 2, 3, 2}), 4, -0.0410017730496, 0.291666666667, 1.0, 1.0, 1.0}};
   for (const auto& known : kKnown) {
-    const VarianceSplit split = SplitOf(known.counts, known.num_repeats);
+    const VarianceSplit split = ComputeSplit(known.counts, known.num_repeats);
     EXPECT_NEAR(split.between, known.between, 1e-11);
     EXPECT_NEAR(split.within, known.within, 1e-11);
     EXPECT_NEAR(split.within_share, known.share, 1e-11);
@@ -55,7 +55,7 @@ TEST(VarianceSplit, KnownAnswers) {
 }
 
 TEST(VarianceSplit, ScenesOfBothOutcomesAreCountedExactly) {
-  const VarianceSplit split = SplitOf(Joined(Times(6, {0, 1, 2}), {1, 1}), 2);
+  const VarianceSplit split = ComputeSplit(Joined(Times(6, {0, 1, 2}), {1, 1}), 2);
   EXPECT_EQ(split.num_scenes, 20);
   EXPECT_EQ(split.num_mixed, 8);
   EXPECT_EQ(split.mixed_interval.lower, ExactBinomialInterval(8, 20).lower);
@@ -63,25 +63,25 @@ TEST(VarianceSplit, ScenesOfBothOutcomesAreCountedExactly) {
 }
 
 TEST(VarianceSplit, WhatSaysTooLittleHasNoInterval) {
-  EXPECT_TRUE(std::isnan(SplitOf({}, 3).within));
-  EXPECT_TRUE(std::isnan(SplitOf({2}, 3).within_share));
-  const VarianceSplit nothing = SplitOf(Times(50, {0}), 3);
+  EXPECT_TRUE(std::isnan(ComputeSplit({}, 3).within));
+  EXPECT_TRUE(std::isnan(ComputeSplit({2}, 3).within_share));
+  const VarianceSplit nothing = ComputeSplit(Times(50, {0}), 3);
   EXPECT_EQ(nothing.within, 0.0);
   EXPECT_EQ(nothing.between, 0.0);
   EXPECT_TRUE(std::isnan(nothing.within_share)) << "nothing varies";
   EXPECT_EQ(nothing.mixed_interval.lower, 0.0);
   for (const int event : {0, 3}) {  // nine scenes that differ from the others
-    const VarianceSplit few = SplitOf(Joined(Times(50, {event}), Times(9, {2})), 3);
+    const VarianceSplit few = ComputeSplit(Joined(Times(50, {event}), Times(9, {2})), 3);
     EXPECT_GT(few.within_share, 0.0);
     EXPECT_EQ(few.within_share_interval.lower, 0.0);
     EXPECT_EQ(few.within_share_interval.upper, 1.0);
-    EXPECT_LT(SplitOf(Joined(Times(50, {event}), Times(10, {2})), 3).within_share_interval.upper -
-                  SplitOf(Joined(Times(50, {event}), Times(10, {2})), 3).within_share_interval.lower,
+    EXPECT_LT(ComputeSplit(Joined(Times(50, {event}), Times(10, {2})), 3).within_share_interval.upper -
+                  ComputeSplit(Joined(Times(50, {event}), Times(10, {2})), 3).within_share_interval.lower,
               1.0);
   }
   EXPECT_THROW(RepeatedEvents(1), std::invalid_argument);
-  EXPECT_THROW(SplitOf({4}, 3), std::invalid_argument);
-  EXPECT_THROW(SplitOf({-1}, 3), std::invalid_argument);
+  EXPECT_THROW(ComputeSplit({4}, 3), std::invalid_argument);
+  EXPECT_THROW(ComputeSplit({-1}, 3), std::invalid_argument);
 }
 
 // Three scenes of three repeats, p_i = 0.2 or 0.9 with equal chance: the mean of either part over all 64
@@ -97,7 +97,7 @@ TEST(VarianceSplit, IsUnbiased) {
     for (int b = 0; b <= 3; ++b) {
       for (int c = 0; c <= 3; ++c) {
         const double weight = probability(a) * probability(b) * probability(c);
-        const VarianceSplit split = SplitOf({a, b, c}, 3);
+        const VarianceSplit split = ComputeSplit({a, b, c}, 3);
         between += weight * split.between;
         within += weight * split.within;
       }

@@ -66,7 +66,7 @@ void Repeat(const StudyPlan& plan, double known_rate, const std::string& folder,
 }
 
 template <typename Number>
-Number NumberOf(const std::string& text) {
+Number ParseNumber(const std::string& text) {
   Number number{};
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size())
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
   }
   try {
     const StudyPlan plan = MakePlan(LoadChangedStudy(argv[1], {{argv[2]}, {}, -1}), argv[1]);
-    Repeat(plan, NumberOf<double>(argv[3]), argv[4], argc == 6 ? NumberOf<int>(argv[5]) : 200);
+    Repeat(plan, ParseNumber<double>(argv[3]), argv[4], argc == 6 ? ParseNumber<int>(argv[5]) : 200);
   } catch (const std::exception& error) {
     fmt::print(stderr, "rcme_rare_coverage: {}\n", error.what());
     return 2;

@@ -69,7 +69,7 @@ std::vector<MatchFile> FilesIn(const std::string& folder) {
   const std::set<std::string> weak = PairsWithWeakDirection(folder, paths);
   std::vector<MatchFile> files;
   for (const std::filesystem::path& path : paths) {
-    if (!weak.contains(PairIdOf(path))) files.push_back(ReadMatchFile(path.string()));
+    if (!weak.contains(ExtractPairId(path))) files.push_back(ReadMatchFile(path.string()));
   }
   return files;
 }

@@ -11,7 +11,7 @@
 namespace rcme {
 
 // As RcmeCalibrated takes it: the density of a wrong match over half the diagonal of image 2.
-inline MixturePrior PriorOf(const MotionProblem& problem) {
+inline MixturePrior MakePrior(const MotionProblem& problem) {
   return {2.0 * problem.sigma_px / std::hypot(problem.camera2.width, problem.camera2.height), true};
 }
 
@@ -36,7 +36,7 @@ struct FittedMode {
 
 inline FittedMode FitFromTruth(const MotionProblem& problem, const RelativePose& pose_true) {
   const MatchBlocks matches(problem);
-  const MixturePrior prior = PriorOf(problem);
+  const MixturePrior prior = MakePrior(problem);
   FittedMode fitted{problem, pose_true, matches, prior, StartMode(matches, prior, pose_true), false};
   fitted.has_converged = FitMode(matches, prior, 50, &fitted.mode);
   return fitted;

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "experiments/core/files/file_output.h"
 #include "experiments/core/files/checksum.h"
+#include "experiments/core/files/file_output.h"
 
 namespace rcme {
 
@@ -43,12 +43,13 @@ inline void WriteJsonAsPart(const std::string& path, nlohmann::ordered_json part
   part.erase("pieces");
   part.erase("format");
   part["num_pieces"] = pieces.size();
-  const std::string first = FieldsOfLine(part), checksum = fmt::format("{:08x}", ChecksumOf({"", first}));
+  const std::string first = FieldsOfLine(part),
+                    checksum = fmt::format("{:08x}", ComputeChecksum({"", first}));
   std::string text =
       fmt::format("{{\"format\": {}, \"checksum\": \"{}\", {}\n", format.dump(), checksum, first);
   for (const nlohmann::ordered_json& piece : pieces) {
     const std::string fields = FieldsOfLine(piece);
-    text += fmt::format("{{\"checksum\": \"{:08x}\", {}\n", ChecksumOf({checksum, fields}), fields);
+    text += fmt::format("{{\"checksum\": \"{:08x}\", {}\n", ComputeChecksum({checksum, fields}), fields);
   }
   WriteFileWhole(path, text);
 }

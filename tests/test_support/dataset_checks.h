@@ -36,7 +36,7 @@ inline RenderedCamera FisheyeCamera() {
   return camera;
 }
 
-inline DatasetOptions OptionsOf(const std::string& folder, const std::vector<double>& K = {}) {
+inline DatasetOptions MakeDatasetOptions(const std::string& folder, const std::vector<double>& K = {}) {
   DatasetOptions options;
   options.folder = folder;
   options.K = K;
@@ -80,7 +80,7 @@ inline std::vector<PairRow> MakePairsInto(const std::string& out, const std::vec
 }
 
 // The motion between the two rendered frames whose numbers end a pair's name.
-inline RelativePose RenderedMotionOf(const std::string& pair_id) {
+inline RelativePose ComputeRenderedMotion(const std::string& pair_id) {
   const std::string end = pair_id.substr(pair_id.size() - 13);
   return TrueMotion(PoseOnWalk(std::stod(end.substr(0, 6))), PoseOnWalk(std::stod(end.substr(7))));
 }
@@ -103,7 +103,7 @@ inline void ExpectTheRenderedMotions(const std::vector<PairRow>& rows, const std
     if (row.reason != kKeptPair) continue;
     ++num_kept;
     const MatchFile file = ReadMatchFile(out + "/" + row.pair_id + ".csv");
-    const RelativePose rendered = RenderedMotionOf(row.pair_id);
+    const RelativePose rendered = ComputeRenderedMotion(row.pair_id);
     EXPECT_EQ(file.sigma_px.size(), file.matches.size());
     EXPECT_EQ(file.image1, row.image1);
     const Eigen::Matrix3d F =
@@ -125,7 +125,7 @@ inline void ExpectTheRenderedTruth(const std::vector<PairRow>& rows, const std::
   for (const PairRow& row : rows) {
     if (row.reason != kKeptPair) continue;
     const MatchFile file = ReadMatchFile(out + "/" + row.pair_id + ".csv");
-    const RelativePose rendered = RenderedMotionOf(row.pair_id);
+    const RelativePose rendered = ComputeRenderedMotion(row.pair_id);
     ASSERT_TRUE(file.cam2_from_cam1_true.has_value()) << row.pair_id;
     EXPECT_LT(kDegPerRad * RotationAngleBetween(file.cam2_from_cam1_true->R, rendered.R), within_deg);
     EXPECT_LT(kDegPerRad * AngleBetween(file.cam2_from_cam1_true->t, rendered.t), within_deg);

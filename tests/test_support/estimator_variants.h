@@ -22,7 +22,7 @@ struct EstimatorVariant {
 inline void PrintTo(const EstimatorVariant& variant, std::ostream* out) { *out << variant.name; }
 
 // The words of a choice.
-inline std::vector<std::string> WordsOf(const Parameter& option) {
+inline std::vector<std::string> ListChoiceWords(const Parameter& option) {
   const std::string beginning = "one of: ";
   std::vector<std::string> words;
   if (!option.allowed().starts_with(beginning)) return words;
@@ -41,7 +41,7 @@ inline std::vector<EstimatorVariant> EstimatorVariants(const std::vector<std::st
       if (std::ranges::find(chosen, option.name()) == chosen.end()) continue;
       std::vector<EstimatorVariant> more;
       for (const EstimatorVariant& variant : variants) {
-        for (const std::string& word : WordsOf(option)) {
+        for (const std::string& word : ListChoiceWords(option)) {
           more.push_back({variant.name + "_" + word, variant.estimator, variant.options});
           more.back().options.emplace_back(option.name(), word);
         }

@@ -21,7 +21,7 @@ inline TuneResult TuneInMemory(const StudyPlan& plan, const SettingPlan& setting
 
 inline TransferResult MeasureTransferInMemory(const StudyPlan& plan, const SettingPlan& settings,
                                               const std::string& by, int num_threads) {
-  FamiliesOf(plan, by);
+  ListFamilies(plan, by);
   const TuningWork work = PlanTransferWork(plan);
   Runner runner = Runner::InMemory(work.items, num_threads);
   GetTuningResults(plan, settings, work, Unreached::kVerifyAll, &runner);

@@ -39,7 +39,7 @@ inline std::vector<MotionProblem> Problems() {
 }
 
 // All that an estimate says, as numbers; NaN is its own equal.
-inline std::vector<double> NumbersOf(const MotionEstimate& e) {
+inline std::vector<double> ListEstimateNumbers(const MotionEstimate& e) {
   std::vector<double> numbers(e.inliers.begin(), e.inliers.end());
   for (const auto& matrix : {Eigen::MatrixXd(e.cam2_from_cam1.R), Eigen::MatrixXd(e.cam2_from_cam1.t),
                              Eigen::MatrixXd(e.pose_cov)}) {
@@ -63,7 +63,7 @@ inline std::vector<std::vector<double>> Answers(const std::string& estimator, co
     const std::unique_ptr<MotionEstimator> made = MakeEstimator(estimator, options);
     for (const MotionProblem& problem : problems) {
       RandomStream rng({1, 0, 0, 4});
-      answers.push_back(NumbersOf(made->Estimate(problem, rng)));
+      answers.push_back(ListEstimateNumbers(made->Estimate(problem, rng)));
     }
   } catch (const InputError&) {
   }
@@ -72,7 +72,7 @@ inline std::vector<std::vector<double>> Answers(const std::string& estimator, co
 
 // Values of all kinds that an option may take.
 inline std::vector<std::string> ValuesFor(const Parameter& option) {
-  std::vector<std::string> values = WordsOf(option), allowed;
+  std::vector<std::string> values = ListChoiceWords(option), allowed;
   for (const char* value : {"off", "0", "1e-09", "0.001", "0.3", "0.9", "1", "5", "40", "-10", "100"}) {
     values.push_back(value);
   }
@@ -158,7 +158,7 @@ inline void ExpectEveryOptionHasAnEffect(const EstimatorEntry& entry) {
 
 inline void ExpectTextsGoRound(const EstimatorEntry& entry) {
   const std::unique_ptr<EstimatorModel> model = entry.make();
-  const Settings defaults = ValuesOf(model->Parameters());
+  const Settings defaults = ListValues(model->Parameters());
   for (const Parameter& option : model->Parameters()) {
     EXPECT_FALSE(option.doc().empty()) << entry.name << ": " << option.name();
     for (const std::string& value : ValuesFor(option)) {
@@ -168,13 +168,13 @@ inline void ExpectTextsGoRound(const EstimatorEntry& entry) {
       EXPECT_EQ(option.Value(), text) << entry.name << ": " << option.name();
     }
   }
-  EXPECT_EQ(ValuesOf(ConfigureEstimator(entry.name, defaults)->Parameters()), defaults);
+  EXPECT_EQ(ListValues(ConfigureEstimator(entry.name, defaults)->Parameters()), defaults);
 }
 
 inline void ExpectAllowedWithoutLimits(const EstimatorEntry& entry) {
   const std::unique_ptr<EstimatorModel> model = entry.make();
   model->LiftLimits();
-  EXPECT_NO_THROW(MakeEstimator(entry.name, ValuesOf(model->Parameters()))) << entry.name;
+  EXPECT_NO_THROW(MakeEstimator(entry.name, ListValues(model->Parameters()))) << entry.name;
 }
 
 }  // namespace rcme

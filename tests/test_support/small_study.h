@@ -26,7 +26,7 @@ inline std::string SmallStudyYaml() {
 }
 
 // The value of an option, which is there.
-inline std::string OptionOf(const EstimatorSpec& spec, const std::string& option) {
+inline std::string ReadOption(const EstimatorSpec& spec, const std::string& option) {
   return std::ranges::find(spec.options, option, &Settings::value_type::first)->second;
 }
 

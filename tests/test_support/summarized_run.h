@@ -74,12 +74,12 @@ class SummarizedRun : public testing::Test {
     ResultStore store = ResultStore::OpenForRun(folder_.Path(name), MakePlan(study_));
     AddRecords(store, records);
   }
-  Summary SummaryOf(const std::string& name, bool with_times = false) {
+  Summary SummarizeRun(const std::string& name, bool with_times = false) {
     return Summarize(ResultStore::OpenForReading(folder_.Path(name)), with_times);
   }
   SummaryRow Row(const std::string& quantity, std::uint32_t condition = 0,
                  const std::string& estimator = "standard") {
-    for (const SummaryRow& row : SummaryOf("run", true).rows) {
+    for (const SummaryRow& row : SummarizeRun("run", true).rows) {
       if (row.quantity == quantity && row.condition == condition && row.estimator == estimator) return row;
     }
     ADD_FAILURE() << "no row of " << quantity;

@@ -33,7 +33,7 @@ inline StudyPlan PlanInPieces() {
       "  options: {mu: [1, 2, 3, 6]}\n");
 }
 
-inline SettingPlan SettingsOf(const StudyPlan& plan) {
+inline SettingPlan MakeTunedSettings(const StudyPlan& plan) {
   return MakeSettingPlan(plan.study, *plan.study.tuning);
 }
 

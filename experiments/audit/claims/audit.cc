@@ -36,7 +36,7 @@ bool IsNamed(const Claim& claim, const std::string& name) {
 }
 
 // Seconds on all threads that the check takes if no verdict stops it.
-double WorkOf(const Check& check, const CheckRun& run, int num_threads) {
+double EstimateWork(const Check& check, const CheckRun& run, int num_threads) {
   if (!check.not_possible.empty()) return 0.0;
   constexpr std::uint32_t kLeastTimed = 4;
   constexpr double kLeastSeconds = 0.002, kMostSeconds = 0.1;
@@ -76,7 +76,7 @@ Audit PlanAudit(const std::vector<Claim>& all, const AuditOptions& options) {
   return audit;
 }
 
-std::vector<CheckPlace> PlacesOf(const Audit& plan) {
+std::vector<CheckPlace> ListCheckPlaces(const Audit& plan) {
   std::vector<CheckPlace> places;
   for (size_t claim = 0; claim < plan.claims.size(); ++claim) {
     for (size_t check = 0; check < plan.claims[claim].checks.size(); ++check)
@@ -85,7 +85,7 @@ std::vector<CheckPlace> PlacesOf(const Audit& plan) {
   return places;
 }
 
-CheckRun RunOf(const Audit& plan, const CheckPlace& place) {
+CheckRun MakeCheckRun(const Audit& plan, const CheckPlace& place) {
   const AuditOptions& options = plan.options;
   return {options.seed, StreamCondition(plan.claims[place.claim].id, place.check), options.budget,
           plan.confidence, options.num_threads};
@@ -102,8 +102,8 @@ void JudgeClaims(Audit* audit) {
 std::vector<double> EstimateSeconds(const Audit& plan) {
   const int num_threads = NumThreads(plan.options.num_threads);
   std::vector<double> seconds;
-  for (const CheckPlace& place : PlacesOf(plan))
-    seconds.push_back(WorkOf(CheckAt(plan, place), RunOf(plan, place), num_threads));
+  for (const CheckPlace& place : ListCheckPlaces(plan))
+    seconds.push_back(EstimateWork(CheckAt(plan, place), MakeCheckRun(plan, place), num_threads));
   return seconds;
 }
 

@@ -44,15 +44,15 @@ struct CheckPlace {
 };
 
 // All of them in their order.
-std::vector<CheckPlace> PlacesOf(const Audit& plan);
+std::vector<CheckPlace> ListCheckPlaces(const Audit& plan);
 
 const Check& CheckAt(const Audit& plan, const CheckPlace& place);
-CheckRun RunOf(const Audit& plan, const CheckPlace& place);
+CheckRun MakeCheckRun(const Audit& plan, const CheckPlace& place);
 
 // The verdicts of the claims from those of their checks, of which there is one in audit->results for each.
 void JudgeClaims(Audit* audit);
 
-// For each of PlacesOf the seconds on the audit's threads that the check takes if no verdict stops it.
+// For each of ListCheckPlaces the seconds on the audit's threads that the check takes if no verdict stops it.
 std::vector<double> EstimateSeconds(const Audit& plan);
 
 }  // namespace rcme

@@ -43,14 +43,14 @@ std::string DescribeClaimed(const Target& target) {
 // What the target can decide at the audit's budget; "-" where nothing is claimed.
 std::string DescribePower(const Audit& audit, const Check& check, const Target& target) {
   if (!target.IsClaimed()) return "-";
-  return DescribeFound(PowerOf(target, check.limits.Max(audit.options.budget), audit.confidence));
+  return DescribeFound(FindPower(target, check.limits.Max(audit.options.budget), audit.confidence));
 }
 
 // How the regions of a check or a claim are wrong.
 std::optional<Side> FindSide(const Check& check, const CheckResult& result) {
   std::vector<std::optional<Side>> sides;
   for (size_t t = 0; t < result.targets.size(); ++t)
-    sides.push_back(SideOf(check.targets[t], result.targets[t]));
+    sides.push_back(FindFailedSide(check.targets[t], result.targets[t]));
   return JoinSides(sides);
 }
 
@@ -100,7 +100,7 @@ struct Decisive {
   const TargetResult* result;
 };
 
-Decisive DecisiveOf(const Claim& claim, const ClaimResult& result, size_t begin, size_t end) {
+Decisive FindDecisive(const Claim& claim, const ClaimResult& result, size_t begin, size_t end) {
   const auto distance = [](const Check& check) {
     const double excess = check.sigma_px.value_or(kAssertedSigmaPx) - kAssertedSigmaPx;
     return excess > 0.0 ? 1e3 + excess : -excess;
@@ -141,7 +141,7 @@ Json TargetAsJson(const Target& target, const TargetResult& result) {
                {"interval", {JsonNumber(result.interval.lower), JsonNumber(result.interval.upper)}},
                {"n", result.n},
                {"verdict", VerdictName(result.verdict)},
-               {"side", SideName(SideOf(target, result))}};
+               {"side", SideName(FindFailedSide(target, result))}};
   json["trials_to_decide"] =
       result.verdict == Verdict::kUndecided ? JsonNumber(result.trials_to_decide) : Json();
   return json;
@@ -169,7 +169,7 @@ Json CheckAsJson(const Audit& audit, const Check& check, const CheckResult& resu
     json["targets"].push_back(TargetAsJson(check.targets[t], result.targets[t]));
     if (!check.targets[t].IsClaimed()) continue;
     json["targets"].back()["power"] =
-        PowerAsJson(PowerOf(check.targets[t], check.limits.Max(audit.options.budget), audit.confidence));
+        PowerAsJson(FindPower(check.targets[t], check.limits.Max(audit.options.budget), audit.confidence));
   }
   if (!result.fifths.empty()) json["fifths_of_difficulty"] = FifthsAsJson(result.fifths);
   return json;
@@ -244,10 +244,11 @@ Table MakeEvidenceTable(const Audit& audit, const Claim& claim, const ClaimResul
     for (size_t t = 0; t < of.targets.size(); ++t) {
       const TargetResult& target = of.targets[t];
       if (IsLeftOut(check.targets[t], target)) continue;
-      table.rows.push_back(
-          {DescribeConditions(check), check.targets[t].quantity, DescribeClaimed(check.targets[t]),
-           DescribePower(audit, check, check.targets[t]), MakeEstimate(target), DescribeTrials(target, of),
-           AddSide(VerdictName(target.verdict), SideOf(check.targets[t], target)) + DescribeRemedy(target)});
+      table.rows.push_back({DescribeConditions(check), check.targets[t].quantity,
+                            DescribeClaimed(check.targets[t]), DescribePower(audit, check, check.targets[t]),
+                            MakeEstimate(target), DescribeTrials(target, of),
+                            AddSide(VerdictName(target.verdict), FindFailedSide(check.targets[t], target)) +
+                                DescribeRemedy(target)});
     }
   }
   return table;
@@ -282,7 +283,7 @@ Table MakeConditionTable(const Audit& audit) {
           {claim.id, fmt::format("all {}", claim.checks.size()), DescribeVerdict(claim, result)});
     }
     for (size_t c = 0; c < claim.checks.size(); ++c) {
-      const Decisive decisive = DecisiveOf(claim, result, c, c + 1);
+      const Decisive decisive = FindDecisive(claim, result, c, c + 1);
       table.rows.push_back({claim.id, DescribeConditions(claim.checks[c]),
                             DescribeVerdict(claim.checks[c], result.checks[c])});
       std::vector<Value>& row = table.rows.back();
@@ -306,7 +307,7 @@ Table MakeClaimTable(const Audit& audit) {
                Column::Estimated("measured", kFourDigits), Column::Count("n")}};
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     const Claim& claim = audit.claims[i];
-    const Decisive decisive = DecisiveOf(claim, audit.results[i], 0, claim.checks.size());
+    const Decisive decisive = FindDecisive(claim, audit.results[i], 0, claim.checks.size());
     std::vector<Value>& row = table.rows.emplace_back();
     row = {claim.id, DescribeVerdict(claim, audit.results[i])};
     if (decisive.target) {

@@ -30,7 +30,7 @@ std::string Identity(const Audit& plan) {
 WorkPlan PlanOfChecks(const Audit& plan, const std::string& work, const std::string& item_name,
                       const AuditRound& num_items) {
   WorkPlan items{work, item_name, Identity(plan), {}};
-  for (const CheckPlace& place : PlacesOf(plan)) {
+  for (const CheckPlace& place : ListCheckPlaces(plan)) {
     items.groups.push_back({fmt::format("check {} of claim {}", place.check, plan.claims[place.claim].id),
                             num_items[items.groups.size()]});
   }
@@ -39,12 +39,12 @@ WorkPlan PlanOfChecks(const Audit& plan, const std::string& work, const std::str
 
 // A round is kept as a part is, with one piece for each check: how many blocks it needs.
 WorkPlan PlanRound(const Audit& plan) {
-  return PlanOfChecks(plan, "round of an audit", "number", AuditRound(PlacesOf(plan).size(), 1));
+  return PlanOfChecks(plan, "round of an audit", "number", AuditRound(ListCheckPlaces(plan).size(), 1));
 }
 
-std::vector<TrialBlocks> BlocksOf(const Audit& plan) {
+std::vector<TrialBlocks> MakeTrialBlocks(const Audit& plan) {
   std::vector<TrialBlocks> blocks;
-  for (const CheckPlace& place : PlacesOf(plan))
+  for (const CheckPlace& place : ListCheckPlaces(plan))
     blocks.emplace_back(CheckAt(plan, place), plan.options.budget);
   return blocks;
 }
@@ -63,7 +63,7 @@ std::vector<ItemPlace> ListItems(const AuditRound& round) {
 size_t CountBlocks(const Audit& plan, const CheckPlace& place, const TrialBlocks& blocks, size_t group,
                    const WorkPlan& pieces, const WorkResults& parts, CheckResult* result) {
   const Check& check = CheckAt(plan, place);
-  CheckDecision decision(check, RunOf(plan, place));
+  CheckDecision decision(check, MakeCheckRun(plan, place));
   size_t num_counted = 0;
   ReadResults(pieces, parts, group, group + 1, [&](const ItemPlace& piece, const std::string& json) {
     if (piece.item != num_counted || decision.IsDone()) return;
@@ -79,12 +79,12 @@ size_t CountBlocks(const Audit& plan, const CheckPlace& place, const TrialBlocks
 }  // namespace
 
 WorkPlan PlanAuditChecks(const Audit& plan) {
-  return PlanOfChecks(plan, "audit on one machine", "check", AuditRound(PlacesOf(plan).size(), 1));
+  return PlanOfChecks(plan, "audit on one machine", "check", AuditRound(ListCheckPlaces(plan).size(), 1));
 }
 
 Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runner* runner) {
   Audit audit = PlanAudit(all, options);
-  const std::vector<CheckPlace> places = PlacesOf(audit);
+  const std::vector<CheckPlace> places = ListCheckPlaces(audit);
   const std::vector<double> seconds = EstimateSeconds(audit);
   PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
                audit.claims.size(), places.size(),
@@ -96,7 +96,7 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runne
   runner->Get(ListItems(runner->plan(), {}),
               [&](const ItemPlace& item) {
                 const CheckPlace& place = places[item.group];
-                return CheckResultAsJson(DecideCheck(CheckAt(audit, place), RunOf(audit, place)));
+                return CheckResultAsJson(DecideCheck(CheckAt(audit, place), MakeCheckRun(audit, place)));
               },
               {"ms of work", milliseconds});
   ReadResults(runner->plan(), runner->results(), 0, places.size(),
@@ -110,13 +110,13 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runne
 
 WorkPlan PlanAuditBlocks(const Audit& plan) {
   AuditRound num_blocks;
-  for (const TrialBlocks& blocks : BlocksOf(plan)) num_blocks.push_back(blocks.NumBlocks());
+  for (const TrialBlocks& blocks : MakeTrialBlocks(plan)) num_blocks.push_back(blocks.NumBlocks());
   return PlanOfChecks(plan, "audit", "block", num_blocks);
 }
 
 AuditRound FirstRound(const Audit& plan) {
   AuditRound round;
-  for (const TrialBlocks& blocks : BlocksOf(plan))
+  for (const TrialBlocks& blocks : MakeTrialBlocks(plan))
     round.push_back(blocks.NumBlocks() == 0 ? 0 : blocks.RoundEnd(0));
   return round;
 }
@@ -133,7 +133,7 @@ void WriteRound(const Audit& plan, const AuditRound& round, const std::string& p
 AuditRound ReadRound(const Audit& plan, const std::string& path) {
   const WorkPlan pieces = PlanRound(plan);
   const WorkResults merged = MergeParts(pieces, {path});
-  const std::vector<TrialBlocks> blocks = BlocksOf(plan);
+  const std::vector<TrialBlocks> blocks = MakeTrialBlocks(plan);
   if (FindMissingIn(pieces, merged, 0, pieces.groups.size()).num_items > 0)
     throw InputError(fmt::format("{}: damaged: it lacks checks", path));
   AuditRound round(blocks.size());
@@ -145,8 +145,8 @@ AuditRound ReadRound(const Audit& plan, const std::string& path) {
 }
 
 void GetAuditRound(const Audit& plan, const AuditRound& round, Runner* runner) {
-  const std::vector<CheckPlace> checks = PlacesOf(plan);
-  const std::vector<TrialBlocks> blocks = BlocksOf(plan);
+  const std::vector<CheckPlace> checks = ListCheckPlaces(plan);
+  const std::vector<TrialBlocks> blocks = MakeTrialBlocks(plan);
   std::vector<ItemPlace> its_own = ListItems(round);
   const Shard& shard = runner->shard();
   std::erase_if(its_own, [&](const ItemPlace& p) { return FindShardOfItem(p, shard.count) != shard.number; });
@@ -154,8 +154,8 @@ void GetAuditRound(const Audit& plan, const AuditRound& round, Runner* runner) {
     const CheckPlace& at = checks[place.group];
     const TrialBlocks& of_check = blocks[place.group];
     const Check& check = CheckAt(plan, at);
-    return OutcomesAsJson(
-        check, RunTrials(check, RunOf(plan, at), of_check.Begin(place.item), of_check.End(place.item)));
+    return OutcomesAsJson(check, RunTrials(check, MakeCheckRun(plan, at), of_check.Begin(place.item),
+                                           of_check.End(place.item)));
   });
 }
 
@@ -165,8 +165,8 @@ MergedAudit MergeAuditParts(const std::vector<Claim>& all, const AuditOptions& o
   merged.audit = PlanAudit(all, options);
   const WorkPlan pieces = PlanAuditBlocks(merged.audit);
   merged.parts = MergeParts(pieces, paths);
-  const std::vector<CheckPlace> checks = PlacesOf(merged.audit);
-  const std::vector<TrialBlocks> blocks = BlocksOf(merged.audit);
+  const std::vector<CheckPlace> checks = ListCheckPlaces(merged.audit);
+  const std::vector<TrialBlocks> blocks = MakeTrialBlocks(merged.audit);
   for (size_t group = 0; group < checks.size(); ++group) {
     CheckResult* result = &merged.audit.results[checks[group].claim].checks[checks[group].check];
     merged.round.push_back(

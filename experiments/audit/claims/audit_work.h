@@ -25,7 +25,7 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runne
 // On many machines.
 WorkPlan PlanAuditBlocks(const Audit& plan);
 
-// How many blocks of each check are needed, those of the rounds before among them; as PlacesOf.
+// How many blocks of each check are needed, those of the rounds before among them; as ListCheckPlaces.
 using AuditRound = std::vector<size_t>;
 AuditRound FirstRound(const Audit& plan);
 

@@ -35,7 +35,7 @@ const char* Name(Side side) {
   return "too narrow and too wide";
 }
 
-std::optional<Side> SideOf(const Target& target, const TargetResult& result) {
+std::optional<Side> FindFailedSide(const Target& target, const TargetResult& result) {
   if (!target.IsOfRegion() || result.verdict != Verdict::kDoesNotHold) return std::nullopt;
   // A region that is too narrow covers too seldom, and the truth lies too far out in its law.
   const bool is_below = result.interval.upper < target.allowed.lower;

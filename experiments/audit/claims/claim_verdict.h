@@ -18,7 +18,7 @@ enum class Side { kTooNarrow, kTooWide, kBoth };
 const char* Name(Side side);  // "too narrow", "too wide", "too narrow and too wide"
 
 // Of a target of a region that does not hold; nothing: of others.
-std::optional<Side> SideOf(const Target& target, const TargetResult& result);
+std::optional<Side> FindFailedSide(const Target& target, const TargetResult& result);
 // Of those that have one: theirs, or both.
 std::optional<Side> JoinSides(const std::vector<std::optional<Side>>& sides);
 

@@ -25,7 +25,7 @@ double Exponent(const std::vector<double>& x, const std::vector<double>& y) {
 
 // Processor time of this thread, s; the lesser of two runs, so that what else the machine does counts
 // little.
-double SecondsOf(const std::function<void()>& work) {
+double MeasureSeconds(const std::function<void()>& work) {
   double least = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 2; ++run) {
     const double start = ThreadSeconds();
@@ -46,7 +46,7 @@ double SecondsOfLoop(const MotionProblem& problem, double num_iterations, const 
   const std::unique_ptr<MotionEstimator> prcme = MakeEstimator(
       "prcme",
       {{"num_iterations", std::to_string(static_cast<int>(num_iterations))}, {"refinement", "none"}});
-  return SecondsOf([&] {
+  return MeasureSeconds([&] {
     RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
     prcme->Estimate(problem, rng);
   });
@@ -75,7 +75,7 @@ Outcome RefinementStatistic(Case& made) {
   std::vector<double> times;
   for (const double n : ns) {
     const MotionProblem part = FirstMatches(made.problem(), n);
-    times.push_back(SecondsOf([&] { Refine(part, start); }));
+    times.push_back(MeasureSeconds([&] { Refine(part, start); }));
   }
   return {Exponent(ns, times)};
 }

@@ -78,7 +78,8 @@ Outcome ResidualShareStatistic(Case& made) {
   EntropyParts among_models;
   Moments within_models;
   for (int i = 0; i < kNumModels; ++i) {
-    const std::optional<UncertainFundamental> model = ModelOf(problem, DrawSampleOf(SampleKind::kGood, made));
+    const std::optional<UncertainFundamental> model =
+        ComputeSampleModel(problem, DrawSampleByKind(SampleKind::kGood, made));
     if (!model) continue;
     const AsPrintedTest test(*model, problem.sigma_px);
     EntropyParts within;

@@ -5,14 +5,14 @@
 
 namespace rcme {
 
-std::optional<UncertainFundamental> ModelOf(const MotionProblem& problem, const Sample& sample) {
+std::optional<UncertainFundamental> ComputeSampleModel(const MotionProblem& problem, const Sample& sample) {
   std::optional<Hypothesis<EightPoint>> hypothesis = InstantiateModel<EightPoint>(problem, {sample});
   if (!hypothesis) return std::nullopt;
   PropagateCovariance(problem, &*hypothesis);
   return ComputeUncertainFundamental(problem, *hypothesis);
 }
 
-Sample DrawSampleOf(SampleKind kind, Case& made) {
+Sample DrawSampleByKind(SampleKind kind, Case& made) {
   const std::vector<bool>& is_inlier = made.data.truth.is_inlier_true;
   for (int draw = 0; draw < 1'000'000; ++draw) {
     const Sample sample = DrawSample(8, static_cast<int>(is_inlier.size()), made.rng);

@@ -9,16 +9,16 @@
 namespace rcme {
 
 // The eight-point model of a sample with its covariances; nothing if it is degenerate.
-std::optional<UncertainFundamental> ModelOf(const MotionProblem& problem, const Sample& sample);
+std::optional<UncertainFundamental> ComputeSampleModel(const MotionProblem& problem, const Sample& sample);
 
 // Samples of eight matches as RANSAC draws them, given that all of them are true or that not all are.
 enum class SampleKind { kGood, kContaminated };
-Sample DrawSampleOf(SampleKind kind, Case& made);
+Sample DrawSampleByKind(SampleKind kind, Case& made);
 
 // n_j, psi_j and s_j of the model of a sample, scored on all matches; no inlier at all if it is degenerate.
 template <typename PointTest>
 InlierScore ScoreSample(const MotionProblem& problem, const Sample& sample) {
-  const std::optional<UncertainFundamental> model = ModelOf(problem, sample);
+  const std::optional<UncertainFundamental> model = ComputeSampleModel(problem, sample);
   if (!model) return {};
   const Thresholds thresholds = Thresholds::For(problem, RansacOptions(), PointTest::kDegreesOfFreedom);
   return ScoreInliers(problem, PointTest(*model, problem.sigma_px), thresholds);

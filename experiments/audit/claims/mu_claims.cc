@@ -14,8 +14,8 @@ const Settings kPair = {{"num_matches", "200"}, {"outlier_ratio", "0.2"}};
 
 // The inlier set of a good or a contaminated model of one scene.
 template <typename PointTest>
-InlierScore ScoreOf(SampleKind kind, Case& made) {
-  const Sample sample = DrawSampleOf(kind, made);
+InlierScore ScoreDrawnSample(SampleKind kind, Case& made) {
+  const Sample sample = DrawSampleByKind(kind, made);
   return ScoreSample<PointTest>(made.problem(), sample);
 }
 
@@ -35,8 +35,8 @@ Check SeparationCheck(Reading reading) {
     Case first = cases(name);
     ++name.trial;
     Case second = cases(name);
-    const InlierScore good = ScoreOf<PointTest>(SampleKind::kGood, first);
-    const InlierScore contaminated = ScoreOf<PointTest>(SampleKind::kContaminated, second);
+    const InlierScore good = ScoreDrawnSample<PointTest>(SampleKind::kGood, first);
+    const InlierScore contaminated = ScoreDrawnSample<PointTest>(SampleKind::kContaminated, second);
     const auto passes = [&](const InlierScore& score) {
       return PassesQualityTest(ZStatistic(score, options.MuOrDefault()),
                                NormalQuantile(1.0 - options.significance_level), options.quality_test);
@@ -59,15 +59,17 @@ Check RocCheck(SampleKind kind, const std::vector<double>& thresholds) {
   }
   Check check = MakeCheck(
       kPair,
-      [kind](Case& made) -> Outcome { return {MeanEntropyOrInfinity(ScoreOf<PointTest>(kind, made))}; },
+      [kind](Case& made) -> Outcome {
+        return {MeanEntropyOrInfinity(ScoreDrawnSample<PointTest>(kind, made))};
+      },
       targets, kRoc.limits);
   check.conditions.emplace_back("models", kind == SampleKind::kGood ? "good" : "contaminated");
   return check;
 }
 
 template <typename PointTest>
-std::vector<Claim> ClaimsOf(Reading reading, const std::string& id, const std::string& name,
-                            const std::string& mu, const std::vector<double>& thresholds) {
+std::vector<Claim> MakeMuClaims(Reading reading, const std::string& id, const std::string& name,
+                                const std::string& mu, const std::vector<double>& thresholds) {
   return {{"mu." + id + ".separation",
            "Sec. inlier_qual_test, mu",
            name,
@@ -119,9 +121,9 @@ Claim SolverClaim() {
     Case first = cases(name);
     ++name.trial;
     Case second = cases(name);
-    const double eight = MeanEntropyOrInfinity(ScoreOf<RankAwareTest>(SampleKind::kGood, first));
+    const double eight = MeanEntropyOrInfinity(ScoreDrawnSample<RankAwareTest>(SampleKind::kGood, first));
     const double five =
-        MeanEntropyOrInfinity(FivePointScore(second.problem(), DrawSampleOf(SampleKind::kGood, second)));
+        MeanEntropyOrInfinity(FivePointScore(second.problem(), DrawSampleByKind(SampleKind::kGood, second)));
     return {five > eight ? 1.0 : 0.0, eight, five};
   };
   return {"mu.rank_aware.solver",
@@ -138,12 +140,12 @@ Claim SolverClaim() {
 
 std::vector<Claim> MuClaims() {
   std::vector<Claim> claims =
-      ClaimsOf<AsPrintedTest>(Reading::kAsPrinted, "as_printed", "as printed", "-3.53",
-                              {-20, -15, -12, -10, -9, -8, -7, -6, -5, -4, -3.53, -3, -2,
-                               -1,  0,   1,   2,   3,  4,  5,  6,  8,  10, 12,    15, 20});
+      MakeMuClaims<AsPrintedTest>(Reading::kAsPrinted, "as_printed", "as printed", "-3.53",
+                                  {-20, -15, -12, -10, -9, -8, -7, -6, -5, -4, -3.53, -3, -2,
+                                   -1,  0,   1,   2,   3,  4,  5,  6,  8,  10, 12,    15, 20});
   for (Claim& claim :
-       ClaimsOf<RankAwareTest>(Reading::kRankAware, "rank_aware", "rank-aware, excess", "6",
-                               {0.25, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 10, 12, 15})) {
+       MakeMuClaims<RankAwareTest>(Reading::kRankAware, "rank_aware", "rank-aware, excess", "6",
+                                   {0.25, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 10, 12, 15})) {
     claims.push_back(std::move(claim));
   }
   claims.push_back(SolverClaim());

@@ -77,7 +77,7 @@ std::optional<Verdict> VerdictFrom(const Json& json) {
 
 }  // namespace
 
-std::vector<size_t> StatisticsOf(const Check& check) {
+std::vector<size_t> ListStatistics(const Check& check) {
   std::vector<size_t> statistics;
   for (const Target& target : check.targets) statistics.push_back(target.statistic);
   if (check.difficulty_statistic) statistics.push_back(*check.difficulty_statistic);
@@ -88,13 +88,13 @@ std::vector<size_t> StatisticsOf(const Check& check) {
 
 std::string OutcomesAsJson(const Check& check, const std::vector<Outcome>& outcomes) {
   Json columns = Json::array();
-  for (const size_t statistic : StatisticsOf(check)) columns.push_back(ColumnAsJson(outcomes, statistic));
+  for (const size_t statistic : ListStatistics(check)) columns.push_back(ColumnAsJson(outcomes, statistic));
   return columns.dump();
 }
 
 std::vector<Outcome> OutcomesFrom(const Check& check, const std::string& text, size_t num_trials) {
   const Json json = ParsePiece(text);
-  const std::vector<size_t> statistics = StatisticsOf(check);
+  const std::vector<size_t> statistics = ListStatistics(check);
   if (!json.is_array() || json.size() != statistics.size())
     throw std::invalid_argument(fmt::format("it has {} statistics, not {}", json.size(), statistics.size()));
   std::vector<Outcome> outcomes(num_trials, Outcome(statistics.empty() ? 0 : statistics.back() + 1, kNaN));

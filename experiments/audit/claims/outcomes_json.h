@@ -9,7 +9,7 @@
 namespace rcme {
 
 // The statistics that the check's targets and its difficulty are of, ascending: what is kept of an outcome.
-std::vector<size_t> StatisticsOf(const Check& check);
+std::vector<size_t> ListStatistics(const Check& check);
 
 // A JSON list with one entry for each of these statistics: of a rate's trials a text with a character for
 // each, 1, 0 or n (NaN), of others a list of their numbers.

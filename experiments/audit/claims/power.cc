@@ -59,7 +59,7 @@ struct RateVerdicts {
 };
 
 // The error of sigma that moves a statistic's coverage at `quantile` to `coverage`.
-double SigmaErrorOf(double coverage, int degrees_of_freedom, double quantile) {
+double ComputeSigmaError(double coverage, int degrees_of_freedom, double quantile) {
   if (std::isinf(coverage)) return coverage < 0.0 ? -1.0 : kInfinity;
   return std::sqrt(ChiSquareQuantile(degrees_of_freedom, coverage) / quantile) - 1.0;
 }
@@ -76,8 +76,8 @@ TargetPower PowerOfRate(const Target& target, std::int64_t num_trials, double co
     power.found.upper = Border(1.0, target.allowed.upper, [&](double p) { return verdicts.FindsAbove(p); });
   }
   if (target.degrees_of_freedom > 0) {
-    power.found_sigma = {SigmaErrorOf(power.found.lower, target.degrees_of_freedom, target.threshold),
-                         SigmaErrorOf(power.found.upper, target.degrees_of_freedom, target.threshold)};
+    power.found_sigma = {ComputeSigmaError(power.found.lower, target.degrees_of_freedom, target.threshold),
+                         ComputeSigmaError(power.found.upper, target.degrees_of_freedom, target.threshold)};
   }
   return power;
 }
@@ -161,7 +161,7 @@ TargetPower ComputePower(const Target& target, std::int64_t num_trials, double c
 
 }  // namespace
 
-TargetPower PowerOf(const Target& target, std::int64_t num_trials, double confidence) {
+TargetPower FindPower(const Target& target, std::int64_t num_trials, double confidence) {
   // Everything that the power depends on: a claim's noise levels, and many claims, share theirs.
   using Key = std::pair<std::array<std::int64_t, 3>, std::array<double, 9>>;
   static std::mutex mutex;
@@ -183,7 +183,7 @@ double HoldsAtNominal(const Claim& claim, Budget budget, double confidence) {
     if (check.sigma_px > kAssertedSigmaPx) continue;
     for (const Target& target : check.targets) {
       if (!target.IsClaimed()) continue;
-      misses += 1.0 - PowerOf(target, check.limits.Max(budget), confidence).holds_at_nominal;
+      misses += 1.0 - FindPower(target, check.limits.Max(budget), confidence).holds_at_nominal;
     }
   }
   return std::max(0.0, 1.0 - misses);

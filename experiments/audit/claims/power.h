@@ -24,7 +24,7 @@ struct TargetPower {
 };
 
 // Of a claimed target after `num_trials`, its interval at `confidence`.
-TargetPower PowerOf(const Target& target, std::int64_t num_trials, double confidence);
+TargetPower FindPower(const Target& target, std::int64_t num_trials, double confidence);
 
 // The probability, at least, that every target of the claim holds, at all noise levels up to the asserted
 // one, where all nominal values are the truth.

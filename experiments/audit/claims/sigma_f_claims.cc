@@ -49,7 +49,7 @@ Outcome ExactInverseStatistic(Case& made) {
 }
 
 // Coverage of f by the covariance of a solver's model. One claim for each solver that there is.
-CaseClaim CoverageOf(const std::string& name, MinimalSolver solver) {
+CaseClaim MakeCoverageClaim(const std::string& name, MinimalSolver solver) {
   const auto [num_matches, is_exact] = VisitSolver(solver, []<typename Solver>(std::type_identity<Solver>) {
     return std::pair(Solver::kSampleSize, Solver::kCase == SolverCase::kExact);
   });
@@ -71,7 +71,7 @@ CaseClaim CoverageOf(const std::string& name, MinimalSolver solver) {
 }
 
 // One point knows the motion of a car alone.
-Settings SampleOf(const CaseClaim& claim, MinimalSolver solver) {
+Settings MakeSampleSettings(const CaseClaim& claim, MinimalSolver solver) {
   Settings settings = {{"num_matches", fmt::format("{}", claim.needs.num_true_matches)}};
   if (solver == MinimalSolver::kOnePoint) settings.emplace_back("motion", "ackermann");
   return settings;
@@ -82,7 +82,7 @@ Settings SampleOf(const CaseClaim& claim, MinimalSolver solver) {
 std::vector<CaseClaim> SigmaFCalibration() {
   std::vector<CaseClaim> claims;
   for (const auto& [name, solver] : SolverNames()) {
-    if (solver != MinimalSolver::kOnePoint) claims.push_back(CoverageOf(name, solver));
+    if (solver != MinimalSolver::kOnePoint) claims.push_back(MakeCoverageClaim(name, solver));
   }
   return claims;
 }
@@ -90,8 +90,8 @@ std::vector<CaseClaim> SigmaFCalibration() {
 std::vector<Claim> SigmaFClaims() {
   std::vector<Claim> claims;
   for (const auto& [name, solver] : SolverNames()) {
-    const CaseClaim claim = CoverageOf(name, solver);
-    claims.push_back(AtNoiseLevels(claim, kNoiseLevelsPx, SampleOf(claim, solver)));
+    const CaseClaim claim = MakeCoverageClaim(name, solver);
+    claims.push_back(AtNoiseLevels(claim, kNoiseLevelsPx, MakeSampleSettings(claim, solver)));
   }
   const std::vector<Claim> others = {
       {"sigma_f.formula",

@@ -28,7 +28,7 @@ void RequireCases(const Study& study) {
   }
   for (const std::vector<std::string>& levels : rows) {
     std::string scene;
-    for (const auto& [key, value] : SettingsOf(study, levels)) {
+    for (const auto& [key, value] : CombineSettings(study, levels)) {
       if (key == "scene") scene = value;
     }
     if (scene == kMatchFilesScene) throw InputError(kNoMatchFiles);
@@ -36,7 +36,7 @@ void RequireCases(const Study& study) {
 }
 
 Settings SimulatedSettings(const StudyPlan& plan, const Condition& condition) {
-  return ResolveSettings(SettingsOf(plan.study, condition.levels));
+  return ResolveSettings(CombineSettings(plan.study, condition.levels));
 }
 
 CaseMaker StudyCases(const StudyPlan& plan, const Condition& condition) {

@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-std::vector<CaseClaim> CalibrationOf(const StudyPlan& plan) {
+std::vector<CaseClaim> ListCalibrationClaims(const StudyPlan& plan) {
   std::vector<CaseClaim> all;
   for (const std::vector<CaseClaim>& family :
        {SigmaFCalibration(), SigmaPCalibration(), InlierCalibration(), SampleTestCalibration(),
@@ -35,7 +35,7 @@ struct ConditionCases {
   std::vector<SimulatedCase> first;
 };
 
-ConditionCases CasesOf(const StudyPlan& plan, const Condition& condition) {
+ConditionCases MakeConditionCases(const StudyPlan& plan, const Condition& condition) {
   constexpr std::uint32_t kNumFirst = 16;
   const auto make = [study = plan.study, make_case = StudyCases(plan, condition)](const StreamName& name) {
     return SimulateDraw(study, [&] { return make_case(name); });
@@ -97,14 +97,14 @@ Check CheckOn(const ConditionCases& cases, const CaseClaim& claim) {
 
 std::vector<Claim> StudyClaims(const StudyPlan& plan) {
   RequireCases(plan.study);
-  std::vector<CaseClaim> calibration = CalibrationOf(plan);
+  std::vector<CaseClaim> calibration = ListCalibrationClaims(plan);
   std::vector<Claim> claims;
   for (const CaseClaim& claim : calibration) {
     claims.push_back(claim.words);
     claims.back().figure_x = plan.factor_names.size() == 1 ? plan.factor_names.front() : "";
   }
   for (const Condition& condition : plan.conditions) {
-    const ConditionCases cases = CasesOf(plan, condition);
+    const ConditionCases cases = MakeConditionCases(plan, condition);
     for (size_t i = 0; i < claims.size(); ++i) claims[i].checks.push_back(CheckOn(cases, calibration[i]));
   }
   return claims;

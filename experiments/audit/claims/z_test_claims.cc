@@ -19,7 +19,7 @@ double ZAtOwnMean(const Case& made) {
   problem.noise_scale
       .clear();  // as if all matches were alike: the statistic is of an estimator that ignores it
   const Sample sample = {0, 1, 2, 3, 4, 5, 6, 7};
-  const std::optional<UncertainFundamental> model = ModelOf(problem, sample);
+  const std::optional<UncertainFundamental> model = ComputeSampleModel(problem, sample);
   if (!model) return kNaN;
   const std::vector<Correspondence> matches = problem.matches;
   const PointTest test(*model, problem.sigma_px);
@@ -58,8 +58,8 @@ Claim SizeClaim(const char* id, const char* reading, QualityTest quality_test, c
 // NaN where one of them has fewer than two inliers, and so no standard error.
 template <typename PointTest>
 Outcome SpreadStatistic(Case& made) {
-  const InlierScore a = ScoreSample<PointTest>(made.problem(), DrawSampleOf(SampleKind::kGood, made));
-  const InlierScore b = ScoreSample<PointTest>(made.problem(), DrawSampleOf(SampleKind::kGood, made));
+  const InlierScore a = ScoreSample<PointTest>(made.problem(), DrawSampleByKind(SampleKind::kGood, made));
+  const InlierScore b = ScoreSample<PointTest>(made.problem(), DrawSampleByKind(SampleKind::kGood, made));
   if (a.num_inliers < 2 || b.num_inliers < 2) return {kNaN};
   const auto squared_error = [](const InlierScore& score) {
     return score.sum_squares / (score.num_inliers - 1.0) / score.num_inliers;

@@ -21,7 +21,7 @@ void Add(const std::string& name, const Matrix& matrix, Numbers* numbers) {
   }
 }
 
-Numbers NumbersOf(const MotionEstimate& e) {
+Numbers ListComparedNumbers(const MotionEstimate& e) {
   Numbers numbers = {{"status", static_cast<double>(e.status)},
                      {"num_support", e.num_support},
                      {"mean_entropy", e.mean_entropy},
@@ -63,7 +63,7 @@ Numbers NumbersOf(const MotionEstimate& e) {
   return numbers;
 }
 
-Numbers NumbersOf(const MotionProblem& problem) {
+Numbers ListComparedNumbers(const MotionProblem& problem) {
   Numbers numbers = {{"sigma_px", problem.sigma_px},
                      {"number of matches", static_cast<double>(problem.matches.size())}};
   numbers.emplace_back("number of noise scales", static_cast<double>(problem.noise_scale.size()));
@@ -92,11 +92,11 @@ std::optional<std::string> FirstDifference(const Numbers& a, const Numbers& b) {
 
 std::optional<std::string> FirstDifference(const MotionEstimate& a, const MotionEstimate& b) {
   if (a.message != b.message) return fmt::format("the message is '{}' and then '{}'", a.message, b.message);
-  return FirstDifference(NumbersOf(a), NumbersOf(b));
+  return FirstDifference(ListComparedNumbers(a), ListComparedNumbers(b));
 }
 
 std::optional<std::string> FirstDifference(const MotionProblem& a, const MotionProblem& b) {
-  return FirstDifference(NumbersOf(a), NumbersOf(b));
+  return FirstDifference(ListComparedNumbers(a), ListComparedNumbers(b));
 }
 
 }  // namespace rcme

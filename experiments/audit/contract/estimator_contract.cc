@@ -19,7 +19,7 @@ namespace rcme {
 namespace {
 
 // What the score would find, and what only the contract asks for; nothing: sound.
-std::optional<std::string> FaultOf(const MotionEstimate& estimate, const ContractProblem& problem) {
+std::optional<std::string> FindContractFault(const MotionEstimate& estimate, const ContractProblem& problem) {
   if (const auto fault = FindFault(estimate, problem.problem.matches.size()))
     return fmt::format("{}: {}", StatusName(fault->status), fault->message);
   const MotionStatus status = estimate.status;
@@ -44,7 +44,7 @@ std::string ExpectSoundAnswers(Bench& bench, const std::vector<ContractProblem>&
     try {
       const MotionEstimate estimate = bench.Call(problem);
       num_ok += estimate.status == MotionStatus::kOk;
-      fault = FaultOf(estimate, problem);
+      fault = FindContractFault(estimate, problem);
     } catch (const std::exception& error) {
       fault = fmt::format("throws: {}", error.what());
     } catch (...) {

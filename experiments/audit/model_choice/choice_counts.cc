@@ -19,7 +19,7 @@ std::vector<ModelChoiceOptions> EveryCriterion() {
   return all;
 }
 
-size_t AnswerOf(const ModelChoice& choice) {
+size_t FindAnswer(const ModelChoice& choice) {
   return choice.status == MotionStatus::kOk ? static_cast<size_t>(choice.verdict) : kNumAnswers - 1;
 }
 
@@ -32,7 +32,7 @@ TrueKind KindOfTrial(const Scene& scene, const TrialData& data, const StreamName
   const ModelChoiceOptions options;
   const KindMeasures measures =
       MeasureKind(scene, points, data.problem.sigma_px, options.parallax_significance_level, rng);
-  return KindOf(measures, options.least_parallax_share);
+  return ClassifyKind(measures, options.least_parallax_share);
 }
 
 void CheckCanBeScored(const StudyPlan& plan) {
@@ -52,7 +52,8 @@ void CheckCanBeScored(const StudyPlan& plan) {
   }
 }
 
-std::vector<size_t> PlacesOf(const std::vector<std::string>& by, const std::vector<std::string>& factors) {
+std::vector<size_t> FindFactorPlaces(const std::vector<std::string>& by,
+                                     const std::vector<std::string>& factors) {
   std::vector<size_t> places;
   for (const std::string& name : by) {
     const auto found = std::ranges::find(factors, name);
@@ -77,7 +78,7 @@ using Matrices = std::vector<ConfusionMatrix>;
 
 constexpr std::uint32_t kTrialsOfChoiceItem = 10;
 
-TrialRange FindTrialsOf(const StudyPlan& plan, const ItemPlace& place) {
+TrialRange FindChoiceTrials(const StudyPlan& plan, const ItemPlace& place) {
   const auto first = static_cast<std::uint32_t>(place.item) * kTrialsOfChoiceItem;
   return {first, std::min(first + kTrialsOfChoiceItem, static_cast<std::uint32_t>(plan.study.trials))};
 }
@@ -92,10 +93,10 @@ Matrices CountTrials(const StudyPlan& plan, const Condition& condition, TrialRan
     const TrialData& data = *simulated.made;
     if (data.weight != 1.0)
       throw InputError("model-choice: tilted_to: weighted trials have no plain rates; leave it out");
-    const auto kind = static_cast<size_t>(KindOfTrial(condition.source->SceneOf(name).value(), data, name));
+    const auto kind = static_cast<size_t>(KindOfTrial(condition.source->FindScene(name).value(), data, name));
     RandomStream rng = StreamFor(name, StreamPurpose::kSampling);
     const std::vector<ModelChoice> choices = ChooseModels(data.problem, criteria, rng);
-    for (size_t c = 0; c < choices.size(); ++c) ++matrices[c][kind][AnswerOf(choices[c])];
+    for (size_t c = 0; c < choices.size(); ++c) ++matrices[c][kind][FindAnswer(choices[c])];
   }
   return matrices;
 }
@@ -141,10 +142,10 @@ WorkPlan PlanChoices(const StudyPlan& plan) {
 
 ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>& by, Runner* runner) {
   ChoiceCounts counts{by, {}};
-  const std::vector<size_t> places = PlacesOf(by, plan.factor_names);
+  const std::vector<size_t> places = FindFactorPlaces(by, plan.factor_names);
   runner->Get(ListItems(runner->plan(), {}), [&](const ItemPlace& place) {
     const Condition& condition = plan.conditions[place.group];
-    return nlohmann::ordered_json(CountTrials(plan, condition, FindTrialsOf(plan, place))).dump();
+    return nlohmann::ordered_json(CountTrials(plan, condition, FindChoiceTrials(plan, place))).dump();
   });
   for (size_t c = 0; c < plan.conditions.size(); ++c) {
     std::vector<std::string> levels;
@@ -152,7 +153,7 @@ ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>&
     ChoiceGroup& group = GroupWith(levels, &counts.groups);
     ReadResults(runner->plan(), runner->results(), c, c + 1,
                 [&](const ItemPlace& place, const std::string& json) {
-                  const TrialRange trials = FindTrialsOf(plan, place);
+                  const TrialRange trials = FindChoiceTrials(plan, place);
                   AddMatrices(ParsePiece(json), trials.end - trials.first, plan.study.population.has_value(),
                               &group.matrices);
                 });

@@ -24,7 +24,7 @@ struct Cell {
   Interval interval;
 };
 
-Cell CellOf(const ConfusionMatrix& matrix, size_t kind, size_t answer) {
+Cell ComputeConfusionCell(const ConfusionMatrix& matrix, size_t kind, size_t answer) {
   const auto& row = matrix[kind];
   const std::int64_t n = std::accumulate(row.begin(), row.end(), std::int64_t{0}), count = row[answer];
   return {count, n, static_cast<double>(count) / static_cast<double>(n), ExactBinomialInterval(count, n)};
@@ -35,10 +35,10 @@ Table MakeMatrixTable(const std::string& criterion, const ConfusionMatrix& matri
   for (size_t answer = 0; answer < kNumAnswers; ++answer)
     table.columns.push_back(Column::Estimated(AnswerName(answer), {100.0, "%", ".1f"}));
   for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
-    if (CellOf(matrix, kind, 0).n == 0) continue;
-    table.rows.push_back({Name(kTrueKinds[kind]), CellOf(matrix, kind, 0).n});
+    if (ComputeConfusionCell(matrix, kind, 0).n == 0) continue;
+    table.rows.push_back({Name(kTrueKinds[kind]), ComputeConfusionCell(matrix, kind, 0).n});
     for (size_t answer = 0; answer < kNumAnswers; ++answer) {
-      const Cell cell = CellOf(matrix, kind, answer);
+      const Cell cell = ComputeConfusionCell(matrix, kind, answer);
       table.rows.back().emplace_back(Estimate{cell.value, cell.interval});
     }
   }
@@ -47,7 +47,7 @@ Table MakeMatrixTable(const std::string& criterion, const ConfusionMatrix& matri
 
 std::int64_t CountTrials(const ConfusionMatrix& matrix) {
   std::int64_t n = 0;
-  for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) n += CellOf(matrix, kind, 0).n;
+  for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) n += ComputeConfusionCell(matrix, kind, 0).n;
   return n;
 }
 
@@ -98,7 +98,7 @@ std::string ChoicesAsCsv(const StudyPlan& plan, const ChoiceCounts& counts) {
     for (size_t c = 0; c < CriterionNames().size(); ++c) {
       for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
         for (size_t answer = 0; answer < kNumAnswers; ++answer) {
-          const Cell cell = CellOf(counts.groups[g].matrices[c], kind, answer);
+          const Cell cell = ComputeConfusionCell(counts.groups[g].matrices[c], kind, answer);
           std::vector<Value>& row = table.rows.emplace_back(beginning);
           row.insert(row.end(), {Name(kTrueKinds[kind]),
                                  AnswerName(answer),
@@ -126,7 +126,7 @@ std::string ChoicesAsJson(const StudyPlan& plan, const ChoiceCounts& counts) {
       for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
         Json cells = Json::array();
         for (size_t answer = 0; answer < kNumAnswers; ++answer) {
-          const Cell cell = CellOf(group.matrices[c], kind, answer);
+          const Cell cell = ComputeConfusionCell(group.matrices[c], kind, answer);
           cells.push_back({{"verdict", AnswerName(answer)},
                            {"count", cell.count},
                            {"value", JsonNumber(cell.value)},
@@ -134,7 +134,7 @@ std::string ChoicesAsJson(const StudyPlan& plan, const ChoiceCounts& counts) {
                            {"upper", cell.interval.upper}});
         }
         rows.push_back({{"truth", Name(kTrueKinds[kind])},
-                        {"n", CellOf(group.matrices[c], kind, 0).n},
+                        {"n", ComputeConfusionCell(group.matrices[c], kind, 0).n},
                         {"cells", cells}});
       }
       matrices.push_back({{"criterion", CriterionNames()[c].first}, {"rows", rows}});

@@ -51,7 +51,7 @@ KindMeasures MeasureKind(const Scene& scene, std::span<const Eigen::Vector3d> po
   return measures;
 }
 
-TrueKind KindOf(const KindMeasures& measures, double least_parallax_share) {
+TrueKind ClassifyKind(const KindMeasures& measures, double least_parallax_share) {
   if (measures.num_points < kLeastRightMatches) return TrueKind::kBorderline;
   if (!(measures.baseline_m > 0.0)) return TrueKind::kRotationOnly;
   if (measures.parallax_share <= 0.5 * least_parallax_share) return TrueKind::kTooLittleParallax;

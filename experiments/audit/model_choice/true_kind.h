@@ -50,6 +50,6 @@ KindMeasures MeasureKind(const Scene& scene, std::span<const Eigen::Vector3d> po
 // right matches are borderline.
 inline constexpr double kPlaneOfAll = 0.95, kPlaneOfGeneral = 0.75;
 inline constexpr int kLeastRightMatches = 8;
-TrueKind KindOf(const KindMeasures& measures, double least_parallax_share);
+TrueKind ClassifyKind(const KindMeasures& measures, double least_parallax_share);
 
 }  // namespace rcme

@@ -37,7 +37,7 @@ std::string TrialsAsJson(const std::vector<ValidityTrial>& trials) {
 }
 
 // What no trial can have given is damage, whatever the checksums say.
-void RequirePossible(const ValidityTrial& trial) {
+void RequirePossibleTrial(const ValidityTrial& trial) {
   for (const auto share : {&ValidityTrial::exact_conditioning, &ValidityTrial::observed_conditioning}) {
     if (!(trial.*share >= 0.0 && trial.*share <= 1.0))
       throw std::invalid_argument(fmt::format("a conditioning of {}, not of 0 to 1", trial.*share));
@@ -53,7 +53,7 @@ void AddTrials(const Json& json, size_t most, std::vector<ValidityTrial>* trials
     RequireSize(numbers, kNumbers.size());
     ValidityTrial& trial = trials->emplace_back();
     for (size_t i = 0; i < kNumbers.size(); ++i) trial.*kNumbers[i] = NumberFrom(numbers[i]);
-    RequirePossible(trial);
+    RequirePossibleTrial(trial);
   }
 }
 

@@ -17,22 +17,22 @@ namespace {
 constexpr const char* kSigmaKey = "sigma_px";
 constexpr const char* kAssumedSigmaKey = "assumed_sigma_px";
 
-std::string ValueOf(const Settings& settings, const std::string& key) {
+std::string ReadSettingValue(const Settings& settings, const std::string& key) {
   for (const auto& [name, value] : settings) {
     if (name == key) return value;
   }
   return {};
 }
 
-double NumberOf(const Settings& settings, const std::string& key) {
+double ReadSettingNumber(const Settings& settings, const std::string& key) {
   double number = std::numeric_limits<double>::quiet_NaN();  // stays NaN for the word "true"
-  ParseReal(ValueOf(settings, key), &number);
+  ParseReal(ReadSettingValue(settings, key), &number);
   return number;
 }
 
 // The settings of a condition in full, at another noise level.
 Settings AtSigma(Settings settings, double sigma_px) {
-  const double ratio = NumberOf(settings, kAssumedSigmaKey) / NumberOf(settings, kSigmaKey);
+  const double ratio = ReadSettingNumber(settings, kAssumedSigmaKey) / ReadSettingNumber(settings, kSigmaKey);
   for (auto& [key, value] : settings) {
     if (key == kSigmaKey) value = fmt::format("{}", sigma_px);
     if (key == kAssumedSigmaKey && !std::isnan(ratio)) value = fmt::format("{}", ratio * sigma_px);
@@ -42,8 +42,8 @@ Settings AtSigma(Settings settings, double sigma_px) {
 }
 
 // The factors of a map: without the noise level, which is an axis of its own, if the assumed one follows it.
-Settings LevelsOf(const StudyPlan& plan, const Condition& condition, const Settings& settings) {
-  const bool is_sigma_true = std::isnan(NumberOf(settings, kAssumedSigmaKey));
+Settings ListMapLevels(const StudyPlan& plan, const Condition& condition, const Settings& settings) {
+  const bool is_sigma_true = std::isnan(ReadSettingNumber(settings, kAssumedSigmaKey));
   Settings levels;
   for (size_t f = 0; f < plan.factor_names.size(); ++f) {
     if (plan.factor_names[f] == kSigmaKey && is_sigma_true) continue;
@@ -61,7 +61,7 @@ std::string DescribeCase(const StudyPlan& plan, const Settings& levels) {
 }
 
 // The first matches of a case in which all are true: `num_points` for the sample and a fresh one.
-MapSample SampleOf(const Case& made, int num_points) {
+MapSample MakeMapSample(const Case& made, int num_points) {
   const auto n = static_cast<size_t>(num_points);
   const TrialData& data = made.data;
   MapSample sample{made.pose_true(), {data.problem, data.problem.matches[n]}, {data.problem, {}}, 0.0};
@@ -83,19 +83,19 @@ MapSampler MakeMapSampler(const Study& study, const Settings& settings, int num_
     auto simulated = SimulateDraw(study, [&] { return make(name); });
     if (!simulated.made || !WhatIsMissing(*simulated.made, needs).empty()) return std::nullopt;
     KeepTrueMatches(&simulated.made->data);
-    return SampleOf(*simulated.made, num_points);
+    return MakeMapSample(*simulated.made, num_points);
   };
 }
 
 }  // namespace
 
-std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
+std::vector<MapCondition> ListMapConditions(const StudyPlan& plan) {
   RequireCases(plan.study);
   std::vector<MapCondition> conditions;
   std::set<Settings> seen;
   for (const Condition& condition : plan.conditions) {
     const Settings settings = SimulatedSettings(plan, condition);
-    const Settings levels = LevelsOf(plan, condition, settings);
+    const Settings levels = ListMapLevels(plan, condition, settings);
     if (!seen.insert(levels).second) continue;
     conditions.push_back(
         {DescribeCase(plan, levels), [study = plan.study, settings](int num_points, double sigma_px) {
@@ -105,10 +105,10 @@ std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan) {
   return conditions;
 }
 
-std::vector<double> SigmasOf(const StudyPlan& plan) {
+std::vector<double> ListSigmas(const StudyPlan& plan) {
   std::set<double> sigmas_px;
   for (const Condition& condition : plan.conditions) {
-    sigmas_px.insert(NumberOf(SimulatedSettings(plan, condition), kSigmaKey));
+    sigmas_px.insert(ReadSettingNumber(SimulatedSettings(plan, condition), kSigmaKey));
   }
   return {sigmas_px.begin(), sigmas_px.end()};
 }

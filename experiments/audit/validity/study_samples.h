@@ -11,9 +11,9 @@ namespace rcme {
 // with fewer, whose motion has no direction, or that is a draw's and cannot be simulated, has no sample. An
 // assumed sigma (assumed_sigma_px) keeps its ratio to the true one. Conditions that differ in the noise level
 // alone are one. Throws InputError for a study that cannot give cases (audit/claims/study_cases.h).
-std::vector<MapCondition> MapConditionsOf(const StudyPlan& plan);
+std::vector<MapCondition> ListMapConditions(const StudyPlan& plan);
 
 // The noise levels of the study's conditions, px, rising and each once.
-std::vector<double> SigmasOf(const StudyPlan& plan);
+std::vector<double> ListSigmas(const StudyPlan& plan);
 
 }  // namespace rcme

@@ -56,7 +56,7 @@ Group MakeGroup(std::string name, double ValidityTrial::*conditioning,
 }
 
 // All trials, then the thirds by either conditioning; trials without a model are in the lower third.
-std::vector<Group> GroupsOf(const std::vector<ValidityTrial>& trials) {
+std::vector<Group> MakeGroups(const std::vector<ValidityTrial>& trials) {
   std::vector<const ValidityTrial*> order;
   for (const ValidityTrial& trial : trials) order.push_back(&trial);
   std::vector<Group> groups = {MakeGroup("all", &ValidityTrial::observed_conditioning, order)};
@@ -86,7 +86,7 @@ std::int64_t CountCovered(const Group& group, const Quantity& quantity) {
 // A cell without a trial has one group without a conditioning.
 void AddRows(const MapCell& cell, double median_parallax_deg, Table* table) {
   const std::vector<Group> groups =
-      cell.trials.empty() ? std::vector<Group>{{"all", std::nan(""), {}}} : GroupsOf(cell.trials);
+      cell.trials.empty() ? std::vector<Group>{{"all", std::nan(""), {}}} : MakeGroups(cell.trials);
   for (const Group& group : groups) {
     for (const Quantity& quantity : kQuantities) {
       const auto n = static_cast<std::int64_t>(group.trials.size());
@@ -113,7 +113,7 @@ struct CellPlace {
   size_t condition, num_points, sigma_px;  // indices into the options
 };
 
-CellPlace PlaceOf(const ValidityMapOptions& options, std::uint32_t cell) {
+CellPlace FindCellPlace(const ValidityMapOptions& options, std::uint32_t cell) {
   const size_t num_sigmas = options.sigmas_px.size(), num_points = options.nums_points.size();
   return {cell / (num_sigmas * num_points), cell / num_sigmas % num_points, cell % num_sigmas};
 }
@@ -186,7 +186,7 @@ double SecondsOfWork(const ValidityMapOptions& options) {
 }
 
 std::string DescribeCell(const ValidityMapOptions& options, std::uint32_t cell) {
-  const CellPlace place = PlaceOf(options, cell);
+  const CellPlace place = FindCellPlace(options, cell);
   return fmt::format("{} {}, {} points, {} px", options.condition_key,
                      options.conditions[place.condition].level, options.nums_points[place.num_points],
                      options.sigmas_px[place.sigma_px]);
@@ -194,7 +194,7 @@ std::string DescribeCell(const ValidityMapOptions& options, std::uint32_t cell) 
 
 std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, std::uint32_t cell,
                                            TrialRange trials) {
-  const CellPlace place = PlaceOf(options, cell);
+  const CellPlace place = FindCellPlace(options, cell);
   const MapSampler draw = options.conditions[place.condition].sampler(options.nums_points[place.num_points],
                                                                       options.sigmas_px[place.sigma_px]);
   std::vector<ValidityTrial> with_sample;

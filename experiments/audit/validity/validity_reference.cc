@@ -29,7 +29,7 @@ struct ExactSample {
 
   // Coordinates of the estimate from `problem` in the tangents at the truth: 8 of f, then 5 of p. NaN where
   // there is no estimate: a covariance that such a draw entered covers nothing.
-  Eigen::VectorXd DeviationOf(const std::optional<LinearMotion>& estimate) const {
+  Eigen::VectorXd ComputeDeviation(const std::optional<LinearMotion>& estimate) const {
     Eigen::VectorXd deviation(kFDof + kPoseDof);
     if (!estimate) {
       deviation.setConstant(std::numeric_limits<double>::quiet_NaN());
@@ -60,7 +60,7 @@ Eigen::MatrixXd UnscentedAtTruth(const ExactSample& exact) {
       match = {X.segment<2>(4 * k), X.segment<2>(4 * k + 2)};
       ++k;
     }
-    return exact.DeviationOf(EstimateLinearMotion(moved));
+    return exact.ComputeDeviation(EstimateLinearMotion(moved));
   };
   return UnscentedCovariance(deviation, coordinates, moved.sigma_px);
 }
@@ -70,7 +70,7 @@ Eigen::MatrixXd MonteCarloAtTruth(const ExactSample& exact, const SampleFamily& 
   RandomStream noise_rng = StreamFor(name, StreamPurpose::kMonteCarlo);
   MultivariateMoments moments(kFDof + kPoseDof);
   for (int i = 0; i < num_noises; ++i) {
-    moments.Add(exact.DeviationOf(EstimateLinearMotion(family.Observe(scene, name, noise_rng).problem)));
+    moments.Add(exact.ComputeDeviation(EstimateLinearMotion(family.Observe(scene, name, noise_rng).problem)));
   }
   return moments.covariance();
 }
@@ -113,7 +113,7 @@ CoveredCounts RunSample(const SampleFamily& family, const StreamName& name,
     std::array<std::array<bool, 2>, kCovariances.size()> covered;
     covered[0] = CoveredAtEstimate(estimate, exact.pose_true);
     for (size_t c = 0; c < at_truth.size(); ++c) {
-      covered[c + 1] = CoveredAtTruth(exact.DeviationOf(estimate), at_truth[c]);
+      covered[c + 1] = CoveredAtTruth(exact.ComputeDeviation(estimate), at_truth[c]);
     }
     for (size_t q = 0; q < kReferenceQuantities.size(); ++q) {
       for (size_t c = 0; c < kCovariances.size(); ++c) counts[q][c] += covered[c][q] ? 1 : 0;

@@ -27,7 +27,7 @@ std::uint32_t ChecksumBytes::Checksum() const {
   return static_cast<std::uint32_t>(crc32_z(0, data, bytes_.size()));
 }
 
-std::uint32_t ChecksumOf(const std::vector<std::string>& texts) {
+std::uint32_t ComputeChecksum(const std::vector<std::string>& texts) {
   ChecksumBytes bytes(0);
   for (const std::string& text : texts) bytes.Add(text);
   return bytes.Checksum();

@@ -1,5 +1,6 @@
-// CRC-32 of file contents. It detects accidents: every flip of one bit of a number or a text, and any other change
-// with probability 1 - 2^-32. It is not a signature: whoever changes a file on purpose can compute it again.
+// CRC-32 of file contents. It detects accidents: every flip of one bit of a number or a text, and any other
+// change with probability 1 - 2^-32. It is not a signature: whoever changes a file on purpose can compute it
+// again.
 #pragma once
 
 #include <cstdint>
@@ -24,6 +25,6 @@ class ChecksumBytes {
 };
 
 // Of some texts in order; where one ends and the next begins counts.
-std::uint32_t ChecksumOf(const std::vector<std::string>& texts);
+std::uint32_t ComputeChecksum(const std::vector<std::string>& texts);
 
 }  // namespace rcme

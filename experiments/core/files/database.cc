@@ -18,7 +18,7 @@ std::string TypeName(const SQLite::Column& column) {
 }
 
 // What an error means for a result file, as the end of "PATH: ...".
-std::string ReasonOf(const SQLite::Exception& error) {
+std::string DescribeFileError(const SQLite::Exception& error) {
   switch (error.getErrorCode()) {
     case SQLITE_NOTADB:
       return "is not an rcme result file, or is damaged at its beginning";
@@ -56,7 +56,7 @@ SQLite::Database OpenDatabase(const std::string& path, int flags, FileLocks lock
 
 void ThrowForFile(const std::string& path, const SQLite::Exception& error) {
   if (error.getErrorCode() == SQLITE_CORRUPT) ThrowForFile(path, Damage(error.what()));
-  throw InputError(fmt::format("{}: {}", path, ReasonOf(error)));
+  throw InputError(fmt::format("{}: {}", path, DescribeFileError(error)));
 }
 
 void ThrowForFile(const std::string& path, const Damage& damage) {

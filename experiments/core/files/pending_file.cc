@@ -43,13 +43,13 @@ const std::string& MarkOfHost() {
   return mark;
 }
 
-fs::path FolderOf(const std::string& path) {
+fs::path FindFolder(const std::string& path) {
   const fs::path folder = fs::path(path).parent_path();
   return folder.empty() ? "." : folder;
 }
 
 // Cut where it would be longer than a file system allows.
-std::string PartOf(const std::string& path, int number) {
+std::string MakePartPath(const std::string& path, int number) {
   const std::string mark = fmt::format("{}{}-{}{}", MarkOfHost(), getpid(), number, kSuffix);
   const std::string name = fs::path(path).filename().string().substr(0, NAME_MAX - mark.size());
   return (fs::path(path).parent_path() / (name + mark)).string();
@@ -103,9 +103,9 @@ void ThrowCannotWrite(const std::string& path, int error) {
 }
 
 PendingFile::PendingFile(const std::string& path) : path_(path) {
-  RemoveAbandonedPartsOnce(FolderOf(path));
+  RemoveAbandonedPartsOnce(FindFolder(path));
   for (int number = 0; number < kMaxAttempts; ++number) {
-    part_ = PartOf(path, number);
+    part_ = MakePartPath(path, number);
     descriptor_ = open(part_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor_ < 0 && errno == EEXIST) continue;
     if (descriptor_ < 0) ThrowCannotWrite(path, errno);
@@ -124,7 +124,7 @@ void PendingFile::PutInPlace() {
   if (!SyncFile(descriptor_) || std::rename(part_.c_str(), path_.c_str()) != 0)
     ThrowCannotWrite(path_, errno);
   part_.clear();
-  SyncFolder(FolderOf(path_));
+  SyncFolder(FindFolder(path_));
 }
 
 }  // namespace rcme

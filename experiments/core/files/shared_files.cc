@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kEnding = ".yaml";
 
-const char* NameOf(SharedFolder folder) {
+const char* FindFolderName(SharedFolder folder) {
   switch (folder) {
     case SharedFolder::kStudies:
       return "studies";
@@ -29,8 +29,8 @@ const char* NameOf(SharedFolder folder) {
   return "plots";
 }
 
-std::string ListOf(SharedFolder folder) {
-  return std::string("rcme list ") + NameOf(folder);
+std::string FormatListCommand(SharedFolder folder) {
+  return std::string("rcme list ") + FindFolderName(folder);
 }
 
 fs::path BesideProgram() {
@@ -55,14 +55,14 @@ std::string FindShare() { return IsFolder(Share()) ? Share() : std::string(); }
 
 void UseShare(const std::string& folder) { Share() = folder; }
 
-std::string PathOf(SharedFolder folder) {
+std::string FindSharedFolder(SharedFolder folder) {
   const std::string share = FindShare();
-  const fs::path path = fs::path(share) / NameOf(folder);
+  const fs::path path = fs::path(share) / FindFolderName(folder);
   return !share.empty() && IsFolder(path) ? path.string() : std::string();
 }
 
 std::vector<std::string> NamesIn(SharedFolder folder) {
-  const std::string path = PathOf(folder);
+  const std::string path = FindSharedFolder(folder);
   std::vector<std::string> names;
   if (path.empty()) return names;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path)) {
@@ -80,11 +80,12 @@ std::string FindFile(const std::string& name, SharedFolder folder, const FileKin
   const std::vector<std::string> names = NamesIn(folder);
   const std::string bare =
       name.ends_with(kEnding) ? name.substr(0, name.size() - std::string(kEnding).size()) : name;
-  if (std::ranges::count(names, bare) > 0) return (fs::path(PathOf(folder)) / (bare + kEnding)).string();
+  if (std::ranges::count(names, bare) > 0)
+    return (fs::path(FindSharedFolder(folder)) / (bare + kEnding)).string();
   const std::string suggestion = DidYouMean(fs::path(bare).filename().string(), names);
   if (suggestion.empty()) return name;
   throw InputError(
-      fmt::format("{}: no such {}{}; installed: {}", name, kind.name, suggestion, ListOf(folder)));
+      fmt::format("{}: no such {}{}; installed: {}", name, kind.name, suggestion, FormatListCommand(folder)));
 }
 
 }  // namespace rcme

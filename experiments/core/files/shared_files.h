@@ -20,7 +20,7 @@ void UseShare(const std::string& folder);
 enum class SharedFolder { kStudies, kEstimators, kPopulations, kPlots };
 
 // Where its files lie. Empty: nowhere.
-std::string PathOf(SharedFolder folder);
+std::string FindSharedFolder(SharedFolder folder);
 
 // The names of what lies there, without .yaml, in their order; of folders within it with the folder:
 // "calibrated/by_difficulty".

@@ -50,8 +50,7 @@ std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format,
   if (std::isnan(estimate.value)) return signs.unknown;
   const bool has_error = !std::isnan(estimate.standard_error);
   const bool is_weighted = has_error && !std::isnan(estimate.interval.lower);
-  const std::string digits =
-      estimate.decimals < 0 ? format.value : fmt::format(".{}f", estimate.decimals);
+  const std::string digits = estimate.decimals < 0 ? format.value : fmt::format(".{}f", estimate.decimals);
   std::string text = FormatNumber(format.scale * estimate.value, is_weighted ? ".3g" : digits, signs);
   if (signs.has_units && !format.unit.empty()) text += " " + format.unit;
   if (has_error)
@@ -197,10 +196,7 @@ Json RenderJsonValue(const Value& value) {
   return std::visit(
       Overloaded{[](std::monostate) { return Json(); }, [](const std::string& text) { return Json(text); },
                  [](std::int64_t count) { return Json(count); }, [](bool flag) { return Json(flag); },
-                 [](double x) { return JsonNumber(x); },
-                 [](const Interval& i) {
-                   return Json{JsonNumber(i.lower), JsonNumber(i.upper)};
-                 },
+                 [](double x) { return JsonNumber(x); }, [](const Interval& i) { return RenderJson(i); },
                  [](const Estimate& e) { return JsonNumber(e.value); }},
       value);
 }
@@ -291,9 +287,17 @@ Json RenderJson(const Table& table) {
 }
 
 Json RenderJson(const Estimate& estimate) {
-  Json json = {{"value", JsonNumber(estimate.value)}, {"interval", RenderJsonValue(estimate.interval)}};
+  Json json = {{"value", JsonNumber(estimate.value)}, {"interval", RenderJson(estimate.interval)}};
   if (estimate.n) json["n"] = *estimate.n;
   return json;
+}
+
+Json RenderJson(const Interval& interval) { return {JsonNumber(interval.lower), JsonNumber(interval.upper)}; }
+
+Json RenderJsonBounds(const Estimate& estimate) {
+  return {{"value", JsonNumber(estimate.value)},
+          {"lower", JsonNumber(estimate.interval.lower)},
+          {"upper", JsonNumber(estimate.interval.upper)}};
 }
 
 std::string RenderLatex(const Table& table) {

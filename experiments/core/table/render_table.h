@@ -10,10 +10,10 @@
 namespace rcme {
 
 // For a terminal: text to the left, counts to the right; a text of more than half of `width`, or of more than
-// the keys leave of it, goes on in the next line. Columns that do not fit follow in further blocks, each after
-// the key columns and without the rows that have nothing there; a block without any row is left out. Only a
-// column that does not fit beside the keys is wider than `width`. Line ends within a cell become spaces.
-// "12.34 % [10.10, 14.80] (n 12): a note", "1.23 +- 0.04"; "-": not known.
+// the keys leave of it, goes on in the next line. Columns that do not fit follow in further blocks, each
+// after the key columns and without the rows that have nothing there; a block without any row is left out.
+// Only a column that does not fit beside the keys is wider than `width`. Line ends within a cell become
+// spaces. "12.34 % [10.10, 14.80] (n 12): a note", "1.23 +- 0.04"; "-": not known.
 std::string RenderText(const Table& table, size_t width = kTextWidth);
 
 // A cell of RenderText.
@@ -26,8 +26,12 @@ std::string RenderCsv(const Table& table);
 // An array with an object per row. Numbers have all digits; null: not known, or infinite. An interval is a
 // list of its ends.
 nlohmann::ordered_json RenderJson(const Table& table);
-// One estimate outside of a table: value, interval, and n where it has one.
+// One estimate outside of a table: value, interval, and n where it has one; an interval is a list of its
+// ends.
 nlohmann::ordered_json RenderJson(const Estimate& estimate);
+nlohmann::ordered_json RenderJson(const Interval& interval);
+// {"value", "lower", "upper"}.
+nlohmann::ordered_json RenderJsonBounds(const Estimate& estimate);
 
 // A tabular with the rules of the package booktabs, in which every text is escaped. The columns of the group
 // `levels` are printed only where one of them changes, with space between. Notes are left out.

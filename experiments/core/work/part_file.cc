@@ -50,7 +50,7 @@ std::string DescribeLongPiece() {
 
 // Of a line's text behind its checksum; `of_first`: the first line's checksum, empty for that itself.
 std::string LineChecksum(const std::string& of_first, std::string_view text) {
-  return fmt::format("{:08x}", ChecksumOf({of_first, std::string(text)}));
+  return fmt::format("{:08x}", ComputeChecksum({of_first, std::string(text)}));
 }
 
 // What stands in a text in a fixed order, bit by bit.
@@ -224,6 +224,10 @@ std::int64_t CountFrom(const Json& json, std::int64_t most) {
 void RequireSize(const Json& json, size_t size) {
   if (!json.is_array() || json.size() != size)
     throw std::invalid_argument(fmt::format("it is no list of {}", size));
+}
+
+void RequirePossible(bool is_possible, const char* of, const char* what) {
+  if (!is_possible) throw std::invalid_argument(fmt::format("its {} cannot be: {}", of, what));
 }
 
 std::string PartAsText(const Part& part, const ItemResults& results) {

@@ -57,6 +57,9 @@ nlohmann::ordered_json ParsePiece(const std::string& json);
 std::int64_t CountFrom(const nlohmann::ordered_json& json, std::int64_t most);
 // Throws std::invalid_argument where `json` is no list of so many.
 void RequireSize(const nlohmann::ordered_json& json, size_t size);
+// What no trials can have given is damage, whatever the checksums say: throws std::invalid_argument "its
+// counts cannot be: ...", where `of` is "counts".
+void RequirePossible(bool is_possible, const char* of, const char* what);
 
 // With these results in place of its own.
 std::string PartAsText(const Part& part, const ItemResults& results);

@@ -34,7 +34,7 @@ void RequireSame(const std::string& path, const std::string& other, const std::s
 }
 
 // What every part of the work has in common with its plan.
-void RequirePartOf(const WorkPlan& plan, const std::string& path, const Part& part) {
+void RequireMatchingPart(const WorkPlan& plan, const std::string& path, const Part& part) {
   const std::string here = "this " + plan.work;
   RequireSame(path, here, "another work", part.work, plan.work);
   RequireSame(path, here, "another program", part.origin.program, ProgramName());
@@ -124,7 +124,7 @@ void Runner::OpenFile() {
   if (!std::filesystem::exists(path_)) return CheckCanBeWritten(path_);
   Part before = ReadPart(path_);
   try {
-    RequirePartOf(plan_, path_, before);
+    RequireMatchingPart(plan_, path_, before);
     RequireSame(path_, "this command", "another shard", DescribeShard(before.shard),
                 DescribeShard(part_.shard));
     RequireSame(path_, "this machine", "another instruction set", before.origin.instruction_set,
@@ -220,7 +220,7 @@ void Runner::RemoveCheckpoint() {
 WorkResults MergeParts(const WorkPlan& plan, const std::vector<std::string>& paths) {
   Part first;
   return ReadParts(plan, paths, &first,
-                   [&](const std::string& path, const Part& part) { RequirePartOf(plan, path, part); });
+                   [&](const std::string& path, const Part& part) { RequireMatchingPart(plan, path, part); });
 }
 
 Part JoinParts(const std::vector<std::string>& paths) {

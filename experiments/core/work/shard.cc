@@ -82,7 +82,7 @@ Shard ParseShard(const std::string& text, const Environment& environment) {
   return {static_cast<std::uint32_t>(*number), static_cast<std::uint32_t>(*count)};
 }
 
-std::uint32_t ShardOf(std::uint32_t condition, std::uint32_t scene, std::uint32_t count) {
+std::uint32_t FindShard(std::uint32_t condition, std::uint32_t scene, std::uint32_t count) {
   // frac(c / golden ratio) in units of 2^-32, without rounding that could differ between machines.
   constexpr std::uint32_t kGolden = 2654435769;  // 2^32 / 1.6180...
   const std::uint32_t fraction = condition * kGolden;
@@ -92,7 +92,7 @@ std::uint32_t ShardOf(std::uint32_t condition, std::uint32_t scene, std::uint32_
 
 ShardTrials::ShardTrials(const Shard& shard, std::uint32_t condition, int repeats_per_scene)
     : count_(shard.count),
-      first_scene_((shard.number + shard.count - ShardOf(condition, 0, shard.count)) % shard.count),
+      first_scene_((shard.number + shard.count - FindShard(condition, 0, shard.count)) % shard.count),
       repeats_(static_cast<std::uint32_t>(repeats_per_scene)) {}
 
 bool ShardTrials::Has(std::uint32_t trial) const { return trial / repeats_ % count_ == first_scene_; }

@@ -36,7 +36,7 @@ Environment ThisEnvironment();
 Shard ParseShard(const std::string& text, const Environment& environment);
 
 // The number of the shard, of `count`, that has this scene.
-std::uint32_t ShardOf(std::uint32_t condition, std::uint32_t scene, std::uint32_t count);
+std::uint32_t FindShard(std::uint32_t condition, std::uint32_t scene, std::uint32_t count);
 
 // The trials that a shard has of one condition. They are numbered here by their place, 0, 1, 2, ...
 class ShardTrials {

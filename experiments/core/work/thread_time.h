@@ -4,14 +4,14 @@
 
 namespace rcme {
 
-inline double SecondsOf(clockid_t clock) {
+inline double ReadClock(clockid_t clock) {
   timespec time{};
   clock_gettime(clock, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 // Processor time, s, from an unknown start: of this thread, and of the whole process.
-inline double ThreadSeconds() { return SecondsOf(CLOCK_THREAD_CPUTIME_ID); }
-inline double ProcessSeconds() { return SecondsOf(CLOCK_PROCESS_CPUTIME_ID); }
+inline double ThreadSeconds() { return ReadClock(CLOCK_THREAD_CPUTIME_ID); }
+inline double ProcessSeconds() { return ReadClock(CLOCK_PROCESS_CPUTIME_ID); }
 
 }  // namespace rcme

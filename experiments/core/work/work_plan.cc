@@ -23,7 +23,7 @@ std::string DescribeIdentity(const WorkPlan& plan) {
 }
 
 std::uint32_t FindShardOfItem(const ItemPlace& place, std::uint32_t count) {
-  return ShardOf(static_cast<std::uint32_t>(place.group), static_cast<std::uint32_t>(place.item), count);
+  return FindShard(static_cast<std::uint32_t>(place.group), static_cast<std::uint32_t>(place.item), count);
 }
 
 std::vector<ItemPlace> ListItems(const WorkPlan& plan, const Shard& shard, size_t first, size_t end) {

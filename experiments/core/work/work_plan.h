@@ -36,7 +36,7 @@ struct WorkPlan {
 // Equal for the parts of one work: its identity, then its groups.
 std::string DescribeIdentity(const WorkPlan& plan);
 
-// The shard that has the item: ShardOf (core/work/shard.h) of group and item, so that the items of every
+// The shard that has the item: FindShard (core/work/shard.h) of group and item, so that the items of every
 // group, cheap or dear, are divided evenly to within one.
 std::uint32_t FindShardOfItem(const ItemPlace& place, std::uint32_t count);
 

@@ -50,7 +50,7 @@ std::string RotationAloneText(const MotionEstimate& estimate) {
 }
 
 std::string FoundText(const RelativePose& pose, const MotionSpread& spread) {
-  const Turn turn = TurnOf(pose.R);
+  const Turn turn = ComputeTurn(pose.R);
   std::string text = "\nFound: how camera 2 stands to camera 1 (x to the right, y down, z forward)\n";
   text += fmt::format("  turned     {:.4g} deg (sd {:.2g})", turn.angle_deg, spread.angle_sd_deg);
   // Of an angle within its noise the axis is noise.
@@ -59,7 +59,7 @@ std::string FoundText(const RelativePose& pose, const MotionSpread& spread) {
                         Vector(turn.axis_in_cam1));
   }
   text += fmt::format("\n  stands     {}: towards {} from camera 1\n", DescribePlace(pose),
-                      Vector(PlaceOf(pose)));
+                      Vector(ComputePlace(pose)));
   text += fmt::format("             sd of the direction {:.2g} deg, across {:.2g} deg\n",
                       spread.direction_sd_deg(0), spread.direction_sd_deg(1));
   text += "  cam2_from_cam1, X2 = R X1 + t, |t| = 1\n";
@@ -108,7 +108,7 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
       "  95 %       rotation within {:.2g} x {:.2g} x {:.2g} deg, direction within {:.2g} x {:.2g} deg\n",
       spread.rotation_95_deg(0), spread.rotation_95_deg(1), spread.rotation_95_deg(2),
       spread.direction_95_deg(0), spread.direction_95_deg(1));
-  const MotionMode* found = RunnerUpOf(estimate);
+  const MotionMode* found = FindRunnerUp(estimate);
   if (found == nullptr) return text;
   const MotionMode& other = *found;
   const RelativePose &a = estimate.cam2_from_cam1, &b = other.cam2_from_cam1;
@@ -218,7 +218,7 @@ std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec) {
     for (const std::string& sentence : AdviceFor(estimate, spec)) text += "  " + sentence + "\n";
     return text;
   }
-  const MotionSpread spread = SpreadOf(estimate.cam2_from_cam1, estimate.pose_cov);
+  const MotionSpread spread = ComputeSpread(estimate.cam2_from_cam1, estimate.pose_cov);
   return text + FoundText(estimate.cam2_from_cam1, spread) + SureText(answer, spread, spec) +
          EvidenceText(answer.evidence) + TruthText(answer) + WarningsText(answer);
 }
@@ -278,8 +278,8 @@ std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnsw
   row[1] = fmt::format("{}/{}", record.num_inliers, record.num_matches);
   if (estimate.status != MotionStatus::kOk) return row;
   const RelativePose& pose = estimate.cam2_from_cam1;
-  const MotionSpread spread = SpreadOf(pose, estimate.pose_cov);
-  row[2] = fmt::format("{:.2f} ({:.2g})", TurnOf(pose.R).angle_deg, spread.angle_sd_deg);
+  const MotionSpread spread = ComputeSpread(pose, estimate.pose_cov);
+  row[2] = fmt::format("{:.2f} ({:.2g})", ComputeTurn(pose.R).angle_deg, spread.angle_sd_deg);
   row[3] = fmt::format("{} ({:.2g})", DescribePlace(pose), spread.direction_sd_deg(0));
   if (!std::isnan(estimate.failure_probability)) row[4] = ProbabilityText(estimate.failure_probability);
   for (size_t i = 0; i < answer.for_bounds.size(); ++i)

@@ -28,11 +28,11 @@ void MeasureParallax(const MotionProblem& inliers, const RelativePose& pose, Mot
     angles_deg.push_back(kDegPerRad * AngleBetween(pose.R * ray1, ray2));
     to_noise.push_back(EvaluateMatch(inliers, pose, match, NoiseScaleAt(inliers, i)).mean_depth);
   }
-  evidence->parallax_median_deg = MedianOf(std::move(angles_deg));
-  evidence->parallax_to_noise = MedianOf(std::move(to_noise));
+  evidence->parallax_median_deg = ComputeMedian(std::move(angles_deg));
+  evidence->parallax_to_noise = ComputeMedian(std::move(to_noise));
 }
 
-double ShareOf(const ModelFit& fit, TwoViewModel model) {
+double ComputeInlierShare(const ModelFit& fit, TwoViewModel model) {
   return static_cast<double>(FindInliers(fit, model, kLevel).size()) /
          static_cast<double>(fit.squared_residuals.size());
 }
@@ -45,8 +45,8 @@ bool MotionEvidence::DoesNoiseDisagree() const {
   return is_large && difference > 3.0 * sigma_sd_px;
 }
 
-MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& estimate) {
-  MotionProblem inliers = PartOf(problem, estimate.inliers);
+MotionEvidence ComputeEvidence(const MotionProblem& problem, const MotionEstimate& estimate) {
+  MotionProblem inliers = SelectPart(problem, estimate.inliers);
   MotionEvidence evidence;
   evidence.num_matches = static_cast<int>(problem.matches.size());
   evidence.num_inliers = static_cast<int>(inliers.matches.size());
@@ -55,7 +55,7 @@ MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& es
   evidence.parallax_median_deg = evidence.parallax_to_noise = kNaN;
   evidence.parallax_share = evidence.planar_share = kNaN;
   if (RefuseUnsolvable(inliers, 6)) return evidence;
-  evidence.sigma_px = NoiseOf(problem, estimate);
+  evidence.sigma_px = EstimateNoise(problem, estimate);
   evidence.sigma_sd_px = std::isfinite(estimate.sigma_estimated_sd_px)
                              ? estimate.sigma_estimated_sd_px
                              : SdOfNoise(evidence.sigma_px, inliers.matches.size());
@@ -64,8 +64,8 @@ MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& es
   MeasureParallax(inliers, estimate.cam2_from_cam1, &evidence);
   RandomStream rng = StreamFor({1, 0, 0, 0}, StreamPurpose::kCheck);
   const TwoViewFits fits = FitTwoViewModels(inliers, rng);
-  evidence.parallax_share = 1.0 - ShareOf(fits.rotation, TwoViewModel::kRotation);
-  evidence.planar_share = ShareOf(fits.homography, TwoViewModel::kHomography);
+  evidence.parallax_share = 1.0 - ComputeInlierShare(fits.rotation, TwoViewModel::kRotation);
+  evidence.planar_share = ComputeInlierShare(fits.homography, TwoViewModel::kHomography);
   return evidence;
 }
 

@@ -12,7 +12,7 @@ namespace rcme {
 struct MotionEvidence {
   int num_matches = 0, num_inliers = 0;
   double sigma_assumed_px = 0.0;
-  double sigma_px = 0.0;     // NoiseOf (real/truth_free/twin.h): stated, else from the median residual
+  double sigma_px = 0.0;     // EstimateNoise (real/truth_free/twin.h): stated, else from the median residual
   double sigma_sd_px = 0.0;  // its standard deviation
   double parallax_median_deg = 0.0;
   double parallax_to_noise = 0.0;  // median of the parallax over the noise of the angle between two rays
@@ -24,6 +24,6 @@ struct MotionEvidence {
 };
 
 // `estimate` holds a valid motion (status ok).
-MotionEvidence EvidenceOf(const MotionProblem& problem, const MotionEstimate& estimate);
+MotionEvidence ComputeEvidence(const MotionProblem& problem, const MotionEstimate& estimate);
 
 }  // namespace rcme

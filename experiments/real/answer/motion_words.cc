@@ -39,7 +39,7 @@ Eigen::Matrix<double, size, 1> PrincipalSdDeg(const Eigen::Matrix<double, size, 
 
 }  // namespace
 
-Turn TurnOf(const Eigen::Matrix3d& cam2_from_cam1_R) {
+Turn ComputeTurn(const Eigen::Matrix3d& cam2_from_cam1_R) {
   const Eigen::Vector3d w_deg = kDegPerRad * VectorFromRotation(cam2_from_cam1_R.transpose());
   Turn turn;
   turn.angle_deg = w_deg.norm();
@@ -51,23 +51,23 @@ Turn TurnOf(const Eigen::Matrix3d& cam2_from_cam1_R) {
   return turn;
 }
 
-Eigen::Vector3d PlaceOf(const RelativePose& cam2_from_cam1) {
+Eigen::Vector3d ComputePlace(const RelativePose& cam2_from_cam1) {
   return -(cam2_from_cam1.R.transpose() * cam2_from_cam1.t);
 }
 
 std::string DescribePlace(const RelativePose& cam2_from_cam1) {
-  const Eigen::Vector3d place = PlaceOf(cam2_from_cam1);
+  const Eigen::Vector3d place = ComputePlace(cam2_from_cam1);
   std::string words;
   for (const int axis : AxesBySize(place, 0.3))
     words += std::string(words.empty() ? "" : ", ") + kSides[static_cast<size_t>(axis)][place(axis) < 0.0];
   return words;
 }
 
-MotionSpread SpreadOf(const RelativePose& cam2_from_cam1, const Matrix5d& pose_cov) {
+MotionSpread ComputeSpread(const RelativePose& cam2_from_cam1, const Matrix5d& pose_cov) {
   const Eigen::Matrix3d rotation_cov = pose_cov.topLeftCorner<3, 3>();
   const Eigen::Matrix2d direction_cov = pose_cov.bottomRightCorner<2, 2>();
   // R <- Exp(w) R turns in camera 2's frame, where the axis has the same coordinates: it is the rotation's.
-  const Eigen::Vector3d axis = TurnOf(cam2_from_cam1.R).axis_in_cam1;
+  const Eigen::Vector3d axis = ComputeTurn(cam2_from_cam1.R).axis_in_cam1;
   MotionSpread spread;
   spread.angle_sd_deg = kDegPerRad * std::sqrt(std::max(axis.dot(rotation_cov * axis), 0.0));
   spread.rotation_95_deg = std::sqrt(ChiSquareQuantile(3, 0.95)) * PrincipalSdDeg<3>(rotation_cov);
@@ -76,7 +76,7 @@ MotionSpread SpreadOf(const RelativePose& cam2_from_cam1, const Matrix5d& pose_c
   return spread;
 }
 
-const MotionMode* RunnerUpOf(const MotionEstimate& estimate) {
+const MotionMode* FindRunnerUp(const MotionEstimate& estimate) {
   constexpr double kSameWithin = 0.1;
   const Vector5d variances = estimate.pose_cov.diagonal();
   const double rotation_sd = std::sqrt(variances.head<3>().sum()),

@@ -16,11 +16,11 @@ struct Turn {
   Eigen::Vector3d axis_in_cam1 = Eigen::Vector3d::UnitY();
   std::string words;
 };
-Turn TurnOf(const Eigen::Matrix3d& cam2_from_cam1_R);
+Turn ComputeTurn(const Eigen::Matrix3d& cam2_from_cam1_R);
 
 // Where camera 2 stands, a unit vector in camera 1's frame: -R't; in words the sides that it is at by at
 // least 0.3, the greatest first: "right, forward".
-Eigen::Vector3d PlaceOf(const RelativePose& cam2_from_cam1);
+Eigen::Vector3d ComputePlace(const RelativePose& cam2_from_cam1);
 std::string DescribePlace(const RelativePose& cam2_from_cam1);
 
 // Standard deviations and 95 % regions, deg, from a covariance [rotation, direction] in rad^2.
@@ -30,10 +30,10 @@ struct MotionSpread {
   Eigen::Vector2d direction_sd_deg;  // along the axes of the direction's ellipse, the greater first
   Eigen::Vector2d direction_95_deg;  // its 95 % ellipse
 };
-MotionSpread SpreadOf(const RelativePose& cam2_from_cam1, const Matrix5d& pose_cov);
+MotionSpread ComputeSpread(const RelativePose& cam2_from_cam1, const Matrix5d& pose_cov);
 
 // The likeliest other motion; none: nullptr. Two starts may end in one optimum: what is within a tenth of the
 // answer's standard deviation of it is no other motion.
-const MotionMode* RunnerUpOf(const MotionEstimate& estimate);
+const MotionMode* FindRunnerUp(const MotionEstimate& estimate);
 
 }  // namespace rcme

@@ -229,7 +229,7 @@ Why WhyNotRight(const EstimatorSpec& spec, const TrialData& data, const MotionEs
 
 std::string RunnerUpWords(const MotionEstimate& estimate, const TrialData& data,
                           const FailureBounds& bounds) {
-  const MotionMode* found = RunnerUpOf(estimate);
+  const MotionMode* found = FindRunnerUp(estimate);
   if (found == nullptr) return {};
   const MotionMode& other = *found;
   std::string words =
@@ -287,8 +287,8 @@ const char* Name(WhyVerdict verdict) {
   return "truth_unknown";
 }
 
-Why WhyOf(const EstimatorSpec& spec, const TrialData& data, const MotionEstimate& estimate,
-          const TrialRecord& record, const FailureBounds& bounds) {
+Why ExplainOutcome(const EstimatorSpec& spec, const TrialData& data, const MotionEstimate& estimate,
+                   const TrialRecord& record, const FailureBounds& bounds) {
   Why why;
   if (IsInvalid(record)) {
     why = {WhyVerdict::kSearchFailed, "the answer is not valid: " + estimate.message, {}};
@@ -307,7 +307,7 @@ std::optional<MotionEvidence> EvidenceOfTruth(const TrialData& data) {
   truth.status = MotionStatus::kOk;
   truth.cam2_from_cam1 = *data.truth.cam2_from_cam1_true;
   truth.inliers = RightMatches(data);
-  return EvidenceOf(data.problem, truth);
+  return ComputeEvidence(data.problem, truth);
 }
 
 std::string WhyAsText(const StudyPlan& plan, const TrialResult& result) {
@@ -321,7 +321,8 @@ std::string WhyAsText(const StudyPlan& plan, const TrialResult& result) {
   }
   for (size_t e = 0; e < result.estimates.size(); ++e) {
     const EstimatorSpec& spec = plan.study.estimators[e];
-    const Why why = WhyOf(spec, result.data, result.estimates[e], result.records[e], plan.study.failure);
+    const Why why =
+        ExplainOutcome(spec, result.data, result.estimates[e], result.records[e], plan.study.failure);
     text += fmt::format("  {}: {}\n", spec.label, Meaning(why.verdict));
     if (!why.words.empty()) text += fmt::format("    {}\n", why.words);
     if (!why.runner_up.empty()) text += fmt::format("    runner-up: {}\n", why.runner_up);

@@ -32,8 +32,8 @@ struct Why {
   std::string words;      // a sentence or two, with the scores
   std::string runner_up;  // the most likely other motion, of an estimator that keeps several; empty: none
 };
-Why WhyOf(const EstimatorSpec& spec, const TrialData& data, const MotionEstimate& estimate,
-          const TrialRecord& record, const FailureBounds& bounds);
+Why ExplainOutcome(const EstimatorSpec& spec, const TrialData& data, const MotionEstimate& estimate,
+                   const TrialRecord& record, const FailureBounds& bounds);
 
 // What the true motion itself rests on: the right matches, where they are known, else those that agree with
 // it at 95 %. Nothing where the truth is not known.

@@ -37,7 +37,7 @@ struct CacheHeader {
 static_assert(std::is_trivially_copyable_v<CacheHeader> && sizeof(CacheHeader) == 40);
 static_assert(std::is_trivially_copyable_v<KeyPoint> && sizeof(KeyPoint) == 12);
 
-std::string NameOf(const std::string& image, const DetectorOptions& options) {
+std::string MakeCacheName(const std::string& image, const DetectorOptions& options) {
   const std::string about =
       fmt::format("2 {} {} {}", CV_VERSION, static_cast<int>(options.detector), options.max_features);
   Fnv1a hash_about;
@@ -108,7 +108,7 @@ ImageFeatures FeatureCache::Get(const std::string& path, const DetectorOptions& 
   std::string image_bytes = ReadImageBytes(path);
   std::string kept;
   if (!folder_.empty()) {
-    kept = (std::filesystem::path(folder_) / NameOf(image_bytes, options)).string();
+    kept = (std::filesystem::path(folder_) / MakeCacheName(image_bytes, options)).string();
     std::ifstream file(kept, std::ios::binary);
     const std::optional<ImageFeatures> image =
         UnpackFeatures({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});

@@ -38,7 +38,7 @@ double FinestSize(Detector detector) {
 }
 
 // The descriptors as a matrix with a row each, which shares their memory.
-cv::Mat MatrixOf(const Features& features) {
+cv::Mat MakeDescriptorMatrix(const Features& features) {
   const int num_rows = static_cast<int>(features.key_points.size());
   const int num_bytes = static_cast<int>(features.descriptors.size()) / num_rows;
   auto* bytes = const_cast<std::uint8_t*>(features.descriptors.data());
@@ -47,8 +47,8 @@ cv::Mat MatrixOf(const Features& features) {
 }
 
 // Of each key point of image 1 the nearest of image 2, where it passes the ratio test.
-std::vector<FeatureMatch> NearestOf(const cv::Mat& rows1, const cv::Mat& rows2, bool is_binary,
-                                    double max_ratio) {
+std::vector<FeatureMatch> MatchNearest(const cv::Mat& rows1, const cv::Mat& rows2, bool is_binary,
+                                       double max_ratio) {
   std::vector<std::vector<cv::DMatch>> nearest;
   cv::BFMatcher(is_binary ? cv::NORM_HAMMING : cv::NORM_L2).knnMatch(rows1, rows2, nearest, 2);
   std::vector<FeatureMatch> matches;
@@ -134,8 +134,8 @@ Features DetectFeatures(const GreyImage& image, const DetectorOptions& options) 
 std::vector<FeatureMatch> MatchFeatures(const Features& features1, const Features& features2,
                                         const MatcherOptions& options) {
   if (features1.key_points.empty() || features2.key_points.size() < 2) return {};
-  const cv::Mat rows1 = MatrixOf(features1), rows2 = MatrixOf(features2);
-  std::vector<FeatureMatch> matches = NearestOf(rows1, rows2, features1.is_binary, options.max_ratio);
+  const cv::Mat rows1 = MakeDescriptorMatrix(features1), rows2 = MakeDescriptorMatrix(features2);
+  std::vector<FeatureMatch> matches = MatchNearest(rows1, rows2, features1.is_binary, options.max_ratio);
   if (options.is_mutual) {
     KeepMutual(rows1, rows2, features1.is_binary, &matches);
     KeepOnePerPlace(features1.key_points, &FeatureMatch::at1, &matches);

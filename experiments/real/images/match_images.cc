@@ -9,7 +9,7 @@
 namespace rcme {
 namespace {
 
-Camera CameraOf(const ImageFeatures& image, const std::vector<double>& k, const std::string& name) {
+Camera MakeImageCamera(const ImageFeatures& image, const std::vector<double>& k, const std::string& name) {
   const Camera camera{k.at(0), k.at(1), k.at(2), k.at(3), image.width, image.height};
   if (!camera.IsValid()) throw InputError(fmt::format("{}: K is singular; fx and fy must be > 0", name));
   return camera;
@@ -22,8 +22,8 @@ MatchFile MatchImages(const MatchImagesOptions& options) {
   const ImageFeatures image1 = no_cache.Get(options.image1, options.detector);
   const ImageFeatures image2 = no_cache.Get(options.image2, options.detector);
   MatchFile file;
-  file.camera1 = CameraOf(image1, options.K1, "--K1");
-  file.camera2 = CameraOf(image2, options.K2.empty() ? options.K1 : options.K2, "--K2");
+  file.camera1 = MakeImageCamera(image1, options.K1, "--K1");
+  file.camera2 = MakeImageCamera(image2, options.K2.empty() ? options.K1 : options.K2, "--K2");
   for (const FeatureMatch& match : MatchFeatures(image1.features, image2.features, options.matcher)) {
     const KeyPoint& p1 = image1.features.key_points[match.at1];
     const KeyPoint& p2 = image2.features.key_points[match.at2];

@@ -49,7 +49,7 @@ class Members {
                                            const std::string& origin) {
     if (clusters_ == TableClusters::kSequences)
       return {Number(condition.index, ""), Number(condition.index, "")};
-    const ImageNames& names = NamesOf(condition, plan);
+    const ImageNames& names = FindImageNames(condition, plan);
     const auto found = names.find(origin);
     if (found == names.end()) {
       num_members_ += 2;
@@ -60,11 +60,11 @@ class Members {
 
  private:
   // Of the condition's folder; of a simulated scene there are none.
-  const ImageNames& NamesOf(const Condition& condition, const StudyPlan& plan) {
+  const ImageNames& FindImageNames(const Condition& condition, const StudyPlan& plan) {
     std::string folder;
     std::vector<std::string> levels = condition.levels;
     levels.resize(FactorNames(plan.study).size());
-    for (const auto& [key, value] : SettingsOf(plan.study, levels)) {
+    for (const auto& [key, value] : CombineSettings(plan.study, levels)) {
       if (key == "folder") folder = value;
     }
     const auto [found, is_new] = names_of_folder_.try_emplace(folder);
@@ -112,7 +112,8 @@ void DropMissingFlags(const std::vector<bool>& has_flag, std::vector<SceneEvents
   }
 }
 
-std::vector<SceneEvents> EventsOf(const ResultStore& run, const StudyPlan& plan, TableClusters clusters) {
+std::vector<SceneEvents> ListSceneEvents(const ResultStore& run, const StudyPlan& plan,
+                                         TableClusters clusters) {
   std::vector<SceneEvents> scenes;
   for (const Condition& condition : plan.conditions)
     scenes.push_back({condition.levels, std::vector<CellEvents>(plan.study.estimators.size())});
@@ -182,7 +183,7 @@ PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>&
   const StudyPlan plan = run.Plan(run.StoredStudy(), PlanEstimators::kNotMade);
   PaperTable table{plan.study.name, {}, plan.study.failure, {}};
   for (const EstimatorSpec& spec : plan.study.estimators) table.estimators.push_back(spec.label);
-  const std::vector<SceneEvents> scenes = EventsOf(run, plan, clusters);
+  const std::vector<SceneEvents> scenes = ListSceneEvents(run, plan, clusters);
   std::vector<const SceneEvents*> all;
   for (const SceneEvents& scene : scenes) {
     all.push_back(&scene);

@@ -30,7 +30,7 @@ constexpr CellQuantity kQuantities[] = {
 const NumberFormat kPercentOfHeading{100.0, "", ".2f"};
 
 // Of a rate of n pairs in per cent: as many as tell one pair from none.
-int DecimalsOf(std::int64_t n) { return n <= 100 ? 0 : n <= 1000 ? 1 : 2; }
+int CountDecimals(std::int64_t n) { return n <= 100 ? 0 : n <= 1000 ? 1 : 2; }
 
 Table MakeEstimatorTable(const PaperTable& paper_table, size_t estimator) {
   Table table{
@@ -47,13 +47,13 @@ Table MakeEstimatorTable(const PaperTable& paper_table, size_t estimator) {
       table.rows.back().emplace_back(Estimate{.value = rate.rate,
                                               .interval = rate.interval,
                                               .note = quantity.is_of_subset ? counts : "",
-                                              .decimals = DecimalsOf(rate.n)});
+                                              .decimals = CountDecimals(rate.n)});
     }
   }
   return table;
 }
 
-double ShareOf(const PrintedRate& rate) {
+double ComputeShare(const PrintedRate& rate) {
   return static_cast<double>(rate.count) / static_cast<double>(rate.n);
 }
 
@@ -68,7 +68,7 @@ Table MakePrintedTable(const std::vector<PrintedRate>& rates) {
     }
     if (table.rows.empty() || std::get<std::string>(table.rows.back()[0]) != rate.row)
       table.rows.push_back({rate.row, std::int64_t{rate.n}});
-    table.rows.back().emplace_back(Estimate{ShareOf(rate), rate.interval});
+    table.rows.back().emplace_back(Estimate{ComputeShare(rate), rate.interval});
   }
   return table;
 }
@@ -127,7 +127,7 @@ Table MakePaperRateTable() {
                           rate.method,
                           rate.quantity == "failure" ? "kappa_failure" : rate.quantity,
                           "rate",
-                          ShareOf(rate),
+                          ComputeShare(rate),
                           rate.interval,
                           n,
                           count,

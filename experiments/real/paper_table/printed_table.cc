@@ -42,7 +42,7 @@ int SumOver(bool is_indoor, int PrintedDataset::*count) {
   return sum;
 }
 
-double McNemarOf(int first_only, int second_only) {
+double ComputeMcNemar(int first_only, int second_only) {
   PairedCounts counts;
   counts.first_only = first_only;
   counts.second_only = second_only;
@@ -82,8 +82,8 @@ std::vector<PrintedComparison> PrintedComparisons() {
                           SumOver(is_indoor, other.count),
                           SumOver(is_indoor, &PrintedDataset::num_pairs)};
       const int common = std::min(c.first_failures, c.second_failures);
-      const double of_many_common = McNemarOf(c.first_failures - common, c.second_failures - common),
-                   of_none_common = McNemarOf(c.first_failures, c.second_failures);
+      const double of_many_common = ComputeMcNemar(c.first_failures - common, c.second_failures - common),
+                   of_none_common = ComputeMcNemar(c.first_failures, c.second_failures);
       c.least_p = std::min(of_many_common, of_none_common);
       c.greatest_p = std::max(of_many_common, of_none_common);
       comparisons.push_back(c);

@@ -8,8 +8,8 @@
 #include <map>
 #include <optional>
 
-#include "experiments/real/images/features.h"
 #include "experiments/core/files/database.h"
+#include "experiments/real/images/features.h"
 #include "experiments/real/sequences/colmap_camera.h"
 #include "experiments/real/sequences/colmap_model.h"
 #include "experiments/real/sequences/layout_files.h"
@@ -82,7 +82,7 @@ class ColmapPairs : public ListedPairs {
   }
 
   size_t size() const override { return pair_ids_.size(); }
-  std::string IdOf(size_t i) const override {
+  std::string PairId(size_t i) const override {
     return fmt::format("{}_{:06}_{:06}", scene_, pair_ids_.at(i) / kMaxImages, pair_ids_.at(i) % kMaxImages);
   }
   std::string Note() const override { return note_; }
@@ -166,12 +166,12 @@ class ColmapPairs : public ListedPairs {
   }
 
   // What the image was taken through, as well as is known.
-  const Lens& LensOf(std::int64_t image) const {
+  const Lens& FindLens(std::int64_t image) const {
     const auto view = views_.find(images_.at(image).name);
     return view == views_.end() ? cameras_.at(images_.at(image).camera) : view->second.lens;
   }
 
-  const ColmapKeyPoints& KeyPointsOf(std::int64_t image) {
+  const ColmapKeyPoints& ReadKeyPoints(std::int64_t image) {
     if (const auto found = key_points_.find(image); found != key_points_.end()) return found->second;
     SQLite::Statement row(database_, "SELECT rows, cols, data FROM keypoints WHERE image_id = ?");
     row.bind(1, image);
@@ -185,7 +185,7 @@ class ColmapPairs : public ListedPairs {
     const auto width = static_cast<size_t>(num_columns);
     const std::vector<float> data =
         NumbersIn<float>(row.getColumn(2), static_cast<size_t>(num_rows) * width, place);
-    const Lens& lens = LensOf(image);
+    const Lens& lens = FindLens(image);
     ColmapKeyPoints points;
     for (size_t at = 0; at < data.size(); at += width) {
       const Eigen::Vector2d x_px(data[at] - kColmapHalfPixel, data[at + 1] - kColmapHalfPixel);
@@ -211,11 +211,11 @@ class ColmapPairs : public ListedPairs {
     file.scene = scene_;
     file.image1 = images_.at(id1).name;
     file.image2 = images_.at(id2).name;
-    file.camera1 = LensOf(id1).camera;
-    file.camera2 = LensOf(id2).camera;
+    file.camera1 = FindLens(id1).camera;
+    file.camera2 = FindLens(id2).camera;
     // Pairs come in the order of their first images: what is neither of this pair's is forgotten.
     std::erase_if(key_points_, [&](const auto& entry) { return entry.first != id1 && entry.first != id2; });
-    const ColmapKeyPoints &points1 = KeyPointsOf(id1), &points2 = KeyPointsOf(id2);
+    const ColmapKeyPoints &points1 = ReadKeyPoints(id1), &points2 = ReadKeyPoints(id2);
 
     SQLite::Statement row(database_, "SELECT rows, cols, data FROM matches WHERE pair_id = ?");
     row.bind(1, pair);

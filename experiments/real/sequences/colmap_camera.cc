@@ -42,7 +42,7 @@ const std::vector<ColmapModel>& ColmapModels() {
                   place, model));
 }
 
-const ColmapModel& ModelOf(std::int64_t number, const std::string& place) {
+const ColmapModel& FindColmapModel(std::int64_t number, const std::string& place) {
   for (const ColmapModel& model : ColmapModels()) {
     if (model.number == number) return model;
   }
@@ -52,7 +52,7 @@ const ColmapModel& ModelOf(std::int64_t number, const std::string& place) {
 }  // namespace
 
 size_t NumColmapParameters(std::int64_t model, const std::string& place) {
-  return ModelOf(model, place).num_parameters;
+  return FindColmapModel(model, place).num_parameters;
 }
 
 std::int64_t ColmapModelNumber(const std::string& name, const std::string& place) {
@@ -63,7 +63,7 @@ std::int64_t ColmapModelNumber(const std::string& name, const std::string& place
 }
 
 Lens LensOfColmapCamera(const ColmapCamera& camera, const std::string& place) {
-  const ColmapModel& model = ModelOf(camera.model, place);
+  const ColmapModel& model = FindColmapModel(camera.model, place);
   const std::vector<double>& p = camera.parameters;
   if (p.size() != model.num_parameters)
     throw InputError(

@@ -24,7 +24,7 @@ using Views = std::map<std::string, ColmapView>;
 constexpr size_t kMaxNameBytes = 1023;
 
 // From cam_from_world, as COLMAP stores it.
-CameraPose PoseOf(const std::array<double, 7>& p, const std::string& place) {
+CameraPose MakeCameraPose(const std::array<double, 7>& p, const std::string& place) {
   const Eigen::Quaterniond q(p[0], p[1], p[2], p[3]);
   const Eigen::Vector3d t(p[4], p[5], p[6]);
   if (!(std::abs(q.norm() - 1.0) < 1e-2))
@@ -42,10 +42,10 @@ void AddView(const std::string& name, const std::array<double, 7>& pose, std::in
   if (lens == lenses.end())
     throw InputError(fmt::format("{}: the camera {} of {} is not among the reconstruction's {}", place,
                                  camera, Quoted(name), lenses.size()));
-  (*views)[name] = {PoseOf(pose, place), lens->second};
+  (*views)[name] = {MakeCameraPose(pose, place), lens->second};
 }
 
-std::int64_t WholeOf(const TableFile& table, size_t field) {
+std::int64_t ReadWholeNumber(const TableFile& table, size_t field) {
   long long number = 0;
   if (!ParseInteger(table.fields().at(field), &number))
     table.Fail(fmt::format("{} is not a whole number", Quoted(table.fields()[field])));
@@ -58,10 +58,12 @@ Lenses ReadCamerasText(const fs::path& path) {
   for (TableFile table(path, "it comes with images.txt", TableFile::Separator::kSpace); table.Next();) {
     table.Need(5, "CAMERA_ID MODEL WIDTH HEIGHT PARAMS...");
     const std::string place = fmt::format("{}: camera {}", path.string(), table.fields()[0]);
-    ColmapCamera camera{
-        ColmapModelNumber(table.fields()[1], place), WholeOf(table, 2), WholeOf(table, 3), {}};
+    ColmapCamera camera{ColmapModelNumber(table.fields()[1], place),
+                        ReadWholeNumber(table, 2),
+                        ReadWholeNumber(table, 3),
+                        {}};
     for (size_t i = 4; i < table.fields().size(); ++i) camera.parameters.push_back(table.Number(i));
-    lenses[WholeOf(table, 0)] = LensOfColmapCamera(camera, place);
+    lenses[ReadWholeNumber(table, 0)] = LensOfColmapCamera(camera, place);
   }
   return lenses;
 }

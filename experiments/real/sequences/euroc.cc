@@ -25,7 +25,8 @@ struct EurocSensor {
 };
 
 // The numbers of a list in sensor.yaml.
-std::vector<double> ListOf(const Place& place, const YAML::Node& map, const std::string& key, size_t least) {
+std::vector<double> ReadNumberList(const Place& place, const YAML::Node& map, const std::string& key,
+                                   size_t least) {
   const YAML::Node list = map.IsMap() ? map[key] : YAML::Node(YAML::NodeType::Undefined);
   if (!list.IsDefined() || !list.IsSequence())
     place.Fail(map, fmt::format("{}: a list of numbers is needed", key));
@@ -57,19 +58,19 @@ EurocSensor ReadSensor(const fs::path& path) {
   const Place place(path.string());
   const YAML::Node root = ParseYaml(ReadInputText(path.string(), kind), path.string(), kind);
   if (!root.IsMap()) place.Fail(root, "keys and values are needed: intrinsics, resolution, T_BS, ...");
-  const std::vector<double> K = ListOf(place, root, "intrinsics", 4),
-                            size = ListOf(place, root, "resolution", 2);
+  const std::vector<double> K = ReadNumberList(place, root, "intrinsics", 4),
+                            size = ReadNumberList(place, root, "resolution", 2);
   for (const double length : size) {
     if (!(length >= 1.0 && length <= 1e6 && length == std::floor(length)))
       place.Fail(root["resolution"], "resolution: whole numbers in [1, 1e6] are needed");
   }
   EurocSensor sensor;
-  sensor.lens =
-      MakeLens({K[0], K[1], K[2], K[3], static_cast<int>(size[0]), static_cast<int>(size[1])},
-               EurocLensModel(place, root), ListOf(place, root, "distortion_coefficients", 4), path.string());
+  sensor.lens = MakeLens({K[0], K[1], K[2], K[3], static_cast<int>(size[0]), static_cast<int>(size[1])},
+                         EurocLensModel(place, root),
+                         ReadNumberList(place, root, "distortion_coefficients", 4), path.string());
   const YAML::Node extrinsics = root["T_BS"];
   if (!extrinsics.IsDefined()) place.Fail(root, "T_BS: is missing; the truth is that of the body");
-  const std::vector<double> T = ListOf(place, extrinsics, "data", 16);
+  const std::vector<double> T = ReadNumberList(place, extrinsics, "data", 16);
   for (size_t i = 0; i < 12; ++i) {
     const auto row = static_cast<int>(i / 4), column = static_cast<int>(i % 4);
     (column < 3 ? sensor.body_from_cam.R_world_from_cam(row, column) : sensor.body_from_cam.center[row]) =

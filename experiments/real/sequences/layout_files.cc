@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kSpaces = " \t\r";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors put it first
 
-std::vector<std::string> WordsOf(std::string_view line) {
+std::vector<std::string> SplitWords(std::string_view line) {
   std::vector<std::string> words;
   while (true) {
     const size_t begin = line.find_first_not_of(kSpaces);
@@ -33,7 +33,7 @@ std::vector<std::string> WordsOf(std::string_view line) {
   }
 }
 
-std::vector<std::string> FieldsOf(std::string_view line) {
+std::vector<std::string> SplitFields(std::string_view line) {
   std::vector<std::string> fields;
   while (true) {
     const size_t comma = line.find(',');
@@ -160,7 +160,7 @@ bool TableFile::Next() {
     const size_t begin = line.find_first_not_of(kSpaces);
     if (begin == std::string_view::npos || line[begin] == '#') continue;
     if (rows_left_-- == 0) Fail("the file has more rows than data sets have; give a part of it");
-    fields_ = separator_ == Separator::kComma ? FieldsOf(line) : WordsOf(line);
+    fields_ = separator_ == Separator::kComma ? SplitFields(line) : SplitWords(line);
     return true;
   }
   return false;

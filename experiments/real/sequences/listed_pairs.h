@@ -20,8 +20,8 @@ class ListedPairs {
  public:
   virtual ~ListedPairs() = default;
   virtual size_t size() const = 0;
-  virtual std::string IdOf(size_t i) const = 0;  // what its match file is called
-  virtual ListedPair Read(size_t i) = 0;         // throws InputError that names the file
+  virtual std::string PairId(size_t i) const = 0;  // what its match file is called
+  virtual ListedPair Read(size_t i) = 0;           // throws InputError that names the file
   virtual std::string Note() const { return {}; }
 };
 
@@ -32,10 +32,10 @@ class ListedPairs {
 // the top-left one; half a pixel is taken from key points and principal point.
 std::unique_ptr<ListedPairs> OpenColmap(const DatasetOptions& options);
 
-// An HDF5 file as posebench keeps pairs, a group each with x1, x2, R, t, camera1, camera2, taken one at a time.
-// Cameras and pixels are COLMAP's. Each pair is read in a process of its own (posebench_file.h): a file that crashes
-// libhdf5 is an InputError. To be called where no other thread runs. Throws InputError where the program was built
-// without the library.
+// An HDF5 file as posebench keeps pairs, a group each with x1, x2, R, t, camera1, camera2, taken one at a
+// time. Cameras and pixels are COLMAP's. Each pair is read in a process of its own (posebench_file.h): a file
+// that crashes libhdf5 is an InputError. To be called where no other thread runs. Throws InputError where the
+// program was built without the library.
 std::unique_ptr<ListedPairs> OpenPosebench(const DatasetOptions& options);
 
 // A folder of match files (match_file.h).

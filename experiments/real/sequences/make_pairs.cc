@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint32_t kGatePurpose = 0x6761;  // of the gate's random stream; no trial has it
 
 // The upper 48 bits of the hash of a pair's name.
-std::uint64_t NumberOf(const std::string& pair_id) {
+std::uint64_t HashPairId(const std::string& pair_id) {
   Fnv1a hash;
   hash.Add(pair_id);
   return hash.value() >> 16;
@@ -38,7 +38,7 @@ bool IsDirectionWeak(const PairsOptions& options, double baseline) {
 
 // Judges a pair, writes its file if it is kept, enters it.
 void Decide(MatchFile file, PairRow row, const PairsOptions& options, PairJournal* journal) {
-  RandomStream rng({.seed = 1, .condition = NumberOf(row.pair_id), .purpose = kGatePurpose});
+  RandomStream rng({.seed = 1, .condition = HashPairId(row.pair_id), .purpose = kGatePurpose});
   const KeyFrameVerdict verdict =
       JudgePair({file.matches, file.camera1, file.camera2, options.gate.sigma_px}, options.gate, rng);
   row.reason = verdict.reason;
@@ -206,7 +206,7 @@ void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJourna
   for (size_t i = 0; i < pairs.size(); ++i) {
     StopIfRequested(*journal);
     PairRow row;
-    row.pair_id = pairs.IdOf(i);
+    row.pair_id = pairs.PairId(i);
     if (journal->Find(row.pair_id)) continue;
     ListedPair listed = pairs.Read(i);
     warnings.Add(FindPairDoubts(listed.file.camera1, listed.file.camera2, listed.file.matches,

@@ -10,11 +10,11 @@ class MatchFilePairs : public ListedPairs {
       : paths_(MatchFilesIn(folder)), weak_(PairsWithWeakDirection(folder, paths_)) {}
 
   size_t size() const override { return paths_.size(); }
-  std::string IdOf(size_t i) const override { return PairIdOf(paths_.at(i)); }
+  std::string PairId(size_t i) const override { return ExtractPairId(paths_.at(i)); }
   ListedPair Read(size_t i) override {
     ListedPair listed;
     listed.file = ReadMatchFile(paths_.at(i).string());
-    listed.is_direction_weak = weak_.contains(IdOf(i));
+    listed.is_direction_weak = weak_.contains(PairId(i));
     return listed;
   }
 

@@ -184,7 +184,7 @@ class PosebenchPairs : public ListedPairs {
   }
 
   size_t size() const override { return names_.size(); }
-  std::string IdOf(size_t i) const override { return fmt::format("{}_{:06}", scene_, i); }
+  std::string PairId(size_t i) const override { return fmt::format("{}_{:06}", scene_, i); }
   ListedPair Read(size_t i) override {
     const std::string& name = names_.at(i);
     const std::string place = fmt::format("{}: group {}", path_, Quoted(name));

@@ -14,7 +14,8 @@ namespace {
 constexpr int kBoth = kNumCameraFaults + 5;
 constexpr size_t kLeastInliers = 20;
 
-double WeightOf(const MotionProblem& problem, const MotionEstimate& estimate, size_t i, double sigma_px) {
+double ComputeWeight(const MotionProblem& problem, const MotionEstimate& estimate, size_t i,
+                     double sigma_px) {
   const double probability = estimate.inlier_probabilities.empty() ? 1.0 : estimate.inlier_probabilities[i];
   const double sd_px = sigma_px * NoiseScaleAt(problem, i);
   return probability / (sd_px * sd_px);
@@ -33,7 +34,7 @@ Eigen::Matrix<double, 1, kNumCameraFaults> ResidualByFaults(const Eigen::Matrix3
   const Eigen::RowVector4d r_X = (u - r / norm * ConstraintHessian(F) * u).transpose();
   const auto shifts_at = [&](double step_px) {
     const Correspondence moved{match.x1_px + step_px * u.head<2>(), match.x2_px + step_px * u.tail<2>()};
-    return ShiftsOf(camera1, camera2, cam2_from_cam1, moved);
+    return ComputeShifts(camera1, camera2, cam2_from_cam1, moved);
   };
   const ShiftsByFaults along_u = (shifts_at(kStepPx) - shifts_at(-kStepPx)) / (2.0 * kStepPx);  // d_X u
   return r_X * shifts_at(0.0) - r * u.transpose() * along_u;
@@ -44,8 +45,8 @@ std::optional<CalibrationScore> ScoreCalibration(const MotionProblem& problem,
   if (estimate.inliers.size() < kLeastInliers) return std::nullopt;
   const RelativePose& pose = estimate.cam2_from_cam1;
   const SampsonLinearization model({{}, problem.camera1, problem.camera2, 1.0}, pose);  // px
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
-  const double sigma_px = NoiseOf(problem, estimate);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
+  const double sigma_px = EstimateNoise(problem, estimate);
   Eigen::Matrix<double, kBoth, kBoth> normal = Eigen::Matrix<double, kBoth, kBoth>::Zero();
   Eigen::Matrix<double, kBoth, 1> moments = Eigen::Matrix<double, kBoth, 1>::Zero();
   for (const int index : estimate.inliers) {
@@ -54,7 +55,7 @@ std::optional<CalibrationScore> ScoreCalibration(const MotionProblem& problem,
     const SampsonResidual residual = model.Evaluate(match);
     Eigen::Matrix<double, kBoth, 1> row;
     row << ResidualByFaults(F, problem.camera1, problem.camera2, pose, match).transpose(), residual.r_p;
-    const double weight = WeightOf(problem, estimate, i, sigma_px);
+    const double weight = ComputeWeight(problem, estimate, i, sigma_px);
     normal += weight * row * row.transpose();
     moments += weight * residual.r * row;
   }

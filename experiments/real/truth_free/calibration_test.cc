@@ -66,11 +66,13 @@ std::vector<UnitScore> PickFaults(const std::vector<UnitScore>& units,
   return picked;
 }
 
-Interval NominalOf(CameraFault fault) { return {-TextOf(fault).nominal, TextOf(fault).nominal}; }
+Interval FindNominalRange(CameraFault fault) {
+  return {-FindFaultText(fault).nominal, FindFaultText(fault).nominal};
+}
 
-TruthFreeVerdict VerdictOf(CameraFault fault, const PooledParameter& of) {
+TruthFreeVerdict DecideFault(CameraFault fault, const PooledParameter& of) {
   if (std::isnan(of.value)) return TruthFreeVerdict::kNoData;
-  return VerdictOnInterval(of.interval, 0.0, NominalOf(fault));
+  return VerdictOnInterval(of.interval, 0.0, FindNominalRange(fault));
 }
 
 // Further from zero than all of the other interval, to the same side or the other.
@@ -104,14 +106,14 @@ std::string RangeIn(const CameraFaultText& text, const PooledParameter& of, bool
 
 // "too long by 0.52 % [0.45, 0.60]"
 std::string DescribeFound(CameraFault fault, const PooledParameter& of) {
-  const CameraFaultText& text = TextOf(fault);
+  const CameraFaultText& text = FindFaultText(fault);
   const bool is_less = of.value < 0.0;
   return fmt::format("{} {}", RangeIn(text, of, is_less), is_less ? text.less : text.more);
 }
 
 // Intervals shrink with the root of the number of pairs.
 double PairsNeeded(CameraFault fault, const PooledParameter& of, int num_pairs) {
-  const double half = 0.5 * (of.interval.upper - of.interval.lower), nominal = TextOf(fault).nominal;
+  const double half = 0.5 * (of.interval.upper - of.interval.lower), nominal = FindFaultText(fault).nominal;
   if (!(half < kTooWide * nominal)) return 0.0;
   const double target = std::max(std::abs(of.value), nominal - std::abs(of.value));
   return std::ceil(num_pairs * std::max(1.0, half * half / (target * target)));
@@ -119,7 +121,7 @@ double PairsNeeded(CameraFault fault, const PooledParameter& of, int num_pairs) 
 
 // "focal length +-4200 %"
 std::string DescribeHalf(CameraFault fault, const PooledParameter& of) {
-  const CameraFaultText& text = TextOf(fault);
+  const CameraFaultText& text = FindFaultText(fault);
   return fmt::format("{} {:.2g} +-{:.2g}{}{}", text.words, text.per_unit * of.value,
                      0.5 * text.per_unit * (of.interval.upper - of.interval.lower), *text.unit ? " " : "",
                      text.unit);
@@ -158,7 +160,7 @@ void NameNothing(std::string why, CalibrationReport* report) {
 std::vector<double> ReadoutScales(const std::vector<PairAnswers>& answers) {
   std::vector<double> seconds, scales;
   for (const PairAnswers& each : answers) seconds.push_back(each.whole.pair.seconds_between);
-  const double median = MedianOf(seconds);
+  const double median = ComputeMedian(seconds);
   for (const double own : seconds) scales.push_back(std::isfinite(median / own) ? median / own : 1.0);
   return scales;
 }
@@ -166,7 +168,7 @@ std::vector<double> ReadoutScales(const std::vector<PairAnswers>& answers) {
 FaultEstimates EstimateFaults(const std::vector<PairAnswers>& answers) {
   FaultEstimates estimates;
   if (!answers.empty()) estimates.camera = answers.front().whole.pair.problem.camera1;
-  const std::vector<ImageNumbers> images = ImageNumbersOf(answers);
+  const std::vector<ImageNumbers> images = NumberImages(answers);
   const std::vector<double> scales = ReadoutScales(answers);
   bool has_times = true;
   for (size_t i = 0; i < answers.size(); ++i) {
@@ -203,8 +205,8 @@ std::optional<CameraFault> FindOtherFault(const std::vector<UnitScore>& units) {
 
 void JudgeFaults(CalibrationReport* report) {
   for (FaultReport& each : report->faults) {
-    each.verdict = VerdictOf(each.fault, each.joint);
-    if (IsFault(VerdictOf(each.fault, each.twins)) && !IsBeyond(each.joint.interval, each.twins.interval))
+    each.verdict = DecideFault(each.fault, each.joint);
+    if (IsFault(DecideFault(each.fault, each.twins)) && !IsBeyond(each.joint.interval, each.twins.interval))
       each.verdict = TruthFreeVerdict::kUndecided;
   }
   report->verdict = VerdictOnAll(*report);
@@ -241,7 +243,7 @@ CalibrationReport TestCalibration(const std::vector<PairAnswers>& answers) {
     FaultReport& of = report.faults[j];
     if (of.verdict != TruthFreeVerdict::kUndecided) continue;
     of.pairs_needed = PairsNeeded(of.fault, of.joint, report.num_pairs);
-    if (IsFault(VerdictOf(of.fault, of.alone)))
+    if (IsFault(DecideFault(of.fault, of.alone)))
       of.confused_with = MostAlike(joint.correlations, static_cast<Eigen::Index>(j), estimates.asked);
   }
   return report;
@@ -266,7 +268,7 @@ std::string DescribeCalibration(const CalibrationReport& report) {
 }
 
 std::string DescribeFault(const FaultReport& report) {
-  const CameraFaultText& text = TextOf(report.fault);
+  const CameraFaultText& text = FindFaultText(report.fault);
   switch (report.verdict) {
     case TruthFreeVerdict::kNoData:
       return "no data";
@@ -284,7 +286,7 @@ std::string DescribeFault(const FaultReport& report) {
       std::string words = "undecided: " + RangeIn(text, report.joint, false);
       if (report.confused_with)
         words += fmt::format("; were it the only fault: {}; hard to tell from {}",
-                             RangeIn(text, report.alone, false), TextOf(*report.confused_with).words);
+                             RangeIn(text, report.alone, false), FindFaultText(*report.confused_with).words);
       if (report.pairs_needed > 0.0)
         words += fmt::format("; some {:.2g} pairs would decide it", report.pairs_needed);
       return words;
@@ -325,8 +327,8 @@ std::vector<std::string> CalibrationAdvice(const CalibrationReport& report) {
         change = "take a global shutter, correct the rows' times, or move less between images";
         break;
     }
-    advice.push_back(
-        fmt::format("{}: {}: {}", TextOf(each.fault).words, DescribeFound(each.fault, each.joint), change));
+    advice.push_back(fmt::format("{}: {}: {}", FindFaultText(each.fault).words,
+                                 DescribeFound(each.fault, each.joint), change));
   }
   if (report.verdict == TruthFreeVerdict::kTooLarge && advice.empty())
     advice.emplace_back(

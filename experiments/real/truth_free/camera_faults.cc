@@ -71,7 +71,7 @@ Eigen::Vector2d Undistort(const Camera& camera, double k1, const Eigen::Vector2d
 
 }  // namespace
 
-const CameraFaultText& TextOf(CameraFault fault) {
+const CameraFaultText& FindFaultText(CameraFault fault) {
   static constexpr std::array<CameraFaultText, kNumCameraFaults> kTexts = {{
       {"focal_length", "focal length", "%", 100.0, 0.002, "too long", "too short"},
       {"principal_point_x", "principal point, x", "px", 1.0, 1.0, "too far right", "too far left"},
@@ -90,8 +90,8 @@ const CameraFaultText& TextOf(CameraFault fault) {
   return kTexts[static_cast<size_t>(fault)];
 }
 
-ShiftsByFaults ShiftsOf(const Camera& camera1, const Camera& camera2, const RelativePose& cam2_from_cam1,
-                        const Correspondence& match) {
+ShiftsByFaults ComputeShifts(const Camera& camera1, const Camera& camera2, const RelativePose& cam2_from_cam1,
+                             const Correspondence& match) {
   ShiftsByFaults shifts = ShiftsByFaults::Zero();
   const auto fill = [&](Eigen::Index row, const Camera& camera, const Eigen::Vector2d& x_px) {
     const Eigen::Vector2d from_centre = x_px - Eigen::Vector2d(camera.cx, camera.cy);

@@ -41,7 +41,7 @@ struct CameraFaultText {
   double nominal;           // a fault of less is none that matters
   const char *more, *less;  // what a positive and a negative one is
 };
-const CameraFaultText& TextOf(CameraFault fault);
+const CameraFaultText& FindFaultText(CameraFault fault);
 
 // The greatest fault, either way, that a camera that somebody calibrated may have: half of the range of what
 // is physically possible. Focal length 50 %, principal point a quarter of the image, k1 0.5, a readout of the
@@ -65,8 +65,8 @@ using ShiftsByFaults = Eigen::Matrix<double, 4, kNumCameraFaults>;
 // the image of w x X_1 + t and v_2 that of w x (X_2 - t) + t, X the point at the depth that the motion
 // `cam2_from_cam1` gives the match (baseline 1). These are the models of simulator/calibration_error.h and
 // camera_defects.h.
-ShiftsByFaults ShiftsOf(const Camera& camera1, const Camera& camera2, const RelativePose& cam2_from_cam1,
-                        const Correspondence& match);
+ShiftsByFaults ComputeShifts(const Camera& camera1, const Camera& camera2, const RelativePose& cam2_from_cam1,
+                             const Correspondence& match);
 
 using FaultVector = Eigen::Matrix<double, kNumCameraFaults, 1>;
 

@@ -16,7 +16,7 @@ namespace {
 using LoopCovariance = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
 using LoopJacobian = Eigen::Matrix<double, Eigen::Dynamic, 5, 0, 3, 5>;
 
-Eigen::Matrix3d RotationOf(const AnsweredStep& step) {
+Eigen::Matrix3d ComputeStepRotation(const AnsweredStep& step) {
   const Eigen::Matrix3d& R = step.estimate->cam2_from_cam1.R;
   return step.is_forward ? R : Eigen::Matrix3d(R.transpose());
 }
@@ -29,7 +29,7 @@ Eigen::Vector3d DirectionIn(const AnsweredStep& step, bool at_begin) {
 }
 
 // dc/dq of one step, by central differences.
-LoopJacobian JacobianOf(AnsweredLoop loop, size_t k, LoopErrorOf error_of) {
+LoopJacobian ComputeLoopJacobian(AnsweredLoop loop, size_t k, LoopErrorOf error_of) {
   constexpr double kStep = 1e-6;
   std::vector<AnsweredStep> moved(loop.begin(), loop.end());
   MotionEstimate estimate = *loop[k].estimate;
@@ -92,13 +92,13 @@ class Moves {
 
 LoopError RotationClosure(AnsweredLoop loop) {
   Eigen::Matrix3d around = Eigen::Matrix3d::Identity();
-  for (const AnsweredStep& step : loop) around = RotationOf(step) * around;
+  for (const AnsweredStep& step : loop) around = ComputeStepRotation(step) * around;
   return VectorFromRotation(around);
 }
 
 LoopError DirectionClosure(AnsweredLoop triple) {
   const Eigen::Vector3d first = DirectionIn(triple[0], true),
-                        second = RotationOf(triple[0]).transpose() * DirectionIn(triple[1], true),
+                        second = ComputeStepRotation(triple[0]).transpose() * DirectionIn(triple[1], true),
                         last = DirectionIn(triple[2], false);
   return LoopError::Constant(1, first.dot(second.cross(last)));
 }
@@ -107,7 +107,7 @@ std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of,
   LoopCovariance sigma = LoopCovariance::Zero(expected.size(), expected.size());
   Moves moves;
   for (size_t k = 0; k < loop.size(); ++k) {
-    const LoopJacobian jacobian = JacobianOf(loop, k, error_of);
+    const LoopJacobian jacobian = ComputeLoopJacobian(loop, k, error_of);
     sigma += jacobian * loop[k].estimate->pose_cov * jacobian.transpose();
     const size_t next = (k + 1) % loop.size();
     moves.Add(loop[k], jacobian, loop[k].is_forward ? k : next, loop[k].is_forward ? next : k);
@@ -124,8 +124,8 @@ std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of,
   return whitened.dot(llt_ratio.solve(whitened));
 }
 
-std::vector<UnitValues> ClosuresOf(const std::vector<PairAnswers>& answers, const std::vector<Loop>& loops,
-                                   LoopErrorOf error_of) {
+std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
+                                        const std::vector<Loop>& loops, LoopErrorOf error_of) {
   std::vector<UnitValues> closures;
   for (const Loop& loop : loops) {
     if (error_of == DirectionClosure && loop.size() != 3) continue;

@@ -42,7 +42,7 @@ std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of,
 
 // Of each loop whose pairs are answered: the value above, and those of its twins. A pair that is in several
 // loops makes these dependent. Directions: of the loops of three images.
-std::vector<UnitValues> ClosuresOf(const std::vector<PairAnswers>& answers, const std::vector<Loop>& loops,
-                                   LoopErrorOf error_of);
+std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
+                                        const std::vector<Loop>& loops, LoopErrorOf error_of);
 
 }  // namespace rcme

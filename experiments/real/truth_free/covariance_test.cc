@@ -37,7 +37,7 @@ SharedMemberRate MeasureCoverage(std::span<const TestUnit> units, ValueList list
 
 bool IsNominal(const ComparedMedians& ratio) { return VerdictOn(ratio) == TruthFreeVerdict::kHolds; }
 
-FaultCause CauseOf(bool is_of_data, bool is_of_estimator) {
+FaultCause FindFaultCause(bool is_of_data, bool is_of_estimator) {
   if (is_of_data && is_of_estimator) return FaultCause::kBoth;
   if (is_of_data) return FaultCause::kData;
   return is_of_estimator ? FaultCause::kEstimator : FaultCause::kNone;
@@ -82,13 +82,13 @@ void JudgeCovariances(TruthFreeTest* test) {
   if (covers_too_little || (ratio.lower > 1.0 && !IsNominal(test->ratio))) {
     const bool is_worse_than_twins = covered.upper < twins_covered.lower;
     const bool is_worse_in_simulation = twins_covered.upper < least;
-    test->cause = CauseOf(twins.lower > 1.0 || is_worse_than_twins,
-                          simulated.lower > kApproximation || is_worse_in_simulation);
+    test->cause = FindFaultCause(twins.lower > 1.0 || is_worse_than_twins,
+                                 simulated.lower > kApproximation || is_worse_in_simulation);
     if (test->cause != FaultCause::kNone) test->verdict = TruthFreeVerdict::kTooSmall;
   } else if (IsNominal(test->ratio)) {
     if (test->coverage.rate >= least) test->verdict = TruthFreeVerdict::kHolds;
   } else if (ratio.upper < 1.0) {
-    test->cause = CauseOf(twins.upper < 1.0, simulated.upper < 1.0 / kApproximation);
+    test->cause = FindFaultCause(twins.upper < 1.0, simulated.upper < 1.0 / kApproximation);
     if (test->cause != FaultCause::kNone) test->verdict = TruthFreeVerdict::kTooLarge;
   }
   if (test->verdict == TruthFreeVerdict::kUndecided)
@@ -127,7 +127,7 @@ CovarianceVerdict JudgeTests(const std::vector<TruthFreeTest>& tests) {
       is_of_data |= test.cause == FaultCause::kData || test.cause == FaultCause::kBoth;
       is_of_estimator |= test.cause == FaultCause::kEstimator || test.cause == FaultCause::kBoth;
     }
-    found.cause = CauseOf(is_of_data, is_of_estimator);
+    found.cause = FindFaultCause(is_of_data, is_of_estimator);
     return found;
   };
   for (const TruthFreeVerdict verdict : {TruthFreeVerdict::kTooSmall, TruthFreeVerdict::kTooLarge,

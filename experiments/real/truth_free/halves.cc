@@ -21,7 +21,7 @@ std::vector<bool> FirstHalf(const MotionProblem& problem, const MotionEstimate& 
     const Eigen::Index axis = split == Split::kLeftRight ? 0 : 1;
     std::vector<double> places;
     for (const int i : whole.inliers) places.push_back(problem.matches[static_cast<size_t>(i)].x1_px(axis));
-    const double border_px = MedianOf(std::move(places));
+    const double border_px = ComputeMedian(std::move(places));
     for (size_t i = 0; i < n; ++i) is_first[i] = problem.matches[i].x1_px(axis) < border_px;
     return is_first;
   }
@@ -53,7 +53,7 @@ std::optional<double> DifferenceOfHalves(const MotionProblem& problem, const Mot
     for (size_t i = 0; i < is_first.size(); ++i) {
       if (is_first[i] == first) members.push_back(i);
     }
-    const MotionProblem half = PartOf(problem, members);
+    const MotionProblem half = SelectPart(problem, members);
     if (half.matches.size() < kLeastMatches) return std::nullopt;
     RandomStream rng = StreamFor(name, first ? StreamPurpose::kSampling : StreamPurpose::kMonteCarlo);
     answers.push_back(Judged(estimator.Estimate(half, rng), half.matches.size()));

@@ -31,7 +31,7 @@ constexpr double kNearMeanCorrelation = 0.66;
 using PatternOf = std::function<ResidualPattern(const RedrawSettings&)>;
 
 // The pairs that the noise is fitted to.
-std::vector<const AnsweredTrial*> UsedOf(const TwinSource& source) {
+std::vector<const AnsweredTrial*> SelectForFit(const TwinSource& source) {
   std::vector<const AnsweredTrial*> used;
   for (const AnsweredTrial& answered : source.pairs) {
     if (answered.HasAnsweredTemplate() && used.size() < kMostForFit) used.push_back(&answered);
@@ -51,9 +51,9 @@ double FarthestAccepted(const std::vector<const AnsweredTrial*>& used) {
   for (const AnsweredTrial* answered : used) {
     const std::vector<double> sizes = ResidualSizes(answered->pair.problem, answered->estimate);
     farthest.push_back(*std::ranges::max_element(sizes) *
-                       NoiseOf(answered->pair.problem, answered->estimate) / answered->noise_level);
+                       EstimateNoise(answered->pair.problem, answered->estimate) / answered->noise_level);
   }
-  return MedianOf(std::move(farthest));
+  return ComputeMedian(std::move(farthest));
 }
 
 // Longer and longer tails, each with the size that the estimator then finds as observed, up to the first that
@@ -112,7 +112,7 @@ void FitShares(const ResidualPattern& observed, const ResidualPattern& independe
 RedrawSettings FitNoise(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed,
                         KeptSteps* steps) {
   RedrawSettings noise;
-  const std::vector<const AnsweredTrial*> used = UsedOf(source);
+  const std::vector<const AnsweredTrial*> used = SelectForFit(source);
   const ResidualPattern observed = ObservedPattern(used);
   if (used.empty() || !(observed.sigma_px > 0.0)) return noise;
   noise.noise_px = observed.sigma_px;
@@ -141,7 +141,7 @@ RedrawSettings FitSimulatedNoise(const TwinSource& source, const TwinFit& fit, d
                                  const MotionEstimator& estimator, double assumed_sigma_px,
                                  std::uint64_t seed, KeptSteps* steps) {
   RedrawSettings noise = fit.noise;
-  const std::vector<const AnsweredTrial*> used = UsedOf(source);
+  const std::vector<const AnsweredTrial*> used = SelectForFit(source);
   const ResidualPattern observed = ObservedPattern(used);
   if (used.empty() || !(observed.sigma_px > 0.0)) return noise;
   TwinFit tried_fit = fit;

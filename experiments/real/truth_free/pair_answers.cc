@@ -5,7 +5,7 @@
 
 namespace rcme {
 
-std::vector<ImageNumbers> ImageNumbersOf(const std::vector<PairAnswers>& answers) {
+std::vector<ImageNumbers> NumberImages(const std::vector<PairAnswers>& answers) {
   std::map<std::string, std::int64_t> number_of;
   std::int64_t next = 0;
   const auto number = [&](const std::string& image) {

@@ -25,6 +25,6 @@ struct PairAnswers {
 struct ImageNumbers {
   std::int64_t image1 = 0, image2 = 0;
 };
-std::vector<ImageNumbers> ImageNumbersOf(const std::vector<PairAnswers>& answers);
+std::vector<ImageNumbers> NumberImages(const std::vector<PairAnswers>& answers);
 
 }  // namespace rcme

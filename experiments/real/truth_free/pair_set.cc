@@ -19,7 +19,7 @@ std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px
     PairSet& set = sets[file.scene];
     set.name = file.scene;
     NamedPair pair{path.filename().string(), file.image1, file.image2, {}, file.seconds_between};
-    pair.problem = ProblemOf(std::move(file), sigma_px);
+    pair.problem = MakeMotionProblem(std::move(file), sigma_px);
     set.pairs.push_back(std::move(pair));
   }
   warnings.Print();

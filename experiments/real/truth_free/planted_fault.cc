@@ -38,8 +38,8 @@ std::vector<Parameter> Parameters(PlantedFaults& faults) {
     if (fault == CameraFault::kReadoutTime || i >= kNumNamedFaults) continue;
     const double greatest =
         fault == CameraFault::kFocalLength || fault == CameraFault::kDistortion ? 0.5 : 1e3;
-    parameters.push_back(Parameter::Real(TextOf(fault).name, &faults.camera(i), {-greatest, greatest}, "",
-                                         TextOf(fault).words));
+    parameters.push_back(Parameter::Real(FindFaultText(fault).name, &faults.camera(i), {-greatest, greatest},
+                                         "", FindFaultText(fault).words));
   }
   return parameters;
 }

@@ -16,8 +16,8 @@ struct PlacedResidual {
 };
 
 // From left to right.
-std::vector<PlacedResidual> ResidualsOf(const MotionProblem& problem, const MotionEstimate& estimate) {
-  const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
+std::vector<PlacedResidual> ListResiduals(const MotionProblem& problem, const MotionEstimate& estimate) {
+  const Eigen::Matrix3d F = ComputeFundamental(problem, estimate.cam2_from_cam1);
   std::vector<PlacedResidual> residuals;
   for (const int i : estimate.inliers) {
     const Correspondence& match = problem.matches[static_cast<size_t>(i)];
@@ -39,8 +39,8 @@ ResidualProducts& ResidualProducts::operator+=(const ResidualProducts& other) {
   return *this;
 }
 
-ResidualProducts ProductsOf(const MotionProblem& problem, const MotionEstimate& estimate) {
-  const std::vector<PlacedResidual> residuals = ResidualsOf(problem, estimate);
+ResidualProducts SumProducts(const MotionProblem& problem, const MotionEstimate& estimate) {
+  const std::vector<PlacedResidual> residuals = ListResiduals(problem, estimate);
   ResidualProducts products;
   double sum_squares = 0.0;
   for (const PlacedResidual& r : residuals) sum_squares += r.residual_px * r.residual_px;

@@ -23,6 +23,6 @@ struct ResidualProducts {
   // Mean product: the correlation; NaN without any.
   double Correlation(size_t distance) const { return sums[distance] / counts[distance]; }
 };
-ResidualProducts ProductsOf(const MotionProblem& problem, const MotionEstimate& estimate);
+ResidualProducts SumProducts(const MotionProblem& problem, const MotionEstimate& estimate);
 
 }  // namespace rcme

@@ -10,8 +10,8 @@
 namespace rcme {
 
 std::vector<double> ResidualSizes(const MotionProblem& problem, const MotionEstimate& estimate) {
-  const double sigma_px = NoiseOf(problem, estimate);
-  const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
+  const double sigma_px = EstimateNoise(problem, estimate);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, estimate.cam2_from_cam1);
   std::vector<double> sizes;
   for (const int inlier : estimate.inliers) {
     const auto i = static_cast<size_t>(inlier);
@@ -23,17 +23,17 @@ std::vector<double> ResidualSizes(const MotionProblem& problem, const MotionEsti
 
 void PatternSum::Add(const MotionProblem& problem, const MotionEstimate& estimate) {
   if (estimate.status != MotionStatus::kOk || estimate.inliers.empty()) return;
-  sum_log_sigma_ += std::log(NoiseOf(problem, estimate));
+  sum_log_sigma_ += std::log(EstimateNoise(problem, estimate));
   num_answers_ += 1.0;
   const std::vector<double> sizes = ResidualSizes(problem, estimate);
   sizes_.insert(sizes_.end(), sizes.begin(), sizes.end());
-  products_ += ProductsOf(problem, estimate);
+  products_ += SumProducts(problem, estimate);
 }
 
 ResidualPattern PatternSum::Take() const {
   std::vector<double> sizes = sizes_;
-  const double far = QuantileOf(sizes, 0.95);
-  return {std::exp(sum_log_sigma_ / num_answers_), far / QuantileOf(sizes, 0.5), products_};
+  const double far = ComputeQuantile(sizes, 0.95);
+  return {std::exp(sum_log_sigma_ / num_answers_), far / ComputeQuantile(sizes, 0.5), products_};
 }
 
 }  // namespace rcme

@@ -13,8 +13,8 @@ struct ResidualPattern {
   ResidualProducts products;
 };
 
-// Of the inliers: Sampson distance over the noise of the answer (NoiseOf) and over the match's own noise
-// scale.
+// Of the inliers: Sampson distance over the noise of the answer (EstimateNoise) and over the match's own
+// noise scale.
 std::vector<double> ResidualSizes(const MotionProblem& problem, const MotionEstimate& estimate);
 
 // Of the answers to some pairs, one after the other; refusals are skipped.

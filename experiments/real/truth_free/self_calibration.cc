@@ -17,7 +17,7 @@ namespace {
 constexpr double kSmallStep = 0.1;  // of half an interval
 constexpr double kFaultLevel = 1.0 - kFaultConfidence;
 
-Eigen::Index IndexOf(CameraFault fault) { return static_cast<Eigen::Index>(fault); }
+Eigen::Index FindFaultIndex(CameraFault fault) { return static_cast<Eigen::Index>(fault); }
 
 // The pairs without faults; the readout of each along its answer.
 std::vector<NamedPair> RemoveFrom(const std::vector<PairAnswers>& answers, const FaultVector& faults) {
@@ -26,7 +26,7 @@ std::vector<NamedPair> RemoveFrom(const std::vector<PairAnswers>& answers, const
   for (size_t i = 0; i < answers.size(); ++i) {
     const Answered& whole = answers[i].whole;
     FaultVector of_pair = faults;
-    of_pair(IndexOf(CameraFault::kReadoutTime)) *= whole.IsOk() ? scales[i] : 0.0;
+    of_pair(FindFaultIndex(CameraFault::kReadoutTime)) *= whole.IsOk() ? scales[i] : 0.0;
     pairs.push_back(whole.pair);
     pairs.back().problem = RemoveFaults(whole.pair.problem, whole.estimate.cam2_from_cam1, of_pair);
   }
@@ -73,7 +73,7 @@ class Steps {
     while (fit.num_steps < kMostSteps) {
       ++fit.num_steps;
       for (size_t j = 0; j < faults.size(); ++j) {
-        double& theta = fit.theta(IndexOf(faults[j]));
+        double& theta = fit.theta(FindFaultIndex(faults[j]));
         theta += fit.pooled.parameters[j].value;
         if (!(std::abs(theta) <= GreatestFault(faults[j], start_.camera))) return std::nullopt;
       }
@@ -82,7 +82,7 @@ class Steps {
       fit.pooled = PoolFaults(fit.estimates.units, faults);
       if (!AreSmall(fit.pooled)) continue;
       for (size_t j = 0; j < faults.size(); ++j)
-        MoveTo(fit.theta(IndexOf(faults[j])), &fit.pooled.parameters[j]);
+        MoveTo(fit.theta(FindFaultIndex(faults[j])), &fit.pooled.parameters[j]);
       return fit;
     }
     return std::nullopt;
@@ -144,12 +144,12 @@ void CorrectNamed(const Steps& steps, CalibrationReport* report) {
     taken.push_back(*further);
   }
   if (const std::optional<CameraFault> other = FindOtherFault(fit->estimates.units))
-    return NameNothing(fmt::format("something of another kind is left, such as {}", TextOf(*other).words),
-                       report);
+    return NameNothing(
+        fmt::format("something of another kind is left, such as {}", FindFaultText(*other).words), report);
   for (size_t j = 0; j < taken.size(); ++j) {
     FaultReport& each = *std::ranges::find(report->faults, taken[j], &FaultReport::fault);
     if (!IsFault(each.verdict)) each.joint = fit->pooled.parameters[j];
-    each.correction = fit->theta(IndexOf(taken[j]));
+    each.correction = fit->theta(FindFaultIndex(taken[j]));
     each.verdict = each.correction > 0.0 ? TruthFreeVerdict::kTooLarge : TruthFreeVerdict::kTooSmall;
   }
   report->p_corrected = p_left;
@@ -181,7 +181,7 @@ CalibrationReport Calibrate(const std::vector<PairAnswers>& answers, const Motio
 PairSet CorrectPairs(const PairSet& set, const CalibrationReport& report, const MotionEstimator& estimator,
                      std::uint64_t seed, KeptSteps* steps) {
   FaultVector theta = FaultVector::Zero();
-  for (const FaultReport& each : report.faults) theta(IndexOf(each.fault)) = each.correction;
+  for (const FaultReport& each : report.faults) theta(FindFaultIndex(each.fault)) = each.correction;
   std::vector<PairAnswers> answers;
   for (const NamedPair& pair : set.pairs) answers.push_back({AnswerPair(pair, estimator, seed, steps), {}});
   return {set.name, RemoveFrom(answers, theta)};

@@ -43,7 +43,7 @@ double SlopeScore(const MotionProblem& problem, const MotionEstimate& estimate) 
 }
 
 SizeReport TestKeyPointSizes(const std::vector<PairAnswers>& answers) {
-  const std::vector<ImageNumbers> images = ImageNumbersOf(answers);
+  const std::vector<ImageNumbers> images = NumberImages(answers);
   std::vector<UnitScore> units;
   for (size_t i = 0; i < answers.size(); ++i) {
     const auto score_of = [](const Answered& of) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
 
 // A key point's stream: by its image and place, folded to 48 bits.
-std::uint64_t KeyOf(const std::string& image, const Eigen::Vector2d& x_px) {
+std::uint64_t HashKeyPoint(const std::string& image, const Eigen::Vector2d& x_px) {
   Fnv1a hash;
   hash.Add(image);
   for (const double x : x_px) hash.Add(x);
@@ -23,7 +23,7 @@ std::uint64_t KeyOf(const std::string& image, const Eigen::Vector2d& x_px) {
 
 }  // namespace
 
-Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose) {
+Eigen::Matrix3d ComputeFundamental(const MotionProblem& problem, const RelativePose& pose) {
   return FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
 }
 
@@ -36,23 +36,23 @@ Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match) {
   return match;
 }
 
-double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate) {
+double EstimateNoise(const MotionProblem& problem, const MotionEstimate& estimate) {
   if (std::isfinite(estimate.sigma_estimated_px)) return estimate.sigma_estimated_px;
-  const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, estimate.cam2_from_cam1);
   std::vector<double> sizes;
   for (const int index : estimate.inliers) {
     const auto i = static_cast<size_t>(index);
     sizes.push_back(std::sqrt(SquaredSampsonDistance(F, problem.matches[i])) / NoiseScaleAt(problem, i));
   }
-  return MedianOf(std::move(sizes)) / kNormalQuartile;
+  return ComputeMedian(std::move(sizes)) / kNormalQuartile;
 }
 
-NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
-                 std::uint32_t twin) {
-  const Eigen::Matrix3d F = FundamentalOf(pair.problem, estimate.cam2_from_cam1);
-  const double sigma_px = NoiseOf(pair.problem, estimate);
+NamedPair MakeTwin(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
+                   std::uint32_t twin) {
+  const Eigen::Matrix3d F = ComputeFundamental(pair.problem, estimate.cam2_from_cam1);
+  const double sigma_px = EstimateNoise(pair.problem, estimate);
   const auto noise_of = [&](const std::string& image, const Eigen::Vector2d& x_px, double scale) {
-    RandomStream rng = StreamFor({seed, KeyOf(image, x_px), twin, 0}, StreamPurpose::kNoise);
+    RandomStream rng = StreamFor({seed, HashKeyPoint(image, x_px), twin, 0}, StreamPurpose::kNoise);
     const double x = rng.Normal(), y = rng.Normal();
     return Eigen::Vector2d(scale * sigma_px * x, scale * sigma_px * y);
   };

@@ -10,20 +10,20 @@
 
 namespace rcme {
 
-Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose);
+Eigen::Matrix3d ComputeFundamental(const MotionProblem& problem, const RelativePose& pose);
 
 // The match moved onto the nearest one that satisfies F, to second order of the distance.
 Correspondence Snapped(const Eigen::Matrix3d& F, Correspondence match);
 
 // Residual noise of the matches that agree with an answer, px, of one as noisy as the median
 // (MotionProblem::noise_scale): as the estimator says, else from the median of their residuals.
-double NoiseOf(const MotionProblem& problem, const MotionEstimate& estimate);
+double EstimateNoise(const MotionProblem& problem, const MotionEstimate& estimate);
 
 // The inliers of an answer at the nearest points that satisfy it, with independent normal noise of its
 // standard deviation, times each match's noise_scale, anew; all other matches as they are. The noise is each
 // key point's own: matches that share one, of this or another pair of the image, share its noise. `twin`: the
 // number of the twin.
-NamedPair TwinOf(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
-                 std::uint32_t twin);
+NamedPair MakeTwin(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
+                   std::uint32_t twin);
 
 }  // namespace rcme

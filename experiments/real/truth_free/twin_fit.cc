@@ -49,7 +49,7 @@ class LayoutFit {
     wrong_shares_.push_back(static_cast<double>(wrong.size()) / num_matches_.back());
     agreeing_.push_back(AgreeingShare(wrong));
     rotations_.push_back(kDegPerRad * RotationAngleBetween(pose.R, Eigen::Matrix3d::Identity()));
-    parallaxes_.push_back(MedianOf(std::move(parallaxes)));
+    parallaxes_.push_back(ComputeMedian(std::move(parallaxes)));
     forwardness_.push_back(std::abs(pose.t.z()));
     const ViewPair view{problem.camera1, problem.camera2, pose, 1.0};
     homographies_.push_back(HomographyShare(view, points_in_cam1, std::sqrt(2.0) * noise_px, rng));
@@ -59,19 +59,19 @@ class LayoutFit {
 
   void Give(TwinFit* fit) {
     fit->num_templates = static_cast<int>(num_matches_.size());
-    fit->num_matches = static_cast<int>(MedianOf(num_matches_));
+    fit->num_matches = static_cast<int>(ComputeMedian(num_matches_));
     double sum = 0.0;
     for (const double share : wrong_shares_) sum += share / static_cast<double>(wrong_shares_.size());
     fit->wrong_share = sum;
-    fit->wrong_agreeing_share = MedianOf(agreeing_);
-    fit->rotation_deg = MedianOf(rotations_);
-    fit->parallax_deg = MedianOf(parallaxes_);
-    fit->forwardness = MedianOf(forwardness_);
-    fit->nearest = QuantileOf(depths_, 0.05);
-    fit->farthest = QuantileOf(depths_, 0.95);
-    fit->homography_share = MedianOf(homographies_);
-    fit->clark_evans = MedianOf(clark_evans_);
-    fit->twice_share = MedianOf(twice_);
+    fit->wrong_agreeing_share = ComputeMedian(agreeing_);
+    fit->rotation_deg = ComputeMedian(rotations_);
+    fit->parallax_deg = ComputeMedian(parallaxes_);
+    fit->forwardness = ComputeMedian(forwardness_);
+    fit->nearest = ComputeQuantile(depths_, 0.05);
+    fit->farthest = ComputeQuantile(depths_, 0.95);
+    fit->homography_share = ComputeMedian(homographies_);
+    fit->clark_evans = ComputeMedian(clark_evans_);
+    fit->twice_share = ComputeMedian(twice_);
   }
 
  private:

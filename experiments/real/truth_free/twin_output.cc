@@ -45,7 +45,7 @@ std::string DescribeFit(const TwinReport& report) {
              100.0 * fit.homography_share, fit.clark_evans));
 }
 
-nlohmann::ordered_json JsonOf(const Settings& settings) {
+nlohmann::ordered_json RenderSettings(const Settings& settings) {
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
   for (const auto& [key, value] : settings) json[key] = value;
   return json;
@@ -149,8 +149,8 @@ std::string TwinsAsJson(const std::vector<TwinReport>& reports) {
     json["scenes"].push_back({{"name", report.scene},
                               {"pairs", report.num_pairs},
                               {"templates", report.fit.num_templates},
-                              {"semi_real", JsonOf(report.semi_real)},
-                              {"simulated", JsonOf(report.simulated)},
+                              {"semi_real", RenderSettings(report.semi_real)},
+                              {"simulated", RenderSettings(report.simulated)},
                               {"why_not_simulated", report.why_not_simulated},
                               {"comparisons", RenderJson(MakeRowTable({report}))}});
   }

@@ -65,8 +65,8 @@ void AddHalves(const MotionProblem& problem, const MotionEstimate& whole, const 
 }
 
 void AddResiduals(const MotionProblem& problem, const MotionEstimate& estimate, Values* values) {
-  const Eigen::Matrix3d F = FundamentalOf(problem, estimate.cam2_from_cam1);
-  const double sigma_px = NoiseOf(problem, estimate);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, estimate.cam2_from_cam1);
+  const double sigma_px = EstimateNoise(problem, estimate);
   (*values)[kSigma].push_back(sigma_px);
   const auto is_within = [&](double bound, size_t i) {
     const double own_px = sigma_px * NoiseScaleAt(problem, i);
@@ -79,7 +79,7 @@ void AddResiduals(const MotionProblem& problem, const MotionEstimate& estimate, 
   if (num_near > 0.0) (*values)[kInlierTest].push_back(num_inliers / num_near);
   (*values)[kTailShare].push_back(num_beyond / num_inliers);
   (*values)[kAcceptedShare].push_back(num_inliers / static_cast<double>(problem.matches.size()));
-  const ResidualProducts products = ProductsOf(problem, estimate);
+  const ResidualProducts products = SumProducts(problem, estimate);
   for (const auto& [quantity, distance] :
        {std::pair{kNearCorrelation, size_t{0}}, {kFarCorrelation, size_t{2}}}) {
     if (products.counts[distance] >= kLeastProductsOfPair)
@@ -89,8 +89,8 @@ void AddResiduals(const MotionProblem& problem, const MotionEstimate& estimate, 
 
 }  // namespace
 
-Values ValuesOf(const TrialData& trial, const MotionEstimate& estimate, const MotionEstimator& estimator,
-                const StreamName& name) {
+Values ComputeValues(const TrialData& trial, const MotionEstimate& estimate, const MotionEstimator& estimator,
+                     const StreamName& name) {
   Values values;
   const TrialRecord record = Score(estimate, trial, 0.0);
   values[kRefusal].push_back(HasRefused(record));

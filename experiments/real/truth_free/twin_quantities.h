@@ -38,7 +38,7 @@ extern const std::array<QuantityText, kNumQuantities> kQuantityTexts;
 // The values of one pair, or of one twin: none, one or several of each quantity.
 using Values = std::array<std::vector<double>, kNumQuantities>;
 // Halves are estimated with samples of the streams after `name`.
-Values ValuesOf(const TrialData& trial, const MotionEstimate& estimate, const MotionEstimator& estimator,
-                const StreamName& name);
+Values ComputeValues(const TrialData& trial, const MotionEstimate& estimate, const MotionEstimator& estimator,
+                     const StreamName& name);
 
 }  // namespace rcme

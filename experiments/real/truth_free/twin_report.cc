@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::int64_t kLeastPairs = 3;  // for a mean to be compared
 
-double MeanOf(const std::vector<double>& values) {
+double ComputeMean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double x : values) sum += x;
   return sum / static_cast<double>(values.size());
@@ -35,7 +35,7 @@ struct ComparedPair {
   Values observed, twins;
 };
 
-std::vector<PairEvent> EventsOf(const std::vector<ComparedPair>& pairs, size_t quantity) {
+std::vector<PairEvent> ListPairEvents(const std::vector<ComparedPair>& pairs, size_t quantity) {
   std::vector<PairEvent> events;
   for (const ComparedPair& pair : pairs) {
     for (const double x : pair.observed[quantity]) events.push_back({pair.image1, pair.image2, x != 0.0});
@@ -44,29 +44,29 @@ std::vector<PairEvent> EventsOf(const std::vector<ComparedPair>& pairs, size_t q
 }
 
 // Of a mean: observed values less what is predicted for the same pair, or for all where twins are not of one.
-std::vector<PairValue> DifferencesOf(const std::vector<ComparedPair>& pairs, size_t quantity, bool is_paired,
-                                     double prediction) {
+std::vector<PairValue> ListPairDifferences(const std::vector<ComparedPair>& pairs, size_t quantity,
+                                           bool is_paired, double prediction) {
   std::vector<PairValue> differences;
   for (const ComparedPair& pair : pairs) {
     const std::vector<double>& twins = pair.twins[quantity];
     if (pair.observed[quantity].empty() || (is_paired && twins.empty())) continue;
-    const double predicted = is_paired ? MeanOf(twins) : prediction;
-    differences.push_back({pair.image1, pair.image2, MeanOf(pair.observed[quantity]) - predicted});
+    const double predicted = is_paired ? ComputeMean(twins) : prediction;
+    differences.push_back({pair.image1, pair.image2, ComputeMean(pair.observed[quantity]) - predicted});
   }
   return differences;
 }
 
 // The mean of what twins gave; of paired ones over the pairs that gave something too.
-double PredictionOf(const std::vector<ComparedPair>& pairs, size_t quantity, bool is_paired_mean) {
+double ComputePrediction(const std::vector<ComparedPair>& pairs, size_t quantity, bool is_paired_mean) {
   std::vector<double> all;
   for (const ComparedPair& pair : pairs) {
     const std::vector<double>& twins = pair.twins[quantity];
     if (!is_paired_mean)
       all.insert(all.end(), twins.begin(), twins.end());
     else if (!twins.empty() && !pair.observed[quantity].empty())
-      all.push_back(MeanOf(twins));
+      all.push_back(ComputeMean(twins));
   }
-  return all.empty() ? kNaN : MeanOf(all);
+  return all.empty() ? kNaN : ComputeMean(all);
 }
 
 std::optional<TwinComparison> Compared(const std::vector<ComparedPair>& pairs, size_t quantity,
@@ -79,18 +79,18 @@ std::optional<TwinComparison> Compared(const std::vector<ComparedPair>& pairs, s
   compared.is_rate = text.is_rate;
   // Points of a simulated scene are not found twice.
   compared.is_fitted = text.is_fitted && !(twin == "simulated" && quantity == kNearCorrelation);
-  compared.predicted = PredictionOf(pairs, quantity, is_paired);
+  compared.predicted = ComputePrediction(pairs, quantity, is_paired);
   if (std::isnan(compared.predicted)) return std::nullopt;
   if (text.is_rate) {
-    const SharedMemberRate rate = MeasureSharedMemberRate(EventsOf(pairs, quantity), confidence);
+    const SharedMemberRate rate = MeasureSharedMemberRate(ListPairEvents(pairs, quantity), confidence);
     if (rate.n == 0) return std::nullopt;
     compared.n = rate.n;
     compared.observed = rate.rate;
     compared.joint = rate.interval;
     return compared;
   }
-  const SharedMemberMean mean =
-      MeasureSharedMemberMean(DifferencesOf(pairs, quantity, is_paired, compared.predicted), confidence);
+  const SharedMemberMean mean = MeasureSharedMemberMean(
+      ListPairDifferences(pairs, quantity, is_paired, compared.predicted), confidence);
   if (mean.n < kLeastPairs) return std::nullopt;
   compared.n = mean.n;
   compared.observed = compared.predicted + mean.value;
@@ -146,13 +146,13 @@ Values TakeTwin(const std::function<TrialData()>& make, const MotionEstimator& e
                 const StreamName& name, KeptSteps* steps) {
   const auto compute = [&] {
     const TrialData twin = make();
-    return ValuesOf(twin, AnswerTo(twin.problem, estimator, name), estimator, name);
+    return ComputeValues(twin, AnswerTo(twin.problem, estimator, name), estimator, name);
   };
   return TakeValues(compute, steps);
 }
 
-std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstimator& estimator,
-                                     std::uint64_t seed, KeptSteps* steps) {
+std::vector<ComparedPair> ObservePairs(const TwinSource& source, const MotionEstimator& estimator,
+                                       std::uint64_t seed, KeptSteps* steps) {
   std::map<std::string, std::int64_t> numbers;
   const auto number_of = [&](const std::string& image, const std::string& otherwise) {
     const std::string& name = image.empty() ? otherwise : image;
@@ -164,7 +164,7 @@ std::vector<ComparedPair> ObservedOf(const TwinSource& source, const MotionEstim
     const std::int64_t image1 = number_of(one.image1, one.pair.origin + "/1"),
                        image2 = number_of(one.image2, one.pair.origin + "/2");
     const Values observed =
-        TakeValues([&] { return ValuesOf(one.pair, one.estimate, estimator, name); }, steps);
+        TakeValues([&] { return ComputeValues(one.pair, one.estimate, estimator, name); }, steps);
     pairs.push_back({image1, image2, observed, {}});
   }
   return pairs;
@@ -191,7 +191,7 @@ TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estim
   report.num_pairs = static_cast<int>(source.pairs.size());
   report.fit = FitTwin(source, estimator, seed, steps);
   report.semi_real = SemiRealData(report.fit, folder, assumed_sigma_px);
-  std::vector<ComparedPair> pairs = ObservedOf(source, estimator, seed, steps);
+  std::vector<ComparedPair> pairs = ObservePairs(source, estimator, seed, steps);
   const Redraw redraw(report.fit.noise);
   for (size_t i = 0; i < pairs.size(); ++i) {
     if (!source.pairs[i].exact) continue;
@@ -205,7 +205,7 @@ TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estim
   }
   AddComparisons(pairs, "semi_real", &report);
   try {
-    const double clustered_share = ClusteredShareOf(report.fit);
+    const double clustered_share = FitClusteredShare(report.fit);
     report.fit.simulated_noise =
         FitSimulatedNoise(source, report.fit, clustered_share, estimator, assumed_sigma_px, seed, steps);
     report.simulated = SimulatedTwinData(report.fit, clustered_share, assumed_sigma_px);

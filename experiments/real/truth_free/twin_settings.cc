@@ -75,7 +75,7 @@ void SetScene(const TwinFit& fit, double clustered_share, Settings* data) {
   }
 }
 
-double ClarkEvansOf(const Settings& settings) {
+double ComputeClarkEvans(const Settings& settings) {
   const std::shared_ptr<const SimulatedData> data = MakeSimulatedData(settings);
   std::vector<double> indices;
   for (std::uint32_t scene_number = 0; scene_number < 7; ++scene_number) {
@@ -85,7 +85,7 @@ double ClarkEvansOf(const Settings& settings) {
       key_points.push_back(scene.camera1.Project(point));
     indices.push_back(ClarkEvansIndex(key_points, scene.camera1.width, scene.camera1.height));
   }
-  return MedianOf(std::move(indices));
+  return ComputeMedian(std::move(indices));
 }
 
 }  // namespace
@@ -98,12 +98,12 @@ Settings SemiRealData(const TwinFit& fit, const std::string& folder, double assu
   return data;
 }
 
-double ClusteredShareOf(const TwinFit& fit) {
+double FitClusteredShare(const TwinFit& fit) {
   double least = std::numeric_limits<double>::infinity(), best = 0.0;
   for (const double share : {0.0, 0.3, 0.6, 0.9}) {
     const Settings data = SimulatedTwinData(fit, share, 1.0);
     if (data.front().second != "image_clusters") return 0.0;
-    const double difference = std::abs(ClarkEvansOf(data) - fit.clark_evans);
+    const double difference = std::abs(ComputeClarkEvans(data) - fit.clark_evans);
     if (difference >= least) continue;
     least = difference;
     best = share;

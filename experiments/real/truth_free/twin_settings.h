@@ -15,6 +15,6 @@ Settings SemiRealData(const TwinFit& fit, const std::string& folder, double assu
 Settings SimulatedTwinData(const TwinFit& fit, double clustered_share, double assumed_sigma_px);
 // The share of points in clusters that resembles the pairs. Throws InputError where no scene of its kind has
 // the parallax that was measured.
-double ClusteredShareOf(const TwinFit& fit);
+double FitClusteredShare(const TwinFit& fit);
 
 }  // namespace rcme

@@ -20,15 +20,15 @@ bool IsWrong(const MotionEstimate& estimate, const TrialData& pair) {
   return HasFailed(Score(estimate, pair, 0.0), FailureBounds());
 }
 
-std::optional<TrialData> ExactOf(const TrialData& pair, const MotionEstimate& estimate) {
+std::optional<TrialData> MakeExactTrial(const TrialData& pair, const MotionEstimate& estimate) {
   const bool takes_answer = estimate.status == MotionStatus::kOk && !IsWrong(estimate, pair);
   if (!takes_answer && !pair.truth.cam2_from_cam1_true) return std::nullopt;
   TrialData exact = pair;
   exact.truth = Truth();
   exact.truth.cam2_from_cam1_true = takes_answer ? estimate.cam2_from_cam1 : *pair.truth.cam2_from_cam1_true;
   const RelativePose& pose = *exact.truth.cam2_from_cam1_true;
-  const double sigma_px = takes_answer ? NoiseOf(pair.problem, estimate) : pair.problem.sigma_px;
-  const Eigen::Matrix3d F = FundamentalOf(pair.problem, pose);
+  const double sigma_px = takes_answer ? EstimateNoise(pair.problem, estimate) : pair.problem.sigma_px;
+  const Eigen::Matrix3d F = ComputeFundamental(pair.problem, pose);
   // What the answer accepts may lie behind a camera by noise: far points.
   std::vector<bool> is_accepted(exact.problem.matches.size());
   for (const int i : estimate.inliers) is_accepted[static_cast<size_t>(i)] = takes_answer;
@@ -53,12 +53,12 @@ std::optional<TrialData> ExactOf(const TrialData& pair, const MotionEstimate& es
 void SetNoiseLevels(TwinSource* source) {
   std::vector<double> sigmas;
   for (const AnsweredTrial& one : source->pairs) {
-    if (one.HasAnsweredTemplate()) sigmas.push_back(NoiseOf(one.pair.problem, one.estimate));
+    if (one.HasAnsweredTemplate()) sigmas.push_back(EstimateNoise(one.pair.problem, one.estimate));
   }
-  const double median = MedianOf(std::move(sigmas));
+  const double median = ComputeMedian(std::move(sigmas));
   for (AnsweredTrial& one : source->pairs) {
     if (one.HasAnsweredTemplate() && median > 0.0)
-      one.noise_level = std::max(NoiseOf(one.pair.problem, one.estimate) / median, 1e-3);
+      one.noise_level = std::max(EstimateNoise(one.pair.problem, one.estimate) / median, 1e-3);
   }
 }
 
@@ -85,7 +85,7 @@ TwinSource AnswerScene(const std::string& scene, const DataSource& data, const I
     if (named != images.end()) std::tie(answered.image1, answered.image2) = named->second;
     answered.estimate = TakeAnswer(answered.pair.problem, estimator,
                                    {seed, HashToStreamKey(answered.pair.origin), 0, 0}, steps);
-    answered.exact = ExactOf(answered.pair, answered.estimate);
+    answered.exact = MakeExactTrial(answered.pair, answered.estimate);
     source.pairs.push_back(std::move(answered));
   }
   SetNoiseLevels(&source);

@@ -53,8 +53,8 @@ void AddHalves(const Answered& answered, const MotionEstimator& estimator, Strea
   for (const Split split : kRandomSplits) add(split, random);
 }
 
-PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
-                      const ValidationOptions& options) {
+PairResults ComputePairResults(const NamedPair& pair, const MotionEstimator& estimator,
+                               const ValidationOptions& options) {
   constexpr std::uint32_t kCallsOfPair = 8;  // numbers of trials: a pair's own calls, then those of each twin
   StreamName name{options.seed, HashToStreamKey(pair.name), 0, 0};
   PairResults results;
@@ -62,18 +62,19 @@ PairResults ResultsOf(const NamedPair& pair, const MotionEstimator& estimator,
   const Answered& whole = results.answers.whole;
   if (!whole.IsOk()) return results;
   AddHalves(whole, estimator, name, &results.spatial.observed, &results.random.observed);
-  results.products = ProductsOf(pair.problem, whole.estimate);
+  results.products = SumProducts(pair.problem, whole.estimate);
   for (int k = 1; k <= options.num_twins; ++k) {
     const auto number = static_cast<std::uint32_t>(k);
     name.trial = number * kCallsOfPair;
-    results.answers.twins.push_back(Ask(TwinOf(pair, whole.estimate, options.seed, number), estimator, name));
+    results.answers.twins.push_back(
+        Ask(MakeTwin(pair, whole.estimate, options.seed, number), estimator, name));
     const Answered& twin = results.answers.twins.back();
     if (!twin.IsOk()) continue;
     AddHalves(twin, estimator, name, &results.spatial.null, &results.random.null);
     results.twin_errors.push_back(
         NormalizedErrorSquared(LocalCoordinates(twin.estimate.cam2_from_cam1, whole.estimate.cam2_from_cam1),
                                twin.estimate.pose_cov));
-    results.twin_products += ProductsOf(twin.pair.problem, twin.estimate);
+    results.twin_products += SumProducts(twin.pair.problem, twin.estimate);
   }
   return results;
 }
@@ -101,7 +102,7 @@ PairResults ResultsFrom(const std::string& text, const NamedPair& pair, const Va
   for (const Json& answer : json[1]) {
     const auto number = static_cast<std::uint32_t>(results.answers.twins.size()) + 1;
     results.answers.twins.push_back(
-        {TwinOf(pair, whole.estimate, options.seed, number), AnswerFrom(answer, num_matches)});
+        {MakeTwin(pair, whole.estimate, options.seed, number), AnswerFrom(answer, num_matches)});
   }
   results.spatial = {NumbersFrom(json[2]), NumbersFrom(json[3])};
   results.random = {NumbersFrom(json[4]), NumbersFrom(json[5])};
@@ -137,13 +138,14 @@ std::vector<TestUnit> CloseLoops(const std::vector<PairAnswers>& answers, const 
   const std::vector<std::int64_t> groups = GroupLoops(loops, answers.size());
   std::vector<TestUnit> units;
   for (size_t k = 0; k < loops.size(); ++k) {
-    for (UnitValues& values : ClosuresOf(answers, {loops[k]}, error_of))
+    for (UnitValues& values : ComputeClosures(answers, {loops[k]}, error_of))
       units.push_back({groups[k], groups[k], std::move(values)});
   }
   return units;
 }
 
-std::vector<DistanceCorrelation> CorrelationsOf(const std::vector<PairResults>& results, RandomStream& rng) {
+std::vector<DistanceCorrelation> MeasureCorrelations(const std::vector<PairResults>& results,
+                                                     RandomStream& rng) {
   std::vector<DistanceCorrelation> all;
   const auto sum_of = [](const std::vector<const PairResults*>& chosen, ResidualProducts PairResults::*list) {
     ResidualProducts sum;
@@ -179,10 +181,10 @@ std::vector<DistanceCorrelation> CorrelationsOf(const std::vector<PairResults>& 
   return all;
 }
 
-ComparedMedians SigmaOf(const std::vector<PairAnswers>& answers, RandomStream& rng) {
+ComparedMedians CompareSigma(const std::vector<PairAnswers>& answers, RandomStream& rng) {
   std::vector<UnitValues> units;
   for (const auto& [whole, twins] : answers) {
-    if (whole.IsOk()) units.push_back({{NoiseOf(whole.pair.problem, whole.estimate)}, {1.0}});
+    if (whole.IsOk()) units.push_back({{EstimateNoise(whole.pair.problem, whole.estimate)}, {1.0}});
   }
   return RatioOfMedians(units, kConfidence, kResamples, rng);
 }
@@ -209,12 +211,12 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
   std::vector<TestUnit> simulation, spatial, random;
   for (const NamedPair& pair : set.pairs) {
     results.push_back(TakeStep<PairResults>(
-        steps, [&] { return ResultsOf(pair, estimator, options); },
+        steps, [&] { return ComputePairResults(pair, estimator, options); },
         {ResultsAsJson, [&](const std::string& json) { return ResultsFrom(json, pair, options); }}));
     answers.push_back(std::move(results.back().answers));
     report.num_answered += answers.back().whole.IsOk();
   }
-  const std::vector<ImageNumbers> images = ImageNumbersOf(answers);
+  const std::vector<ImageNumbers> images = NumberImages(answers);
   for (size_t i = 0; i < results.size(); ++i) {
     const auto [image1, image2] = images[i];
     simulation.push_back({image1, image2, {results[i].twin_errors, results[i].twin_errors}});
@@ -231,9 +233,9 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
                   TestCovariances(kSimulationTest, 5, simulation, rng)};
   report.covariances = JudgeTests(report.tests);
   report.assumed_sigma_px = set.pairs.empty() ? kNaN : set.pairs.front().problem.sigma_px;
-  report.sigma_px = SigmaOf(answers, rng);
+  report.sigma_px = CompareSigma(answers, rng);
   report.sigma_verdict = JudgeSigma(report.sigma_px, report.assumed_sigma_px);
-  report.correlations = CorrelationsOf(results, rng);
+  report.correlations = MeasureCorrelations(results, rng);
   report.calibration = Calibrate(answers, estimator, options.seed, steps);
   report.sizes = TestKeyPointSizes(answers);
   report.advice = FindReasons(report);

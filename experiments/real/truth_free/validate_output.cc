@@ -87,7 +87,7 @@ std::string FaultVerdict(TruthFreeVerdict verdict) {
 std::string NominalFaults() {
   std::string words;
   for (size_t j = 0; j < kNumNamedFaults; ++j) {
-    const CameraFaultText& text = TextOf(kCameraFaults[j]);
+    const CameraFaultText& text = FindFaultText(kCameraFaults[j]);
     words += fmt::format("{}{} {:g}{}{}", words.empty() ? "" : ", ", text.words, text.per_unit * text.nominal,
                          *text.unit ? " " : "", text.unit);
   }
@@ -118,7 +118,7 @@ SetRow MakeCorrelationRow(const SetReport& set, const DistanceCorrelation& c) {
   return row;
 }
 
-std::vector<SetRow> RowsOf(const SetReport& set) {
+std::vector<SetRow> MakeSetRows(const SetReport& set) {
   const ComparedMedians none{std::nan(""), {std::nan(""), std::nan("")}};
   std::vector<SetRow> rows;
   const auto add = [&](const std::string& name, const std::string& heading, const std::string& verdict,
@@ -137,7 +137,7 @@ std::vector<SetRow> RowsOf(const SetReport& set) {
   add("calibration", "calibration", FaultVerdict(calibration.verdict), DescribeCalibration(calibration),
       calibration.num_pairs, ComparedMedians{calibration.p_value, none.interval});
   for (const FaultReport& fault : calibration.faults) {
-    add(TextOf(fault.fault).name, TextOf(fault.fault).words, FaultVerdict(fault.verdict),
+    add(FindFaultText(fault.fault).name, FindFaultText(fault.fault).words, FaultVerdict(fault.verdict),
         DescribeFault(fault), calibration.num_pairs, fault.joint);
   }
   add("noise_by_size", "noise by size", VerdictName(set.sizes.verdict), DescribeSizeTest(set.sizes),
@@ -151,6 +151,16 @@ std::vector<SetRow> RowsOf(const SetReport& set) {
 
 Estimate EstimateCoverage(const SharedMemberRate& coverage) { return {coverage.rate, coverage.interval}; }
 
+nlohmann::ordered_json RenderPooled(const PooledParameter& parameter) {
+  nlohmann::ordered_json json = RenderJson(Estimate{parameter.value, parameter.interval});
+  json["effective_pairs"] = JsonNumber(parameter.effective_n);
+  return json;
+}
+
+nlohmann::ordered_json RenderRatio(const ComparedMedians& medians) {
+  return {{"ratio", JsonNumber(medians.value)}, {"interval", RenderJson(medians.interval)}};
+}
+
 // The simulation has no twins of its own.
 Value AgainstTwins(const SetRow& row, const Estimate& estimate) {
   return row.test && row.name != kSimulationTest ? Value(estimate) : Value();
@@ -159,7 +169,7 @@ Value AgainstTwins(const SetRow& row, const Estimate& estimate) {
 std::string SetAsTable(const SetReport& report) {
   using R = const SetRow&;
   const NumberFormat percent{100.0, "%", ".0f"};
-  std::vector<SetRow> rows = RowsOf(report);
+  std::vector<SetRow> rows = MakeSetRows(report);
   std::erase_if(rows, [](R row) { return row.heading.empty(); });
   const Table table = MakeTable<SetRow>(
       {{Column::Key("test"), [](R r) { return r.heading; }},
@@ -243,7 +253,7 @@ std::string ValidationAsTable(const std::vector<SetReport>& reports) {
 std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
   using R = const SetRow&;
   std::vector<SetRow> rows;
-  for (const SetReport& report : reports) std::ranges::copy(RowsOf(report), std::back_inserter(rows));
+  for (const SetReport& report : reports) std::ranges::copy(MakeSetRows(report), std::back_inserter(rows));
   const double none = std::nan("");
   return RenderCsv(MakeTable<SetRow>(
       {{Column::Text("set"), [](R r) { return r.set->name; }},
@@ -261,17 +271,6 @@ std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
 }
 
 std::string ValidationAsJson(const std::vector<SetReport>& reports) {
-  const auto interval_of = [](const Interval& interval) {
-    return nlohmann::ordered_json{JsonNumber(interval.lower), JsonNumber(interval.upper)};
-  };
-  const auto pooled = [&](const PooledParameter& of) {
-    return nlohmann::ordered_json{{"value", JsonNumber(of.value)},
-                                  {"interval", interval_of(of.interval)},
-                                  {"effective_pairs", JsonNumber(of.effective_n)}};
-  };
-  const auto compared = [&](const ComparedMedians& of) {
-    return nlohmann::ordered_json{{"ratio", JsonNumber(of.value)}, {"interval", interval_of(of.interval)}};
-  };
   nlohmann::ordered_json json = {{"nominal_variance", kNominalVariance},
                                  {"nominal_correlation", kNominalCorrelation},
                                  {"sets", nlohmann::ordered_json::array()}};
@@ -282,7 +281,7 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                   {"loops", nlohmann::ordered_json::object()},
                                   {"assumed_sigma_px", JsonNumber(report.assumed_sigma_px)},
                                   {"sigma_px", JsonNumber(report.sigma_px.value)},
-                                  {"sigma_px_interval", interval_of(report.sigma_px.interval)},
+                                  {"sigma_px_interval", RenderJson(report.sigma_px.interval)},
                                   {"sigma_verdict", VerdictName(report.sigma_verdict)},
                                   {"covariances",
                                    {{"verdict", VerdictName(report.covariances.verdict)},
@@ -298,7 +297,7 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                   {"camera_faults", nlohmann::ordered_json::array()},
                                   {"noise_by_size",
                                    {{"pairs", report.sizes.num_pairs},
-                                    {"slope", pooled(report.sizes.slope)},
+                                    {"slope", RenderPooled(report.sizes.slope)},
                                     {"verdict", VerdictName(report.sizes.verdict)}}},
                                   {"advice", report.advice}};
     for (const TruthFreeTest& test : report.tests) {
@@ -306,12 +305,12 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                               {"degrees_of_freedom", test.degrees_of_freedom},
                               {"n", test.num_values},
                               {"coverage", JsonNumber(test.coverage.rate)},
-                              {"coverage_interval", interval_of(test.coverage.interval)},
+                              {"coverage_interval", RenderJson(test.coverage.interval)},
                               {"twin_coverage", JsonNumber(test.twin_coverage.rate)},
                               {"ratio", JsonNumber(test.ratio.value)},
-                              {"interval", interval_of(test.ratio.interval)},
-                              {"in_simulation", compared(test.in_simulation)},
-                              {"against_twins", compared(test.against_twins)},
+                              {"interval", RenderJson(test.ratio.interval)},
+                              {"in_simulation", RenderRatio(test.in_simulation)},
+                              {"against_twins", RenderRatio(test.against_twins)},
                               {"verdict", VerdictName(test.verdict)},
                               {"cause", CauseName(test.cause)},
                               {"units", test.num_units},
@@ -323,16 +322,16 @@ std::string ValidationAsJson(const std::vector<SetReport>& reports) {
                                      {"n", c.num_products},
                                      {"correlation", JsonNumber(c.correlation)},
                                      {"twin_correlation", JsonNumber(c.twin_correlation)},
-                                     {"difference_interval", interval_of(c.difference)},
+                                     {"difference_interval", RenderJson(c.difference)},
                                      {"verdict", CorrelationVerdict(c)}});
     }
     for (const auto& [length, count] : report.num_loops) set["loops"][std::to_string(length)] = count;
     for (const FaultReport& fault : report.calibration.faults) {
-      set["camera_faults"].push_back({{"fault", TextOf(fault.fault).name},
-                                      {"nominal", TextOf(fault.fault).nominal},
-                                      {"beside_others", pooled(fault.joint)},
-                                      {"alone", pooled(fault.alone)},
-                                      {"twins", pooled(fault.twins)},
+      set["camera_faults"].push_back({{"fault", FindFaultText(fault.fault).name},
+                                      {"nominal", FindFaultText(fault.fault).nominal},
+                                      {"beside_others", RenderPooled(fault.joint)},
+                                      {"alone", RenderPooled(fault.alone)},
+                                      {"twins", RenderPooled(fault.twins)},
                                       {"verdict", FaultVerdict(fault.verdict)},
                                       {"in_words", DescribeFault(fault)}});
     }

@@ -8,12 +8,12 @@ namespace rcme {
 namespace {
 
 std::int64_t ChecksumOfRow(const ResultFile& file, std::uint32_t condition, const CountedPlaces& row) {
-  return ChecksumOf({file.description.identity, std::to_string(condition), row.shard, row.places});
+  return ComputeChecksum({file.description.identity, std::to_string(condition), row.shard, row.places});
 }
 
 std::int64_t ChecksumOfRow(const ResultFile& file, std::uint32_t condition, const CountedQuantity& row) {
-  return ChecksumOf({file.description.identity, std::to_string(condition), std::to_string(row.estimator),
-                     row.quantity, std::to_string(row.n), row.sum, row.sum_squares, row.cells});
+  return ComputeChecksum({file.description.identity, std::to_string(condition), std::to_string(row.estimator),
+                          row.quantity, std::to_string(row.n), row.sum, row.sum_squares, row.cells});
 }
 
 std::uint32_t NumberBelow(const SQLite::Column& column, const char* table, size_t end) {

@@ -35,7 +35,7 @@ std::string ChecksumOfRows(SQLite::Database& database) {
     }
     texts.push_back(table.name);  // which rows are whose
   }
-  return fmt::format("{:08x}", ChecksumOf(texts));
+  return fmt::format("{:08x}", ComputeChecksum(texts));
 }
 
 template <typename... Values>
@@ -50,11 +50,11 @@ void Insert(SQLite::Database& database, const char* table, const Values&... valu
 
 // Its own, so that it is known of a file whose description is damaged elsewhere.
 std::string ChecksumOfStoppingRule(const std::string& identity, const std::string& rule) {
-  return fmt::format("{:08x}", ChecksumOf({identity, rule}));
+  return fmt::format("{:08x}", ComputeChecksum({identity, rule}));
 }
 
 // The rows of the table `run` but the checksum.
-std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
+std::map<std::string, std::string> ListRunValues(const RunDescription& run) {
   std::map<std::string, std::string> values = {
       {"format", kResultFormat},
       {"name", run.study},
@@ -78,7 +78,7 @@ std::map<std::string, std::string> ValuesOf(const RunDescription& run) {
   Ademp keys;
   for (const auto& [key, text] : Parts(keys)) values["ademp_" + key] = "";
   for (const auto& [key, text] : run.ademp) values["ademp_" + key] = text;
-  for (const auto& [key, text] : TextsOf(run.failure)) values[key] = text;
+  for (const auto& [key, text] : ListBounds(run.failure)) values[key] = text;
   return values;
 }
 
@@ -250,7 +250,7 @@ RunDescription ReadDescription(SQLite::Database& database) {
 
 void WriteDescription(SQLite::Database& database, const RunDescription& run) {
   for (const std::string& table : DescriptionTables()) database.exec("DELETE FROM " + table);
-  for (const auto& [key, value] : ValuesOf(run)) Insert(database, "run", key, value);
+  for (const auto& [key, value] : ListRunValues(run)) Insert(database, "run", key, value);
   const auto number = [](size_t index) { return static_cast<std::int64_t>(index); };
   for (size_t f = 0; f < run.factors.size(); ++f) Insert(database, "factors", number(f), run.factors[f]);
   for (size_t c = 0; c < run.conditions.size(); ++c) {

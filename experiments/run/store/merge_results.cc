@@ -33,7 +33,7 @@ void ReadPart(const std::string& path, const std::string& identity,
 }
 
 // Field by field as text, the time aside; the estimator's number leads.
-Settings FieldsOf(const StoredTrial& trial) {
+Settings ListFields(const StoredTrial& trial) {
   Settings fields;
   const auto add = [&](const StoredColumn& column, const auto& field) {
     if (column.role != StoredColumn::Role::kTime) fields.emplace_back(column.name, FormatField(field));
@@ -44,7 +44,7 @@ Settings FieldsOf(const StoredTrial& trial) {
 }
 
 void CheckEqual(const std::string& path, const StoredTrial& here, const StoredTrial& there) {
-  const Settings a = FieldsOf(here), b = FieldsOf(there);
+  const Settings a = ListFields(here), b = ListFields(there);
   const auto [in_a, in_b] = std::ranges::mismatch(a, b);
   if (in_a == a.end()) return;
   throw InputError(
@@ -65,7 +65,7 @@ void NoteMissing(const TrialsHeld& held, const PartDescriptions& descriptions, M
     for (std::uint32_t trial = 0; trial < report->run.conditions[c].num_trials; ++trial) {
       if (held.Has(c, trial)) continue;
       ++report->num_missing;
-      if (report->num_shards > 0) shards.insert(ShardOf(c, trial / repeats, report->num_shards));
+      if (report->num_shards > 0) shards.insert(FindShard(c, trial / repeats, report->num_shards));
     }
   }
   report->missing_shards.assign(shards.begin(), shards.end());

@@ -46,7 +46,7 @@ std::string ShardsOfMerged(const MergeReport& report) {
   return fmt::format("{}/{}", whole.empty() ? "none" : ArrayText(whole), report.num_shards);
 }
 
-std::uint32_t NumShardsOf(const RunDescription& run) {
+std::uint32_t ReadNumShards(const RunDescription& run) {
   const size_t slash = run.shard.find('/');
   if (slash == std::string::npos) return 1;
   long long count = 0;
@@ -71,7 +71,7 @@ void PartDescriptions::Add(const ResultFile& part) {
   if (first_path_.empty()) {
     first_path_ = part.path;
     merged_ = run;
-    num_shards_ = NumShardsOf(run);
+    num_shards_ = ReadNumShards(run);
     if (part.totals.NumTrials() == 0) merged_.origin = {};
     return;
   }
@@ -95,7 +95,7 @@ void PartDescriptions::Add(const ResultFile& part) {
                     part.path, run.stopping_rule, first_path_, merged_.stopping_rule));
   }
   if (part.totals.NumTrials() > 0) AddOrigin(part);
-  if (NumShardsOf(run) != num_shards_) num_shards_ = 0;
+  if (ReadNumShards(run) != num_shards_) num_shards_ = 0;
   if (run.until_options != merged_.until_options || run.until_trials != merged_.until_trials)
     is_until_known_ = false;
   AddAskedFor(run);

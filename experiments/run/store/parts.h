@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/run/store/result_file.h"
 #include "experiments/core/work/shard.h"
+#include "experiments/run/store/result_file.h"
 
 namespace rcme {
 
@@ -31,7 +31,7 @@ struct MergeReport {
 std::string ShardsOfMerged(const MergeReport& report);
 
 // "3/64" -> 64; the whole: 1. Throws Damage.
-std::uint32_t NumShardsOf(const RunDescription& run);
+std::uint32_t ReadNumShards(const RunDescription& run);
 
 // A part, open to be read, alone and without locks: its description is checked, its trials are not yet.
 // Throws InputError.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "experiments/core/work/progress.h"
 #include "experiments/core/files/checksum.h"
+#include "experiments/core/work/progress.h"
 #include "experiments/run/store/schema.h"
 
 namespace rcme {
@@ -66,7 +66,7 @@ void ResultFile::CheckPages() {
 }
 
 TrialFrame ResultFile::Frame() const {
-  return {ChecksumOf({description.identity}), totals.num_conditions(), description.estimators.size()};
+  return {ComputeChecksum({description.identity}), totals.num_conditions(), description.estimators.size()};
 }
 
 void ResultFile::SetDescription(const RunDescription& run) {

@@ -205,7 +205,7 @@ void ResultStore::ForEachTrial(
   if (!condition) connection_->are_trials_checked = true;
 }
 
-std::vector<TrialRecord> ResultStore::RecordsOf(std::uint32_t condition, std::uint32_t trial) const {
+std::vector<TrialRecord> ResultStore::ReadTrialRecords(std::uint32_t condition, std::uint32_t trial) const {
   const auto found = NamingFile(connection_->file.path, [&] {
     const ResultFile& file = connection_->file;
     return ReadStoredTrial(file.database, file.Frame(), condition, trial);

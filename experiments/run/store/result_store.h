@@ -93,7 +93,7 @@ class ResultStore {
                     std::optional<std::uint32_t> condition = std::nullopt) const;
   // The records of one trial, ordered by estimator. Where there is none all trials are checked, so that a
   // lost one is not taken for one that was never run.
-  std::vector<TrialRecord> RecordsOf(std::uint32_t condition, std::uint32_t trial) const;
+  std::vector<TrialRecord> ReadTrialRecords(std::uint32_t condition, std::uint32_t trial) const;
 
  private:
   struct Connection;

@@ -123,7 +123,7 @@ Salvage::Salvage(const std::string& path, const std::optional<Study>& study)
     if (!rule) Note("what stopped its run is not known: rates saved from it have anytime-valid intervals");
   }
   const size_t num_conditions = description_.conditions.size();
-  frame_ = {ChecksumOf({description_.identity}), num_conditions, description_.estimators.size()};
+  frame_ = {ComputeChecksum({description_.identity}), num_conditions, description_.estimators.size()};
   IsUndamaged([&] { CheckSchema(file_.database); }, note);
   IsUndamaged([&] { totals_ = TrialTotals::Read(file_.database); }, note);
   if (totals_ && totals_->num_conditions() != num_conditions) {

@@ -34,7 +34,7 @@ std::string FormatIn(SQLite::Database& database) {
 }
 
 // "table trials", "view problems", ... with its SQL.
-std::map<std::string, std::string> SchemaOf(SQLite::Database& database) {
+std::map<std::string, std::string> ReadSchema(SQLite::Database& database) {
   std::map<std::string, std::string> entries;
   SQLite::Statement query(database, "SELECT type, name, sql FROM sqlite_schema");
   while (query.executeStep()) {
@@ -210,7 +210,7 @@ void CheckFormat(SQLite::Database& database, const std::string& path) {
 }
 
 void CheckTables(SQLite::Database& database, const std::vector<std::string>& names) {
-  const std::map<std::string, std::string> entries = SchemaOf(database);
+  const std::map<std::string, std::string> entries = ReadSchema(database);
   for (const std::string& name : names) {
     const auto found = entries.find("table " + name);
     if (found == entries.end()) throw Damage(fmt::format("table {} is missing", name));
@@ -223,7 +223,7 @@ void CheckSchema(SQLite::Database& database) {
   std::vector<std::string> names;
   for (const auto& [name, sql] : Tables()) names.push_back(name);
   CheckTables(database, names);
-  for (const auto& [entry, sql] : SchemaOf(database)) {
+  for (const auto& [entry, sql] : ReadSchema(database)) {
     const bool is_ours = entry.starts_with("table ") && Tables().contains(entry.substr(6));
     if (!is_ours) throw Damage(fmt::format("it holds a {}, which rcme does not make", entry));
   }

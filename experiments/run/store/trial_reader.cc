@@ -4,9 +4,9 @@
 
 #include <utility>
 
-#include "experiments/run/store/trial_checksum.h"
 #include "experiments/core/files/database.h"
 #include "experiments/run/store/record_table.h"
+#include "experiments/run/store/trial_checksum.h"
 
 namespace rcme {
 namespace {
@@ -47,7 +47,7 @@ class TrialRows {
     trial_.records.clear();
     for (size_t e = 0; e < frame_.num_estimators; ++e) {
       if (!records_.executeStep()) ThrowDamagedTrial(key, fmt::format("has no record of estimator {}", e));
-      trial_.records.push_back(ReadRecordOf(key));
+      trial_.records.push_back(ReadTrialRecord(key));
       const TrialRecord& record = trial_.records.back();
       if (TrialKey{record.condition, record.trial} != key || record.estimator != e) {
         ThrowDamagedTrial(key, fmt::format("has no record of estimator {}, or others are in its place", e));
@@ -55,7 +55,7 @@ class TrialRows {
     }
   }
 
-  TrialRecord ReadRecordOf(const TrialKey& key) {
+  TrialRecord ReadTrialRecord(const TrialKey& key) {
     try {
       return ReadRecord<TrialRecord>(records_);
     } catch (const Damage& damage) {

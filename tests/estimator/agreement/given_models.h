@@ -24,8 +24,8 @@ class SearchOfGivenModels {
   SearchOfGivenModels(const MotionProblem& problem, const MatchBlocks& matches, const RansacOptions& options,
                       RandomStream& rng)
       : problem_(problem),
-        fast_(problem, matches, options, {ReadingOf<PointTest>(), false, false}, rng),
-        models_(problem, matches, options, {ReadingOf<PointTest>(), false, false}, rng) {}
+        fast_(problem, matches, options, {FindReading<PointTest>(), false, false}, rng),
+        models_(problem, matches, options, {FindReading<PointTest>(), false, false}, rng) {}
 
   const Thresholds& thresholds() const { return fast_.thresholds(); }
 

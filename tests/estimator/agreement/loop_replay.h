@@ -25,7 +25,7 @@ inline void KeepGreater(const std::string& kind, double margin, std::optional<Ca
 }
 
 template <typename PointTest>
-constexpr BlockReading ReadingOf() {
+constexpr BlockReading FindReading() {
   if (std::is_same_v<PointTest, KnownPoseTest>) return BlockReading::kKnownPose;
   return std::is_same_v<PointTest, RankAwareTest> ? BlockReading::kRankAware : BlockReading::kAsPrinted;
 }
@@ -76,7 +76,7 @@ class Replay {
   Replay(const MotionProblem& problem, const RansacOptions& options, bool tests_sample, std::uint32_t trial)
       : problem_(problem),
         matches_(problem),
-        tests_{ReadingOf<PointTest>(), tests_sample, false},
+        tests_{FindReading<PointTest>(), tests_sample, false},
         fast_rng_(SamplingStream(trial)),
         reference_rng_(SamplingStream(trial)),
         fast_(problem, matches_, options, tests_, fast_rng_),
@@ -143,7 +143,7 @@ class Replay {
   bool is_first_ = true;  // the next model is the first of a sample
 };
 
-inline BlockTests TestsOf(const Variant& variant) {
+inline BlockTests MakeBlockTests(const Variant& variant) {
   const BlockReading reading = variant.estimator == "standard"          ? BlockReading::kKnownPose
                                : variant.reading == Reading::kRankAware ? BlockReading::kRankAware
                                                                         : BlockReading::kAsPrinted;
@@ -156,7 +156,7 @@ MatchMask FindWinnersSupport(const Variant& variant, const MotionProblem& proble
                              const HypothesisId& winner) {
   const MatchBlocks matches(problem);
   RandomStream no_samples({0, 0, 0, 0});
-  return BlockSearch<Solver>(problem, matches, variant.Options(), TestsOf(variant), no_samples)
+  return BlockSearch<Solver>(problem, matches, variant.Options(), MakeBlockTests(variant), no_samples)
       .FindSupport(winner);
 }
 

@@ -54,7 +54,7 @@ class RefinementReplay {
 
   std::optional<Cause> FindCause(const MatchMask& support, const RelativePose& fast_start,
                                  const RelativePose& reference_start) const {
-    std::vector<int> fitted = IndicesOf(support);
+    std::vector<int> fitted = ListIndices(support);
     Motions motions = Refine(fitted, {fast_start, reference_start}, Loss::kCauchy);
     if (!motions.AreSame()) return Cause{"robust fit", std::nan("")};
     if (motions.fast.converged) {
@@ -65,7 +65,7 @@ class RefinementReplay {
     for (int refit = 0; refit < kMaxRefits && motions.fast.converged; ++refit) {
       const std::vector<int> selected = reference_.SelectFitSet(motions.reference, fitted);
       const double max_leverage = MaxLeverage(static_cast<int>(fitted.size()));
-      const std::vector<int> in_fast = IndicesOf(fast_.SelectFitSet(motions.fast, fast_.SetOf(fitted)));
+      const std::vector<int> in_fast = ListIndices(fast_.SelectFitSet(motions.fast, fast_.MakeSet(fitted)));
       if (auto cause = Compare("fit set", motions.reference, fitted, kFitSignificance, max_leverage, in_fast,
                                selected)) {
         return cause;
@@ -80,7 +80,7 @@ class RefinementReplay {
     if (!motions.fast.converged) return std::nullopt;
     const double alpha = RansacOptions().significance_level;
     return Compare("final inlier", motions.reference, fitted, alpha, std::numeric_limits<double>::infinity(),
-                   IndicesOf(fast_.FindAgreeing(motions.fast, fast_.SetOf(fitted), alpha)),
+                   ListIndices(fast_.FindAgreeing(motions.fast, fast_.MakeSet(fitted), alpha)),
                    reference_.FindAgreeing(motions.reference, fitted, alpha));
   }
 
@@ -96,7 +96,7 @@ class RefinementReplay {
     RelativePose fast, reference;
   };
   Motions Refine(const std::vector<int>& fitted, const Starts& starts, Loss loss) const {
-    return {fast_.Refine(fast_.SetOf(fitted), starts.fast, loss),
+    return {fast_.Refine(fast_.MakeSet(fitted), starts.fast, loss),
             reference_.Refine(fitted, starts.reference, loss)};
   }
 

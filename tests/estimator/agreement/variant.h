@@ -28,7 +28,7 @@ struct Variant {
   }
 };
 
-inline std::vector<Variant> VariantsOf(MinimalSolver solver) {
+inline std::vector<Variant> ListVariants(MinimalSolver solver) {
   return {{"standard", "standard", Reading::kAsPrinted, solver},
           {"prcme_as_printed", "prcme", Reading::kAsPrinted, solver},
           {"rcme_as_printed", "rcme", Reading::kAsPrinted, solver},
@@ -39,8 +39,8 @@ inline std::vector<Variant> VariantsOf(MinimalSolver solver) {
 // Five points have no sample test, so that rcme is prcme.
 inline const std::vector<Variant>& Variants() {
   static const std::vector<Variant> variants = [] {
-    std::vector<Variant> all = VariantsOf(MinimalSolver::kEightPoint);
-    for (Variant variant : VariantsOf(MinimalSolver::kFivePoint)) {
+    std::vector<Variant> all = ListVariants(MinimalSolver::kEightPoint);
+    for (Variant variant : ListVariants(MinimalSolver::kFivePoint)) {
       if (variant.estimator == "prcme") continue;
       variant.label = "five_point_" + variant.label;
       all.push_back(variant);

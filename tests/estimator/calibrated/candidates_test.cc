@@ -89,7 +89,7 @@ TEST(ModesFrom, BeginsAtTheScaleThatSuitsToo) {
     AddNoise(0.25, rng, &random.problem);
     random.problem.sigma_px = 1.5;
     const MatchBlocks matches(random.problem);
-    const MixturePrior prior = PriorOf(random.problem);
+    const MixturePrior prior = MakePrior(random.problem);
     const std::vector<Mode> modes = ModesFrom(matches, prior, {random.pose_true});
     num_both += modes.size() == 2 && modes[1].mixture.scale < 0.5 * modes[0].mixture.scale;
     EXPECT_LE(ModesFrom(matches, {prior.uniform_density, false}, {random.pose_true}).size(), 1u);

@@ -10,13 +10,13 @@
 namespace rcme {
 namespace {
 
-int CountOf(const std::vector<ExplainedMode>& modes, ModeOrigin origin) {
+int CountModes(const std::vector<ExplainedMode>& modes, ModeOrigin origin) {
   return static_cast<int>(
       std::ranges::count_if(modes, [&](const ExplainedMode& m) { return m.mode.origin == origin; }));
 }
 
 // Points of a plane in front of camera 1, or anywhere between 4 and 16 baselines, seen with noise.
-MotionProblem SceneOf(int num_matches, bool is_plane, std::uint32_t trial, RelativePose* pose_true) {
+MotionProblem MakeSceneProblem(int num_matches, bool is_plane, std::uint32_t trial, RelativePose* pose_true) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2820});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = num_matches});
   if (is_plane) {
@@ -34,7 +34,7 @@ MotionProblem SceneOf(int num_matches, bool is_plane, std::uint32_t trial, Relat
 
 std::vector<ExplainedMode> Explained(const MotionProblem& problem, const std::vector<RelativePose>& poses) {
   const MatchBlocks matches(problem);
-  const MixturePrior prior = PriorOf(problem);
+  const MixturePrior prior = MakePrior(problem);
   std::vector<Mode> modes;
   for (const RelativePose& pose : poses) {
     Mode mode = StartMode(matches, prior, pose);
@@ -48,10 +48,10 @@ TEST(ExplainMatches, AddsTheOtherMotionOfAPlaneAlone) {
   int num_of_planes = 0, num_of_volumes = 0;
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     RelativePose pose;
-    const MotionProblem plane = SceneOf(100, true, trial, &pose);
-    num_of_planes += CountOf(Explained(plane, {pose}), ModeOrigin::kTwistedPair) > 0;
-    const MotionProblem volume = SceneOf(100, false, trial, &pose);
-    num_of_volumes += CountOf(Explained(volume, {pose}), ModeOrigin::kTwistedPair) > 0;
+    const MotionProblem plane = MakeSceneProblem(100, true, trial, &pose);
+    num_of_planes += CountModes(Explained(plane, {pose}), ModeOrigin::kTwistedPair) > 0;
+    const MotionProblem volume = MakeSceneProblem(100, false, trial, &pose);
+    num_of_volumes += CountModes(Explained(volume, {pose}), ModeOrigin::kTwistedPair) > 0;
   }
   EXPECT_GE(num_of_planes, 8);
   EXPECT_EQ(num_of_volumes, 0);
@@ -64,10 +64,10 @@ TEST(ExplainMatches, LooksAtModesOfHalfTheMatches) {
     int num_looked_at = 0;
     for (std::uint32_t trial = 0; trial < 6; ++trial) {
       RelativePose first, second;
-      MotionProblem problem = SceneOf(120, false, trial, &first);
-      const MotionProblem other = SceneOf(num_second, true, trial + 100, &second);
+      MotionProblem problem = MakeSceneProblem(120, false, trial, &first);
+      const MotionProblem other = MakeSceneProblem(num_second, true, trial + 100, &second);
       problem.matches.insert(problem.matches.end(), other.matches.begin(), other.matches.end());
-      num_looked_at += CountOf(Explained(problem, {first, second}), ModeOrigin::kTwistedPair) > 0;
+      num_looked_at += CountModes(Explained(problem, {first, second}), ModeOrigin::kTwistedPair) > 0;
     }
     if (num_second == 80)
       EXPECT_GE(num_looked_at, 4);
@@ -96,7 +96,7 @@ TEST(ExplainMatches, LeavesOutByInfluenceAmongManyMatchesAlone) {
     for (std::uint32_t trial = 0; trial < 40; ++trial) {
       const RandomProblem random = WithNearMatch(num_matches, 4.0, trial);
       const MatchBlocks matches(random.problem);
-      const MixturePrior prior = PriorOf(random.problem);
+      const MixturePrior prior = MakePrior(random.problem);
       Mode mode = StartMode(matches, prior, random.pose_true);
       if (!FitMode(matches, prior, 50, &mode)) continue;
       const std::vector<ExplainedMode> modes =
@@ -114,9 +114,9 @@ TEST(ExplainMatches, LeavesOutByInfluenceAmongManyMatchesAlone) {
 // Any motion through five matches explains them: such a mode is not kept.
 TEST(ExplainMatches, KeepsModesOfMoreThanFiveMatches) {
   RelativePose pose;
-  const MotionProblem problem = SceneOf(100, false, 3, &pose);
+  const MotionProblem problem = MakeSceneProblem(100, false, 3, &pose);
   const MatchBlocks matches(problem);
-  const MixturePrior prior = PriorOf(problem);
+  const MixturePrior prior = MakePrior(problem);
   Mode mode = StartMode(matches, prior, {RotationFromVector({0.5, -0.4, 0.3}), Eigen::Vector3d::UnitX()});
   mode.mixture.scale = 1e-3;  // next to nothing is as near
   mode.inverse_hessian = 1e-12 * Matrix5d::Identity();
@@ -167,7 +167,7 @@ TEST(ExplainMatches, LeavesNothingOutWhereHalfTheMatchesWouldGo) {
       random.problem.matches[i] =
           ProjectToBoth(random.points_in_cam1[i], second, random.problem.camera1, random.problem.camera2);
     const MatchBlocks matches(random.problem);
-    const MixturePrior prior = PriorOf(random.problem);
+    const MixturePrior prior = MakePrior(random.problem);
     Mode mode = StartMode(matches, prior, random.pose_true, 8.0), without = mode;
     std::fill_n(without.used.begin(), 25, std::uint8_t{0});  // the first 200
     mode.used = without.used;

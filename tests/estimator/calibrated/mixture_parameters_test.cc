@@ -13,7 +13,7 @@ namespace rcme {
 namespace {
 
 // Of a smooth function over the whole line, x = sinh(y) by the trapezoid rule.
-double IntegralOf(const std::function<double(double)>& f) {
+double ComputeIntegral(const std::function<double(double)>& f) {
   constexpr double kStep = 1e-2;
   double sum = 0.0;
   for (int i = -1500; i <= 1500; ++i) sum += f(std::sinh(kStep * i)) * std::cosh(kStep * i) * kStep;
@@ -24,13 +24,13 @@ class NoiseLawOf : public testing::TestWithParam<NoiseLaw> {};
 
 TEST_P(NoiseLawOf, IsADensityOfStudentsLaw) {
   const NoiseLaw noise = GetParam();
-  EXPECT_NEAR(IntegralOf([&](double u) { return NoiseDensity(noise, u); }), 1.0, 1e-8);
+  EXPECT_NEAR(ComputeIntegral([&](double u) { return NoiseDensity(noise, u); }), 1.0, 1e-8);
   EXPECT_NEAR(
       noise.peak,
       std::tgamma(noise.power) / (std::sqrt(noise.dof() * std::numbers::pi) * std::tgamma(noise.power - 0.5)),
       1e-9);
   // The variance of Student's law is dof / (dof - 2).
-  EXPECT_NEAR(IntegralOf([&](double u) { return u * u * NoiseDensity(noise, u); }),
+  EXPECT_NEAR(ComputeIntegral([&](double u) { return u * u * NoiseDensity(noise, u); }),
               noise.dof() / (noise.dof() - 2.0), 1e-5);
 }
 
@@ -47,7 +47,7 @@ TEST_P(NoiseLawOf, TheWeightIsTheSlopeOfTheLogDensityOverTheResidual) {
 TEST_P(NoiseLawOf, TheScaleOfGaussianNoiseIsThatOfMaximumLikelihood) {
   const NoiseLaw noise = GetParam();
   const auto expected_weighted_square = [&](double s) {
-    return IntegralOf([&](double x) {
+    return ComputeIntegral([&](double x) {
       const double normal = std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi);
       return 2.0 * noise.power * x * x / (noise.dof() * s * s + x * x) * normal;
     });

@@ -16,10 +16,10 @@
 namespace rcme {
 namespace {
 
-Matrix5d SandwichOf(const FittedMode& f) {
+Matrix5d ComputeSandwich(const FittedMode& f) {
   return SandwichCovariance(f.mode, Explain(f.matches, f.mode), InverseOfObserved(f.matches, f.mode));
 }
-Matrix5d IntrinsicsOf(const FittedMode& f, const CalibratedOptions& options) {
+Matrix5d ComputeIntrinsics(const FittedMode& f, const CalibratedOptions& options) {
   return IntrinsicsCovariance(f.problem, options, f.mode, InverseOfObserved(f.matches, f.mode));
 }
 
@@ -34,7 +34,7 @@ TEST(SandwichCovariance, CoversTheTruthAsOftenAsItSays) {
     for (std::uint32_t trial = 0; trial < 400; ++trial) {
       const FittedMode f = FitScene(n, 0.5, 0.0, trial);
       ASSERT_TRUE(f.has_converged) << trial;
-      const Matrix5d covariance = SandwichOf(f);
+      const Matrix5d covariance = ComputeSandwich(f);
       const Vector5d error = LocalCoordinates(f.mode.pose, f.pose_true);
       count.Add(error.dot(covariance.llt().solve(error)) <= bound);
     }
@@ -46,8 +46,8 @@ TEST(SandwichCovariance, CoversTheTruthAsOftenAsItSays) {
 // Its scale is estimated, so that the unit of the assumed sigma means nothing beside the prior's weight.
 TEST(SandwichCovariance, DoesNotDependOnTheAssumedSigma) {
   const FittedMode right = FitScene(400, 0.5, 0.2, 7), wrong = FitScene(400, 0.5, 0.2, 7, 2.0);
-  const Matrix5d a = SandwichOf(right);
-  const Matrix5d b = SandwichOf(wrong);
+  const Matrix5d a = ComputeSandwich(right);
+  const Matrix5d b = ComputeSandwich(wrong);
   for (int k = 0; k < 5; ++k) EXPECT_NEAR(b(k, k) / a(k, k), 1.0, 0.25);
 }
 
@@ -70,7 +70,7 @@ TEST(EffectiveMatches, AreThoseThatAnAxisRestsOn) {
       const FittedMode f = is_few ? FitFewNear(trial) : FitScene(208, 0.5, 0.0, trial);
       ASSERT_TRUE(f.has_converged);
       const Matrix5d inverse = InverseOfObserved(f.matches, f.mode);
-      const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(SandwichOf(f));
+      const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(ComputeSandwich(f));
       const Vector5d effective =
           EffectiveMatches(f.mode, Explain(f.matches, f.mode), inverse * eigen.eigenvectors());
       EXPECT_GT(effective(4), is_few ? 1.0 : 15.0);
@@ -111,15 +111,15 @@ TEST(IntrinsicsCovariance, IsThatOfFitsWithOtherIntrinsics) {
   }
   CalibratedOptions options;
   options.calibration.focal_sd = kFocal;
-  const Matrix5d focal = IntrinsicsOf(f, options);
+  const Matrix5d focal = ComputeIntrinsics(f, options);
   EXPECT_LT((focal - of_focal).norm(), 0.2 * of_focal.norm()) << focal << "\n\n" << of_focal;
   options = {};
   options.calibration.principal_point_sd_px = kShiftPx;
-  const Matrix5d points = IntrinsicsOf(f, options);
+  const Matrix5d points = ComputeIntrinsics(f, options);
   EXPECT_LT((points - of_points).norm(), 0.2 * of_points.norm()) << points << "\n\n" << of_points;
   options.calibration.focal_sd = kFocal;
-  EXPECT_LT((IntrinsicsOf(f, options) - focal - points).norm(), 1e-9 * points.norm());
-  EXPECT_EQ(IntrinsicsOf(f, {}).norm(), 0.0);
+  EXPECT_LT((ComputeIntrinsics(f, options) - focal - points).norm(), 1e-9 * points.norm());
+  EXPECT_EQ(ComputeIntrinsics(f, {}).norm(), 0.0);
 }
 
 // One camera took both images: its error is common to them.
@@ -143,7 +143,7 @@ TEST(IntrinsicsCovariance, OfOneCameraIsOfACommonError) {
   CalibratedOptions options;
   options.calibration.focal_sd = kFocal;
   const Matrix5d expected = moved * moved.transpose();
-  EXPECT_LT((IntrinsicsOf(f, options) - expected).norm(), 0.2 * expected.norm());
+  EXPECT_LT((ComputeIntrinsics(f, options) - expected).norm(), 0.2 * expected.norm());
 }
 
 // The formula of the header match by match, of 12 matches, where leverages are great and all axes rest on

@@ -29,7 +29,7 @@ MotionComponent ComponentAt(const RelativePose& mean, double rotation_sd, double
       Eigen::Vector2d::Constant(direction_sd * direction_sd);
   return component;
 }
-MotionPosterior MadeOf(double p, std::vector<MotionComponent> components) {
+MotionPosterior MakePosterior(double p, std::vector<MotionComponent> components) {
   return MakeMotionPosterior(kStands, kUsual, p, std::move(components), {});
 }
 RelativePose Turned(double direction_deg) {
@@ -39,7 +39,7 @@ RelativePose Turned(double direction_deg) {
 }
 
 TEST(MakeMotionPosterior, WhatIsNeitherAnswerNorRivalIsNone) {
-  const MotionPosterior posterior = MadeOf(
+  const MotionPosterior posterior = MakePosterior(
       0.3, {ComponentAt(kStands, 1e-3, 1e-3, 0.5, true), ComponentAt(Turned(60.0), 1e-3, 1e-3, 0.1, false)});
   EXPECT_NEAR(posterior.components[0].weight, 0.7, 1e-12);
   EXPECT_NEAR(posterior.components[1].weight, 0.1, 1e-12);
@@ -51,8 +51,9 @@ TEST(MakeMotionPosterior, StatesWhatItIsTold) {
   for (const double p : {0.0, 1e-4, 0.02, 0.3, 0.9, 1.0}) {
     for (const double sd : {1e-3, 0.02, 0.2, 1.0}) {
       for (const double rival : {0.0, 0.2, 0.6}) {
-        const MotionPosterior posterior = MadeOf(p, {ComponentAt(kStands, 0.1 * sd, sd, 1.0 - rival, true),
-                                                     ComponentAt(Turned(25.0), 0.01, 0.1, rival, false)});
+        const MotionPosterior posterior =
+            MakePosterior(p, {ComponentAt(kStands, 0.1 * sd, sd, 1.0 - rival, true),
+                              ComponentAt(Turned(25.0), 0.01, 0.1, rival, false)});
         EXPECT_NEAR(FailureProbability(posterior, kStands, kUsual), p, 1e-9) << sd << " " << rival;
       }
     }
@@ -62,7 +63,7 @@ TEST(MakeMotionPosterior, StatesWhatItIsTold) {
 // The answer alone would leave exp(-.5 (15 / 30)^2) = .88 beyond 15 deg.
 TEST(MakeMotionPosterior, NarrowsAnAnswerThatIsWiderThanItsProbability) {
   const double sd = 30.0 * kRadPerDeg;
-  const MotionPosterior posterior = MadeOf(0.1, {ComponentAt(kStands, 1e-3, sd, 1.0, true)});
+  const MotionPosterior posterior = MakePosterior(0.1, {ComponentAt(kStands, 1e-3, sd, 1.0, true)});
   EXPECT_NEAR(posterior.narrowed, 0.5 / std::sqrt(-2.0 * std::log(0.1)), 0.02);
   EXPECT_NEAR(posterior.components[0].covariance(4, 4), std::pow(posterior.narrowed * sd, 2), 1e-12);
   EXPECT_LT(posterior.weight_of_none, 0.02);
@@ -81,7 +82,7 @@ TEST(PosteriorDistances, OfARoundDirectionAreRayleighs) {
 }
 
 TEST(PosteriorDistances, NoRegionHoldsWhatNoneTakesAway) {
-  const MotionPosterior posterior = MadeOf(0.3, {ComponentAt(kStands, 1e-3, 1e-2, 1.0, true)});
+  const MotionPosterior posterior = MakePosterior(0.3, {ComponentAt(kStands, 1e-3, 1e-2, 1.0, true)});
   const PosteriorDistances distances(posterior, kStands);
   EXPECT_TRUE(std::isfinite(distances.RegionAt(0.69, kUsual).rotation_rad));
   EXPECT_TRUE(std::isinf(distances.RegionAt(0.71, kUsual).rotation_rad));
@@ -136,7 +137,7 @@ MotionProblem TenMatches() {
   return problem;
 }
 
-MotionProblem ProblemOf(Kind kind, std::uint32_t trial) {
+MotionProblem MakeKindProblem(Kind kind, std::uint32_t trial) {
   if (kind == Kind::kTen) return TenMatches();
   Scene scene = TwoCameraScene(kind == Kind::kFew ? 14 : 120, 300 + trial);
   const Eigen::Vector3d normal = Eigen::Vector3d(0.2, -0.1, 1.0).normalized();
@@ -152,14 +153,15 @@ struct Posed {
   MotionEstimate estimate;
   MotionPosterior posterior;
 };
-std::vector<Posed> PosteriorsOf(Kind kind, const CalibratedOptions& options = {}) {
+std::vector<Posed> ComputePosteriors(Kind kind, const CalibratedOptions& options = {}) {
   const std::unique_ptr<MotionEstimator> estimator = MakeRcmeCalibrated(options);
   std::vector<Posed> all;
   for (std::uint32_t trial = 0; trial < (kind == Kind::kTen ? 1u : 4u); ++trial) {
     RandomStream rng({1, 0, trial, 4});
     std::optional<MotionPosterior> posterior;
     const MotionEstimate estimate =
-        FindWeightInspection(*estimator)->EstimateWithPosterior(ProblemOf(kind, trial), rng, &posterior);
+        FindWeightInspection(*estimator)
+            ->EstimateWithPosterior(MakeKindProblem(kind, trial), rng, &posterior);
     if (estimate.status == MotionStatus::kOk) all.push_back({estimate, *posterior});
   }
   EXPECT_FALSE(all.empty());
@@ -174,7 +176,7 @@ constexpr MotionBounds kManyBounds[] = {
 
 TEST(PosteriorOfPairs, StatesTheReportedProbability) {
   for (const Kind kind : kKinds) {
-    for (const Posed& of : PosteriorsOf(kind))
+    for (const Posed& of : ComputePosteriors(kind))
       EXPECT_NEAR(FailureProbability(of.posterior, of.estimate.cam2_from_cam1, kUsual),
                   of.estimate.failure_probability, 1e-9);
   }
@@ -182,7 +184,7 @@ TEST(PosteriorOfPairs, StatesTheReportedProbability) {
 
 TEST(PosteriorOfPairs, FallsWithTheBoundsFromOne) {
   for (const Kind kind : kKinds) {
-    for (const Posed& of : PosteriorsOf(kind)) {
+    for (const Posed& of : ComputePosteriors(kind)) {
       const PosteriorDistances distances(of.posterior, of.estimate.cam2_from_cam1);
       double last = distances.FailureProbability({0.0, 0.0});
       EXPECT_NEAR(last, 1.0, 1e-9);
@@ -202,7 +204,7 @@ TEST(PosteriorOfPairs, FallsWithTheBoundsFromOne) {
 TEST(PosteriorOfPairs, DrawsGiveEveryProbabilityAndRegion) {
   constexpr int kNumber = 20000;
   for (const Kind kind : kKinds) {
-    for (const Posed& of : PosteriorsOf(kind)) {
+    for (const Posed& of : ComputePosteriors(kind)) {
       const RelativePose& answer = of.estimate.cam2_from_cam1;
       const PosteriorDistances distances(of.posterior, answer);
       RandomStream rng({.seed = 1, .purpose = 2921});
@@ -232,7 +234,7 @@ TEST(PosteriorOfPairs, DrawsOfTheAnswerHaveItsCovariance) {
   constexpr int kNumber = 20000;
   int num_stated = 0;
   for (const Kind kind : kKinds) {
-    for (Posed& of : PosteriorsOf(kind)) {
+    for (Posed& of : ComputePosteriors(kind)) {
       const Matrix5d covariance = Covariance(of.posterior).of_answer;
       if (of.posterior.narrowed == 1.0 && of.posterior.cells.empty()) {
         EXPECT_LT((covariance - of.estimate.pose_cov).norm(), 1e-9 * of.estimate.pose_cov.norm());
@@ -268,7 +270,7 @@ TEST(PosteriorOfPairs, DrawsOfTheAnswerHaveItsCovariance) {
 // No motion of these has a smaller mean angle to the draws.
 TEST(PosteriorOfPairs, TheMedianIsNearestToDraws) {
   for (const Kind kind : kKinds) {
-    for (const Posed& of : PosteriorsOf(kind)) {
+    for (const Posed& of : ComputePosteriors(kind)) {
       const RelativePose median = Median(of.posterior);
       RandomStream rng({.seed = 1, .purpose = 2923});
       double of_median = 0.0, of_answer = 0.0;
@@ -286,7 +288,7 @@ TEST(PosteriorOfPairs, TheMedianIsNearestToDraws) {
 TEST(PosteriorOfPairs, AskingForItChangesNothing) {
   const std::unique_ptr<MotionEstimator> estimator = MakeRcmeCalibrated({});
   for (const Kind kind : kKinds) {
-    const MotionProblem problem = ProblemOf(kind, 1);
+    const MotionProblem problem = MakeKindProblem(kind, 1);
     RandomStream rng({1, 0, 1, 4}), other({1, 0, 1, 4});
     std::optional<MotionPosterior> posterior;
     const MotionEstimate asked = FindWeightInspection(*estimator)
@@ -306,7 +308,7 @@ TEST(PosteriorOfPairs, HoldsForOtherOptions) {
       CalibratedOptions options;
       options.covariance = covariance;
       options.leave_out = step;
-      for (const Posed& of : PosteriorsOf(Kind::kDeep, options)) {
+      for (const Posed& of : ComputePosteriors(Kind::kDeep, options)) {
         EXPECT_NEAR(FailureProbability(of.posterior, of.estimate.cam2_from_cam1, kUsual),
                     of.estimate.failure_probability, 1e-9);
         if (of.posterior.narrowed == 1.0) {

@@ -41,9 +41,9 @@ TEST(RansacVariants, FindTheMotionWithEitherSolver) {
 // Without their step they are RANSAC: the same samples, the same winner, the same answer.
 TEST(RansacVariants, WithoutTheirStepAreStandard) {
   for (const MotionProblem& problem : Problems()) {
-    const auto standard = NumbersOf(Ask("standard", {{"implementation", "reference"}}, problem));
-    EXPECT_EQ(NumbersOf(Ask("lo_ransac", {{"inner_samples", "0"}}, problem)), standard);
-    EXPECT_EQ(NumbersOf(Ask("cov_ransac", {{"progressive_refits", "0"}}, problem)), standard);
+    const auto standard = ListEstimateNumbers(Ask("standard", {{"implementation", "reference"}}, problem));
+    EXPECT_EQ(ListEstimateNumbers(Ask("lo_ransac", {{"inner_samples", "0"}}, problem)), standard);
+    EXPECT_EQ(ListEstimateNumbers(Ask("cov_ransac", {{"progressive_refits", "0"}}, problem)), standard);
   }
 }
 
@@ -81,8 +81,8 @@ TEST(RansacVariants, TheLeastCostWins) {
     }
     Refinements refinements;
     RandomStream again({1, 0, 0, 4});
-    EXPECT_EQ(NumbersOf(inspection->Finish(problem, loop, &refinements)),
-              NumbersOf(estimator->Estimate(problem, again)));
+    EXPECT_EQ(ListEstimateNumbers(inspection->Finish(problem, loop, &refinements)),
+              ListEstimateNumbers(estimator->Estimate(problem, again)));
   }
 }
 
@@ -95,7 +95,7 @@ TEST(RansacVariants, TheMEstimatorTakesEitherLoss) {
     EXPECT_EQ(tukey.status, MotionStatus::kOk);
     EXPECT_TRUE(huber.status == MotionStatus::kOk || huber.status == MotionStatus::kRefinementDiverged);
     EXPECT_FALSE(huber.message.empty());
-    EXPECT_NE(NumbersOf(huber), NumbersOf(tukey));
+    EXPECT_NE(ListEstimateNumbers(huber), ListEstimateNumbers(tukey));
   }
 }
 

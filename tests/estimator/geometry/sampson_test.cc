@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kStepPx = 0.5;  // third derivatives in px are ~ 1e-6 of the first ones
 
-Correspondence MatchOf(const Eigen::VectorXd& X) { return {X.head<2>(), X.tail<2>()}; }
-Eigen::Vector4d CoordinatesOf(const Correspondence& match) {
+Correspondence MakeMatch(const Eigen::VectorXd& X) { return {X.head<2>(), X.tail<2>()}; }
+Eigen::Vector4d StackCoordinates(const Correspondence& match) {
   Eigen::Vector4d X;
   X << match.x1_px, match.x2_px;
   return X;
@@ -27,7 +27,7 @@ struct Case {
   Correspondence match;
 };
 
-Eigen::Matrix3d FundamentalOf(const RandomProblem& random, const RelativePose& pose) {
+Eigen::Matrix3d ComputeFundamental(const RandomProblem& random, const RelativePose& pose) {
   return FundamentalFromEssential(EssentialFromPose(pose), random.problem.camera1, random.problem.camera2);
 }
 
@@ -36,7 +36,7 @@ Case MakeCase(RandomStream& rng, double sigma_px) {
   made.random = MakeRandomProblem(rng, {.num_matches = 1, .max_rotation_deg = 30.0});
   AddNoise(sigma_px, rng, &made.random.problem);
   made.match = made.random.problem.matches[0];
-  made.F = FundamentalOf(made.random, made.random.pose_true);
+  made.F = ComputeFundamental(made.random, made.random.pose_true);
   const std::array<Eigen::Matrix3d, 5> dE_dp = EssentialTangent(made.random.pose_true);
   for (size_t k = 0; k < 5; ++k) {
     made.dF_dp[k] =
@@ -50,14 +50,14 @@ TEST(EpipolarConstraint, GradientHasANumericTwin) {
   for (int i = 0; i < 50; ++i) {
     const Case c = MakeCase(rng, 5.0);
     const auto g = [&](const Eigen::VectorXd& X) {
-      const Correspondence match = MatchOf(X);
+      const Correspondence match = MakeMatch(X);
       return Eigen::VectorXd::Constant(1, match.x2_px.homogeneous().dot(c.F * match.x1_px.homogeneous()));
     };
     const EpipolarConstraint constraint = EvaluateConstraint(c.F, c.match);
-    EXPECT_NEAR(constraint.g, g(CoordinatesOf(c.match))(0), 1e-15);
+    EXPECT_NEAR(constraint.g, g(StackCoordinates(c.match))(0), 1e-15);
     EXPECT_DOUBLE_EQ(constraint.squared_gradient(), constraint.gradient.dot(constraint.gradient));
-    EXPECT_JACOBIAN_NEAR(constraint.gradient.transpose(), NumericJacobian(g, CoordinatesOf(c.match), kStepPx),
-                         1e-9);
+    EXPECT_JACOBIAN_NEAR(constraint.gradient.transpose(),
+                         NumericJacobian(g, StackCoordinates(c.match), kStepPx), 1e-9);
   }
 }
 
@@ -66,9 +66,9 @@ TEST(ConstraintHessian, HasANumericTwin) {
   for (int i = 0; i < 50; ++i) {
     const Case c = MakeCase(rng, 5.0);
     const auto gradient = [&](const Eigen::VectorXd& X) -> Eigen::VectorXd {
-      return EvaluateConstraint(c.F, MatchOf(X)).gradient;
+      return EvaluateConstraint(c.F, MakeMatch(X)).gradient;
     };
-    EXPECT_JACOBIAN_NEAR(ConstraintHessian(c.F), NumericJacobian(gradient, CoordinatesOf(c.match), 10.0),
+    EXPECT_JACOBIAN_NEAR(ConstraintHessian(c.F), NumericJacobian(gradient, StackCoordinates(c.match), 10.0),
                          1e-9);
   }
 }
@@ -84,7 +84,7 @@ TEST(SampsonVector, IsTheFirstNewtonStepToTheEpipolarVariety) {
     EXPECT_NEAR(std::abs(before.gradient.dot(delta)), before.gradient.norm() * delta.norm(),
                 1e-12 * std::abs(before.g));
     EXPECT_NEAR(delta.squaredNorm(), SquaredSampsonDistance(c.F, c.match), 1e-12 * delta.squaredNorm());
-    const EpipolarConstraint after = EvaluateConstraint(c.F, MatchOf(CoordinatesOf(c.match) + delta));
+    const EpipolarConstraint after = EvaluateConstraint(c.F, MakeMatch(StackCoordinates(c.match) + delta));
     EXPECT_LT(std::abs(after.g), 0.5 * ConstraintHessian(c.F).norm() * delta.squaredNorm() + 1e-15);
   }
 }
@@ -113,10 +113,10 @@ TEST(SampsonVector, PointJacobianHasANumericTwin) {
     for (int i = 0; i < 50; ++i) {
       const Case c = MakeCase(rng, sigma_px);
       const auto delta = [&](const Eigen::VectorXd& X) -> Eigen::VectorXd {
-        return SampsonVector(c.F, MatchOf(X));
+        return SampsonVector(c.F, MakeMatch(X));
       };
       EXPECT_JACOBIAN_NEAR(SampsonVectorPointJacobian(c.F, c.match),
-                           NumericJacobian(delta, CoordinatesOf(c.match), kStepPx), 1e-7);
+                           NumericJacobian(delta, StackCoordinates(c.match), kStepPx), 1e-7);
     }
   }
 }
@@ -127,7 +127,7 @@ TEST(SampsonVector, PoseJacobianHasANumericTwin) {
     for (int i = 0; i < 50; ++i) {
       const Case c = MakeCase(rng, sigma_px);
       const auto delta = [&](const Eigen::VectorXd& tangent) -> Eigen::VectorXd {
-        return SampsonVector(FundamentalOf(c.random, Retract(c.random.pose_true, tangent)), c.match);
+        return SampsonVector(ComputeFundamental(c.random, Retract(c.random.pose_true, tangent)), c.match);
       };
       EXPECT_JACOBIAN_NEAR(SampsonVectorPoseJacobian(c.F, c.dF_dp, c.match),
                            NumericJacobian(delta, Vector5d::Zero(), 1e-4), 1e-7);

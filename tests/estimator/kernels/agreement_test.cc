@@ -74,10 +74,11 @@ TEST_F(AgreementTest, FindsTheMatchesThatTheFitSetFinds) {
       Run([&] {
         const MatchBlocks matches(c.problem);
         const BlockMatches block(c.problem, matches, RefinementError::kSampson);
-        const MatchMask fitted = MaskOf(c.fitted, matches);
-        EXPECT_EQ(IndicesOf(block.FindAgreeing(c.motion, fitted, 0.05)), expected)
+        const MatchMask fitted = MakeMask(c.fitted, matches);
+        EXPECT_EQ(ListIndices(block.FindAgreeing(c.motion, fitted, 0.05)), expected)
             << n << ", trial " << trial;
-        EXPECT_EQ(IndicesOf(block.SelectFitSet(c.motion, fitted)), expected_fit) << n << ", trial " << trial;
+        EXPECT_EQ(ListIndices(block.SelectFitSet(c.motion, fitted)), expected_fit)
+            << n << ", trial " << trial;
       });
     }
   }
@@ -103,9 +104,9 @@ TEST_F(AgreementTest, TheFitSetKnowsLeverageAndWhatWasFitted) {
     Run([&] {
       const MatchBlocks matches(c.problem);
       const BlockMatches block(c.problem, matches, RefinementError::kSampson);
-      EXPECT_EQ(IndicesOf(block.FindAgreeing(c.motion, matches.Empty(), kAlpha)),
+      EXPECT_EQ(ListIndices(block.FindAgreeing(c.motion, matches.Empty(), kAlpha)),
                 FindAgreeing(c.problem, c.motion, {}, kAlpha));
-      EXPECT_EQ(IndicesOf(block.FindAgreeing(backwards, MaskOf(c.fitted, matches), kAlpha)), behind);
+      EXPECT_EQ(ListIndices(block.FindAgreeing(backwards, MakeMask(c.fitted, matches), kAlpha)), behind);
     });
   }
   EXPECT_GT(num_by_leverage, 0);
@@ -140,7 +141,7 @@ TEST_F(AgreementTest, CountsAsManyInFrontAsTheTriangulation) {
         const int with_t = CountFrontOneByOne(c, pose), with_opposite_t = CountFrontOneByOne(c, opposite);
         Run([&] {
           const MatchBlocks matches(c.problem);
-          const FrontCounts counts = CountInFront(matches, MaskOf(c.fitted, matches), pose);
+          const FrontCounts counts = CountInFront(matches, MakeMask(c.fitted, matches), pose);
           EXPECT_EQ(counts.with_t, with_t);
           EXPECT_EQ(counts.with_opposite_t, with_opposite_t);
         });
@@ -165,7 +166,7 @@ TEST_F(AgreementTest, SelectsTheSamePoseOfTheFour) {
     for (size_t k = 0; k < 4; ++k) num_selected[k] += poses[k].R == expected.R && poses[k].t == expected.t;
     Run([&] {
       const MatchBlocks matches(c.problem);
-      const RelativePose selected = SelectPoseByCheirality(matches, MaskOf(c.fitted, matches), projection);
+      const RelativePose selected = SelectPoseByCheirality(matches, MakeMask(c.fitted, matches), projection);
       EXPECT_EQ(selected.R, expected.R) << trial;
       EXPECT_EQ(selected.t, expected.t) << trial;
     });
@@ -183,7 +184,7 @@ TEST_F(AgreementTest, CountsTheConsistentMatchesOfTheReference) {
     Run([&] {
       const MatchBlocks matches(c.problem);
       const BlockMatches block(c.problem, matches, RefinementError::kSampson);
-      EXPECT_EQ(block.CountConsistent(MaskOf(c.fitted, matches), c.pose_true, 0.2), expected);
+      EXPECT_EQ(block.CountConsistent(MakeMask(c.fitted, matches), c.pose_true, 0.2), expected);
     });
   }
 }

@@ -80,7 +80,7 @@ void CompareSampson(const StartProblem& c, const RelativePose& pose) {
     const Matrix5d information = SampsonInformation(c.problem, c.used, pose);
     RunOnEveryTarget([&] {
       const MatchBlocks matches(c.problem);
-      const MatchMask mask = MaskOf(c.used, matches);
+      const MatchMask mask = MakeMask(c.used, matches);
       const NormalEquations sums = LinearizeSampson(matches, mask, pose, loss);
       ExpectSameSums(sums.cost, sums.gradient, sums.hessian, expected.cost, expected.gradient,
                      expected.hessian);
@@ -110,7 +110,7 @@ TEST_F(EquationsAgreement, TheSearchEndsAtTheSameMotion) {
         num_converged += expected.converged;
         Run([&] {
           const MatchBlocks matches(c.problem);
-          const RefinedMotion motion = RefineBySampson(matches, MaskOf(c.used, matches), c.start, loss);
+          const RefinedMotion motion = RefineBySampson(matches, MakeMask(c.used, matches), c.start, loss);
           ASSERT_EQ(motion.converged, expected.converged) << n << ", trial " << trial;
           EXPECT_EQ(motion.num_iterations, expected.num_iterations) << n << ", trial " << trial;
           EXPECT_LT(LocalCoordinates(expected.cam2_from_cam1, motion.cam2_from_cam1).norm(), 1e-9)
@@ -147,7 +147,7 @@ TEST_F(EquationsAgreement, FewerThanFiveMatchesConvergeInNeither) {
   const std::vector<int> four = {0, 1, 2, 5};
   const RefinedMotion reference = RefineBySampson(c.problem, four, c.start, Loss::kCauchy);
   const MatchBlocks matches(c.problem);
-  const RefinedMotion block = RefineBySampson(matches, MaskOf(four, matches), c.start, Loss::kCauchy);
+  const RefinedMotion block = RefineBySampson(matches, MakeMask(four, matches), c.start, Loss::kCauchy);
   for (const RefinedMotion& motion : {reference, block}) {
     EXPECT_FALSE(motion.converged);
     EXPECT_EQ(motion.cam2_from_cam1.R, c.start.R);
@@ -168,12 +168,12 @@ TEST_F(EquationsAgreement, RotationSumsAreTheSameWithMatchesBehindTheCamera) {
         const RotationEquations expected = LinearizeRotation(c.problem, c.used, R, loss);
         Run([&] {
           const MatchBlocks matches(c.problem);
-          const RotationEquations sums = LinearizeRotation(matches, MaskOf(c.used, matches), R, loss);
+          const RotationEquations sums = LinearizeRotation(matches, MakeMask(c.used, matches), R, loss);
           ExpectSameSums(sums.energy, sums.gradient, sums.hessian, expected.energy, expected.gradient,
                          expected.hessian);
           const BlockMatches block(c.problem, matches, RefinementError::kSampson);
           for (const double threshold : {2.0, 20.0, 1e300}) {
-            EXPECT_EQ(IndicesOf(block.FindRotated(R, threshold)), FindRotated(c.problem, R, threshold));
+            EXPECT_EQ(ListIndices(block.FindRotated(R, threshold)), FindRotated(c.problem, R, threshold));
           }
         });
       }

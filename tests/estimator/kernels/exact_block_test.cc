@@ -127,11 +127,11 @@ TEST(RemoveSample, TakesItsInliersAndTheirSpreadsOut) {
   const MotionProblem problem = MakeProblem(101);
   const MatchBlocks matches(problem);
   InlierScan scan(matches);
-  scan.inliers = MaskOf(std::vector<int>{1, 7, 8, 20, 59}, matches);
+  scan.inliers = MakeMask(std::vector<int>{1, 7, 8, 20, 59}, matches);
   scan.num_inliers = 5;
   for (size_t i = 0; i < 5; ++i) scan.spreads[i] = std::vector<double>{1.0, 7.0, 8.0, 20.0, 59.0}[i];
   RemoveSample({59, 8, 9, 1}, &scan);
-  EXPECT_EQ(IndicesOf(scan.inliers), (std::vector<int>{7, 20}));
+  EXPECT_EQ(ListIndices(scan.inliers), (std::vector<int>{7, 20}));
   EXPECT_EQ(scan.num_inliers, 2);
   EXPECT_EQ(scan.spreads[0], 7.0);
   EXPECT_EQ(scan.spreads[1], 20.0);

@@ -100,7 +100,7 @@ FivePointModels Solve(const Eight& samples) {
   return models;
 }
 
-Matrices ModelsOf(const FivePointModels& models, size_t sample) {
+Matrices ListModels(const FivePointModels& models, size_t sample) {
   Matrices matrices;
   for (int m = models.begin[sample]; m < models.begin[sample + 1]; ++m) {
     Eigen::Matrix3d E;
@@ -109,7 +109,7 @@ Matrices ModelsOf(const FivePointModels& models, size_t sample) {
   }
   return matrices;
 }
-Matrices ReferenceOf(const Rays& rays) {
+Matrices SolveReference(const Rays& rays) {
   const FivePoint::Solutions solutions = FivePoint::Solve(rays.first, rays.second);
   return {solutions.E.begin(), solutions.E.begin() + solutions.count};
 }
@@ -144,7 +144,7 @@ TEST_F(FivePointBlockTest, EveryModelMeetsTheConstraints) {
       const FivePointModels models = Solve(c.samples);
       ASSERT_EQ(models.begin[0], 0);
       for (size_t s = 0; s < kBlockSize; ++s) {
-        const Matrices of_sample = ModelsOf(models, s);
+        const Matrices of_sample = ListModels(models, s);
         EXPECT_LE(of_sample.size(), 10u);
         for (const Eigen::Matrix3d& E : of_sample)
           greatest = std::max(greatest, GreatestViolation(E, c.samples[s]));
@@ -165,7 +165,7 @@ TEST_F(FivePointBlockTest, HasTheTruthMoreOftenThanOthers) {
       const EightSamples c = DrawSamples(family, 0.0, rng);
       const FivePointModels models = Solve(c.samples);
       for (size_t s = 0; s < kBlockSize; ++s) {
-        has_truth.Add(DistanceToNearest(c.E_true[s], ModelsOf(models, s)) < 1e-4);
+        has_truth.Add(DistanceToNearest(c.E_true[s], ListModels(models, s)) < 1e-4);
       }
     }
     EXPECT_GT(has_truth.interval().lower, family.true_share_of_others) << family.name << ": " << has_truth;
@@ -183,7 +183,7 @@ TEST_F(FivePointBlockTest, HasTheSolutionsOfTheScalarSolver) {
       const EightSamples c = DrawSamples(family, 1e-3, rng);
       const FivePointModels models = Solve(c.samples);
       for (size_t s = 0; s < kBlockSize; ++s) {
-        const Matrices ours = ModelsOf(models, s), reference = ReferenceOf(c.samples[s]);
+        const Matrices ours = ListModels(models, s), reference = SolveReference(c.samples[s]);
         for (const Eigen::Matrix3d& E : reference) is_found.Add(DistanceToNearest(E, ours) < 1e-6);
         for (const Eigen::Matrix3d& E : ours) is_solution.Add(DistanceToNearest(E, reference) < 1e-6);
       }
@@ -235,7 +235,7 @@ TEST_F(FivePointBlockTest, DegenerateSamplesHaveNoModels) {
         EightSamples c = DrawSamples(trial);
         const size_t spoilt = trial % kBlockSize;
         spoil(&c.samples[spoilt]);
-        EXPECT_TRUE(ModelsOf(Solve(c.samples), spoilt).empty()) << name << ", trial " << trial;
+        EXPECT_TRUE(ListModels(Solve(c.samples), spoilt).empty()) << name << ", trial " << trial;
       }
     }
   });
@@ -251,7 +251,7 @@ TEST_F(FivePointBlockTest, ASampleDoesNotTouchTheOthers) {
         const FivePointModels with = Solve(c.samples);
         for (size_t s = 0; s < kBlockSize; ++s) {
           if (s == spoilt) continue;
-          EXPECT_EQ(ModelsOf(with, s), ModelsOf(without, s)) << name;
+          EXPECT_EQ(ListModels(with, s), ListModels(without, s)) << name;
         }
       }
     }
@@ -264,7 +264,7 @@ TEST_F(FivePointBlockTest, EveryLaneGivesTheSameBits) {
     c.samples.fill(c.samples[trial % kBlockSize]);
     Run([&] {
       const FivePointModels models = Solve(c.samples);
-      for (size_t s = 1; s < kBlockSize; ++s) EXPECT_EQ(ModelsOf(models, s), ModelsOf(models, 0));
+      for (size_t s = 1; s < kBlockSize; ++s) EXPECT_EQ(ListModels(models, s), ListModels(models, 0));
     });
   }
 }

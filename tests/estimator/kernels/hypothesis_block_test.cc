@@ -48,7 +48,7 @@ HypothesisBlock Instantiate(const SampledProblem& c, RequestedOutputs outputs) {
   return block;
 }
 
-Eigen::Matrix3d MatrixOf(const HypothesisBlock::Row (&rows)[9], int lane) {
+Eigen::Matrix3d ReadMatrix(const HypothesisBlock::Row (&rows)[9], int lane) {
   Eigen::Matrix3d matrix;
   for (int i = 0; i < 9; ++i) matrix(i / 3, i % 3) = rows[i][lane];
   return matrix;
@@ -71,7 +71,8 @@ double VarianceOfG(const HypothesisBlock& block, int lane, const MatchBlocks& ma
   const int l = match % kBlockSize;
   const Correspondence whitened{{at.x1[l], at.y1[l]}, {at.x2[l], at.y2[l]}};
   double variance = 0.0;
-  for (const auto& dF : block.dF) variance += std::pow(EvaluateConstraint(MatrixOf(dF, lane), whitened).g, 2);
+  for (const auto& dF : block.dF)
+    variance += std::pow(EvaluateConstraint(ReadMatrix(dF, lane), whitened).g, 2);
   return variance;
 }
 double VarianceOfG(const UncertainFundamental& model, const Correspondence& match) {
@@ -108,7 +109,7 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesis) {
       for (int lane = 0; lane < kBlockSize; ++lane) {
         const Hypothesis<EightPoint> scalar = Scalar(c.problem, c.samples[static_cast<size_t>(lane)]).value();
         const double tolerance = 1e-13 * Conditioning(scalar);
-        const Eigen::Matrix3d F = MatrixOf(block.F, lane);
+        const Eigen::Matrix3d F = ReadMatrix(block.F, lane);
         const Eigen::Matrix3d expected = matches.FundamentalFromEssential(EssentialFromPose(scalar.pose));
         of_F.Add(std::min((F - expected).norm(), (F + expected).norm()) / expected.norm(), tolerance);
         const double statistic = JointSampleStatistic(scalar);
@@ -159,7 +160,7 @@ TEST_F(HypothesisBlockTest, IsTheScalarHypothesisWhereSingularValuesAreClose) {
       for (int lane = 0; lane < kBlockSize; ++lane) {
         const Hypothesis<EightPoint> scalar =
             InstantiateModel<EightPoint>(c.problem, {c.samples[static_cast<size_t>(lane)]}).value();
-        const Eigen::Matrix3d F = MatrixOf(block.F, lane);
+        const Eigen::Matrix3d F = ReadMatrix(block.F, lane);
         const Eigen::Matrix3d expected = matches.FundamentalFromEssential(EssentialFromPose(scalar.pose));
         of_F.Add(std::min((F - expected).norm(), (F + expected).norm()) / expected.norm(),
                  1e-13 * Conditioning(scalar));
@@ -260,8 +261,9 @@ TEST_F(HypothesisBlockTest, ALaneDoesNotTouchTheOthers) {
         for (int lane = 0; lane < kBlockSize; ++lane) {
           if (lane == spoilt) continue;
           EXPECT_EQ(with.sample_statistic[lane], without.sample_statistic[lane]) << name;
-          EXPECT_EQ(MatrixOf(with.F, lane), MatrixOf(without.F, lane)) << name;
-          for (int k = 0; k < 5; ++k) EXPECT_EQ(MatrixOf(with.dF[k], lane), MatrixOf(without.dF[k], lane));
+          EXPECT_EQ(ReadMatrix(with.F, lane), ReadMatrix(without.F, lane)) << name;
+          for (int k = 0; k < 5; ++k)
+            EXPECT_EQ(ReadMatrix(with.dF[k], lane), ReadMatrix(without.dF[k], lane));
         }
       }
     }
@@ -275,9 +277,9 @@ TEST_F(HypothesisBlockTest, EveryLaneGivesTheSameBits) {
   Run([&] {
     const HypothesisBlock block = Instantiate(c, RequestedOutputs::kCovarianceAndMisfit);
     for (int lane = 1; lane < kBlockSize; ++lane) {
-      EXPECT_EQ(MatrixOf(block.F, lane), MatrixOf(block.F, 0));
+      EXPECT_EQ(ReadMatrix(block.F, lane), ReadMatrix(block.F, 0));
       EXPECT_EQ(block.sample_statistic[lane], block.sample_statistic[0]);
-      for (int k = 0; k < 5; ++k) EXPECT_EQ(MatrixOf(block.dF[k], lane), MatrixOf(block.dF[k], 0));
+      for (int k = 0; k < 5; ++k) EXPECT_EQ(ReadMatrix(block.dF[k], lane), ReadMatrix(block.dF[k], 0));
     }
   });
 }

@@ -72,20 +72,20 @@ TEST(MatchMask, GoesToIndicesAndBack) {
     for (const int i : all) {
       if (rng.Uniform() < 0.4) some.push_back(i);
     }
-    const MatchMask mask = MaskOf(some, matches);
-    EXPECT_EQ(IndicesOf(mask), some);
+    const MatchMask mask = MakeMask(some, matches);
+    EXPECT_EQ(ListIndices(mask), some);
     EXPECT_EQ(CountIn(mask), static_cast<int>(some.size()));
-    EXPECT_EQ(IndicesOf(matches.All()), all) << "no lane beyond the last match";
+    EXPECT_EQ(ListIndices(matches.All()), all) << "no lane beyond the last match";
     EXPECT_EQ(CountInBoth(mask, matches.All()), static_cast<int>(some.size()));
     EXPECT_EQ(CountInBoth(mask, matches.Empty()), 0);
-    EXPECT_TRUE(IndicesOf(matches.Empty()).empty());
+    EXPECT_TRUE(ListIndices(matches.Empty()).empty());
   }
 }
 
 TEST(MatchMask, BitLOfByteBIsMatch8BPlusL) {
   const MotionProblem problem = MakeProblem(20, 201).problem;
   const MatchBlocks matches(problem);
-  EXPECT_EQ(MaskOf(std::vector<int>{0, 9, 10, 19}, matches), (MatchMask{0x01, 0x06, 0x08}));
+  EXPECT_EQ(MakeMask(std::vector<int>{0, 9, 10, 19}, matches), (MatchMask{0x01, 0x06, 0x08}));
   EXPECT_EQ(CountInBoth({0x0f, 0xf0}, {0x3c, 0x30}), 4);
 }
 

@@ -27,7 +27,7 @@ struct MixtureProblem {
   std::vector<int> used;
   MixtureSums Sum(const RelativePose& at) const {
     const MatchBlocks matches(problem);
-    return SumMixture(matches, MaskOf(used, matches), at, parameters);
+    return SumMixture(matches, MakeMask(used, matches), at, parameters);
   }
 };
 
@@ -53,7 +53,7 @@ MixtureProblem MakeMixtureProblem(int num_matches, bool is_scaled = false, doubl
   return c;
 }
 
-MatchTerms TermsOf(const MixtureProblem& c, size_t i) {
+MatchTerms ComputeTerms(const MixtureProblem& c, size_t i) {
   return EvaluateMatch(c.problem, c.pose, c.problem.matches[i], NoiseScaleAt(c.problem, i));
 }
 
@@ -61,7 +61,7 @@ MixtureSums ScalarSums(const MixtureProblem& c) {
   MixtureSums sums;
   const double s2 = c.parameters.scale * c.parameters.scale;
   for (const int i : c.used) {
-    const MatchTerms terms = TermsOf(c, static_cast<size_t>(i));
+    const MatchTerms terms = ComputeTerms(c, static_cast<size_t>(i));
     const double scale = NoiseScaleAt(c.problem, static_cast<size_t>(i));
     const MatchDensity d = EvaluateDensity(terms.residual, terms.depth, c.parameters, scale);
     sums.log_likelihood += std::log(d.density);
@@ -136,7 +136,7 @@ TEST_F(MixtureSumsOf, ListsHoldTheTermsOfEveryMatch) {
         EvaluateTerms(MatchBlocks(c.problem), c.pose, &lists);
         ASSERT_EQ(lists.residual.size(), static_cast<size_t>((n + 7) / 8 * 8));
         for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
-          const MatchTerms terms = TermsOf(c, i);
+          const MatchTerms terms = ComputeTerms(c, i);
           EXPECT_NEAR(lists.residual[i], terms.residual, 1e-8);
           EXPECT_NEAR(lists.depth[i], terms.depth, 1e-8 * (1.0 + std::abs(terms.depth)));
           Vector5d derivative;
@@ -221,7 +221,7 @@ TEST_F(MixtureSumsOf, EmptyBlocksDoNotLetProductsVanish) {
 TEST_F(MixtureSumsOf, TheGradientIsThatOfTheLogLikelihood) {
   for (const bool is_scaled : kNoises) {
     MixtureProblem c = MakeMixtureProblem(65, is_scaled);
-    std::erase_if(c.used, [&](int i) { return TermsOf(c, static_cast<size_t>(i)).depth < 1.0; });
+    std::erase_if(c.used, [&](int i) { return ComputeTerms(c, static_cast<size_t>(i)).depth < 1.0; });
     ASSERT_GT(c.used.size(), 30U);
     const Eigen::MatrixXd numeric = NumericJacobian(
         [&](const Eigen::VectorXd& tangent) {
@@ -257,7 +257,7 @@ TEST_F(MixtureSumsOf, CheiralityTurnsOverWithTheDirection) {
       double expected = 0.0;
       const int num_blocks = std::max(matches.num_blocks() - 1, 1);
       for (int i = 0; i < std::min(n, 8 * num_blocks); ++i) {
-        const MatchTerms terms = TermsOf(c, static_cast<size_t>(i));
+        const MatchTerms terms = ComputeTerms(c, static_cast<size_t>(i));
         expected += SoftScore(terms.residual, 2.5) * terms.mean_depth / std::hypot(1.0, terms.mean_depth);
       }
       RelativePose opposite = c.pose;

@@ -78,7 +78,7 @@ double Curvature(double r, Loss loss) {
 
 NormalEquations Linearize(const MotionBesideTruth& c, Loss loss) {
   const MatchBlocks matches(c.problem);
-  return LinearizeSampson(matches, MaskOf(c.used, matches), c.pose, loss);
+  return LinearizeSampson(matches, MakeMask(c.used, matches), c.pose, loss);
 }
 
 constexpr int kSampsonCounts[] = {5, 7, 8, 9, 16, 17, 63, 200};
@@ -131,7 +131,7 @@ TEST_F(SampsonEquations, InformationIsTheInverseOfTheFirstOrderCovariance) {
     ASSERT_TRUE(cov);
     Run([&] {
       const MatchBlocks matches(c.problem);
-      const Matrix5d information = SampsonInformation(matches, MaskOf(c.used, matches), c.pose);
+      const Matrix5d information = SampsonInformation(matches, MakeMask(c.used, matches), c.pose);
       // Condition numbers reach 1e6.
       EXPECT_LT((information * *cov - Matrix5d::Identity()).norm(), 1e-8) << n;
     });
@@ -152,7 +152,8 @@ TEST_F(SampsonEquations, AreThoseOfTheReferenceWhereMatchesAreNotAlike) {
         EXPECT_NEAR(equations.cost, expected.cost, 1e-9 * expected.cost);
         EXPECT_JACOBIAN_NEAR(equations.gradient, expected.gradient, 1e-9);
         EXPECT_JACOBIAN_NEAR(equations.hessian, expected.hessian, 1e-9);
-        EXPECT_JACOBIAN_NEAR(SampsonInformation(matches, MaskOf(c.used, matches), c.pose), information, 1e-9);
+        EXPECT_JACOBIAN_NEAR(SampsonInformation(matches, MakeMask(c.used, matches), c.pose), information,
+                             1e-9);
       });
     }
   }

@@ -175,7 +175,7 @@ void ExpectScan(const MatchBlocks& matches, const ScanOnce& scan_once,
 }
 
 template <typename PointTest>
-std::vector<Expected> ExpectedOf(const ScoredProblem& c, const PointTest& test) {
+std::vector<Expected> ComputeExpected(const ScoredProblem& c, const PointTest& test) {
   const UncertainFundamental model = c.Scalar();
   std::vector<Expected> expected;
   for (const Correspondence& match : c.problem.matches) {
@@ -214,7 +214,7 @@ void ExpectKnownPose(const ScoredProblem& c) {
   WriteRowMajor(matches.FundamentalFromEssential(EssentialFromPose(c.pose)), F);
   ExpectScan(
       matches, [&](double threshold, InlierScan* scan) { ScanKnownPose(matches, F, threshold, scan); },
-      ExpectedOf(c, KnownPoseTest(c.Scalar().F, c.problem.sigma_px)));
+      ComputeExpected(c, KnownPoseTest(c.Scalar().F, c.problem.sigma_px)));
 }
 void ExpectAsPrinted(const ScoredProblem& c) {
   const MatchBlocks matches(c.problem);
@@ -230,7 +230,7 @@ void ExpectRankAware(const ScoredProblem& c) {
   ExpectScan(
       matches,
       [&](double threshold, InlierScan* scan) { ScanRankAware(matches, model.F, variance, threshold, scan); },
-      ExpectedOf(c, RankAwareTest(c.Scalar(), c.problem.sigma_px)));
+      ComputeExpected(c, RankAwareTest(c.Scalar(), c.problem.sigma_px)));
 }
 
 TEST_F(ScoreTest, ScansAreTheScalarTestsForAnyNumberOfMatches) {

@@ -32,7 +32,7 @@ TEST(Gate, WhatItLetsThroughIsTheAnswerWithoutIt) {
     for (const char* estimator : {"standard", "rcme"}) {
       const MotionEstimate with = AskGate(estimator, {{"model_choice", name}}, problem);
       ASSERT_EQ(with.status, MotionStatus::kOk) << with.message;
-      EXPECT_EQ(NumbersOf(with), NumbersOf(AskGate(estimator, {}, problem))) << name;
+      EXPECT_EQ(ListEstimateNumbers(with), ListEstimateNumbers(AskGate(estimator, {}, problem))) << name;
     }
   }
 }

@@ -36,7 +36,7 @@ TEST(FitTwoViewModels, TheTrueModelLeavesTheNoise) {
                 {TwoViewModel::kEssential, "plane", "general"}};
   for (const auto& c : kCases) {
     const ProblemFamily family(c.scene, c.motion, 200, 0.0);
-    const ModelDimensions& dimensions = DimensionsOf(c.model);
+    const ModelDimensions& dimensions = FindDimensions(c.model);
     const double dof = 200.0 * dimensions.codimension() - dimensions.parameters;
     Moments sums;
     for (std::uint32_t trial = 0; trial < 60; ++trial) {

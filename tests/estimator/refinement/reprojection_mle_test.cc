@@ -15,7 +15,7 @@
 namespace rcme {
 namespace {
 
-std::vector<int> AllOf(const MotionProblem& problem) {
+std::vector<int> ListAllIndices(const MotionProblem& problem) {
   std::vector<int> indices(problem.matches.size());
   std::iota(indices.begin(), indices.end(), 0);
   return indices;
@@ -83,7 +83,8 @@ TEST(RefineByReprojection, RecoversAnExactMotionFromAPerturbedStart) {
       random.problem.sigma_px = 0.5;
       const RelativePose start = Retract(random.pose_true, RandomStep(0.01, rng));
       ASSERT_GT(LocalCoordinates(random.pose_true, start).norm(), 1e-3);
-      const RefinedMotion refined = RefineByReprojection(random.problem, AllOf(random.problem), start, loss);
+      const RefinedMotion refined =
+          RefineByReprojection(random.problem, ListAllIndices(random.problem), start, loss);
       ASSERT_TRUE(refined.converged);
       EXPECT_LT(LocalCoordinates(random.pose_true, refined.cam2_from_cam1).norm(), 1e-6);
       EXPECT_NEAR(refined.cam2_from_cam1.t.norm(), 1.0, 1e-12);
@@ -99,8 +100,8 @@ TEST(RefineByReprojection, OptimumAndCovarianceAreThoseOfADenseBundleAdjustment)
   for (int i = 0; i < 15; ++i) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 20, .max_rotation_deg = 20.0});
     AddNoise(0.2, rng, &random.problem);
-    const RefinedMotion refined =
-        RefineByReprojection(random.problem, AllOf(random.problem), random.pose_true, Loss::kSquared);
+    const RefinedMotion refined = RefineByReprojection(random.problem, ListAllIndices(random.problem),
+                                                       random.pose_true, Loss::kSquared);
     ASSERT_TRUE(refined.converged);
     const DenseBundle dense = AdjustDensely(random.problem, random.pose_true, random.points_in_cam1);
     const Vector5d difference = LocalCoordinates(dense.pose, refined.cam2_from_cam1);
@@ -116,8 +117,8 @@ TEST(RefineByReprojection, CovarianceOfExactMatchesIsTheInverseFisherInformation
   for (int i = 0; i < 10; ++i) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 15, .max_rotation_deg = 20.0});
     random.problem.sigma_px = 0.5;
-    const RefinedMotion refined =
-        RefineByReprojection(random.problem, AllOf(random.problem), random.pose_true, Loss::kSquared);
+    const RefinedMotion refined = RefineByReprojection(random.problem, ListAllIndices(random.problem),
+                                                       random.pose_true, Loss::kSquared);
     ASSERT_TRUE(refined.converged);
     const DenseBundle dense = AdjustDensely(random.problem, random.pose_true, random.points_in_cam1);
     EXPECT_JACOBIAN_NEAR(refined.pose_cov, dense.pose_cov, 1e-6);
@@ -142,8 +143,8 @@ TEST(RefineByReprojection, CauchyLossWithstandsAnOutlier) {
   for (int i = 0; i < 10; ++i) {
     RandomProblem random = MakeRandomProblem(rng, {.num_matches = 60});
     AddNoise(0.1, rng, &random.problem);
-    const RefinedMotion clean =
-        RefineByReprojection(random.problem, AllOf(random.problem), random.pose_true, Loss::kSquared);
+    const RefinedMotion clean = RefineByReprojection(random.problem, ListAllIndices(random.problem),
+                                                     random.pose_true, Loss::kSquared);
     // Off by 100 px across its epipolar line.
     const Eigen::Matrix3d F = FundamentalFromEssential(EssentialFromPose(random.pose_true),
                                                        random.problem.camera1, random.problem.camera2);
@@ -152,7 +153,7 @@ TEST(RefineByReprojection, CauchyLossWithstandsAnOutlier) {
     match.x2_px += 100.0 * line.head<2>().normalized();
     const auto error = [&](Loss loss) {
       const RefinedMotion refined =
-          RefineByReprojection(random.problem, AllOf(random.problem), random.pose_true, loss);
+          RefineByReprojection(random.problem, ListAllIndices(random.problem), random.pose_true, loss);
       return LocalCoordinates(clean.cam2_from_cam1, refined.cam2_from_cam1).norm();
     };
     EXPECT_LT(error(Loss::kCauchy), 0.1 * error(Loss::kSquared));
@@ -183,7 +184,7 @@ std::vector<double> NormalizedErrors(double sigma_px, int num_trials, std::uint3
     AddNoise(sigma_px, rng, &random.problem);
     const RelativePose start = Retract(random.pose_true, RandomStep(0.002, rng));
     const RefinedMotion refined =
-        RefineByReprojection(random.problem, AllOf(random.problem), start, Loss::kSquared);
+        RefineByReprojection(random.problem, ListAllIndices(random.problem), start, Loss::kSquared);
     EXPECT_TRUE(refined.converged);
     const Vector5d error = LocalCoordinates(refined.cam2_from_cam1, random.pose_true);
     errors.push_back(error.dot(refined.pose_cov.llt().solve(error)));

@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-Eigen::Matrix3d FundamentalOf(const MotionProblem& problem, const RelativePose& pose) {
+Eigen::Matrix3d ComputeFundamental(const MotionProblem& problem, const RelativePose& pose) {
   return FundamentalFromEssential(EssentialFromPose(pose), problem.camera1, problem.camera2);
 }
 
@@ -24,7 +24,7 @@ TEST(ScoreFitted, IsThatOfTheConstraintByDifferences) {
   const std::vector<int> fitted = {1, 4, 11};
   const MatchScores scores = ScoreFitted(problem, fitted, pose);
   ASSERT_EQ(scores.residuals.size(), 3u);
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
   Matrix5d information = Matrix5d::Zero();
   for (size_t k = 0; k < 3; ++k) {
     const auto i = static_cast<size_t>(fitted[k]);
@@ -38,7 +38,8 @@ TEST(ScoreFitted, IsThatOfTheConstraintByDifferences) {
     const double sign = scores.residuals[k] * c.g > 0.0 ? 1.0 : -1.0;
     for (Eigen::Index j = 0; j < 5; ++j) {
       const auto g_at = [&](double by) {
-        return EvaluateConstraint(FundamentalOf(problem, Retract(pose, by * Vector5d::Unit(j))), match).g;
+        return EvaluateConstraint(ComputeFundamental(problem, Retract(pose, by * Vector5d::Unit(j))), match)
+            .g;
       };
       const double slope = sign * (g_at(1e-6) - g_at(-1e-6)) / 2e-6 / unit;
       EXPECT_NEAR(scores.rows[k](j), slope, 1e-5 * (1.0 + std::abs(slope))) << k << " " << j;

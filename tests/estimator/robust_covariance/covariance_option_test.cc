@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "tests/test_support/fit_of.h"
+#include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -38,7 +38,7 @@ class FixedModel : public EstimatorModel {
   int value_ = 3;
 };
 
-MotionEstimate AnswerOf(EstimatorModel& model, const MotionProblem& problem, bool is_robust) {
+MotionEstimate EstimateWithCovariance(EstimatorModel& model, const MotionProblem& problem, bool is_robust) {
   for (Parameter& parameter : model.Parameters()) {
     if (is_robust && parameter.name() == "covariance") parameter.SetFromText("robust");
   }
@@ -54,7 +54,7 @@ NoisyCase MakeNoisyCase() {
   RelativePose pose_true;
   NoisyCase made;
   made.problem = TwoCameraProblem(60, 0.5, 0.0, 1, &pose_true);
-  made.answer = FitOf(made.problem, pose_true);
+  made.answer = FitAllMatches(made.problem, pose_true);
   made.answer.counts.num_hypotheses = 77;
   return made;
 }
@@ -62,10 +62,10 @@ NoisyCase MakeNoisyCase() {
 TEST(CovarianceOption, IsTheEstimatorsOwnUnlessAsked) {
   const NoisyCase c = MakeNoisyCase();
   const auto model = WithRobustCovariance(std::make_unique<FixedModel>(c.answer));
-  EXPECT_EQ(AnswerOf(*model, c.problem, false).pose_cov, c.answer.pose_cov);
+  EXPECT_EQ(EstimateWithCovariance(*model, c.problem, false).pose_cov, c.answer.pose_cov);
   const Matrix5d expected =
       *RobustCovariance(c.problem, c.answer.cam2_from_cam1, c.answer.inliers, RobustCovarianceOptions());
-  const MotionEstimate robust = AnswerOf(*model, c.problem, true);
+  const MotionEstimate robust = EstimateWithCovariance(*model, c.problem, true);
   EXPECT_EQ(robust.pose_cov, expected);
   EXPECT_NE(robust.pose_cov, c.answer.pose_cov);
   EXPECT_EQ(robust.inliers, c.answer.inliers);
@@ -84,8 +84,8 @@ TEST(CovarianceOption, WeighsMatchesAsTheEstimatorDoes) {
   ASSERT_NE(expected(c.problem), expected(all_alike));
   const auto weighed = WithRobustCovariance(std::make_unique<FixedModel>(c.answer), true);
   const auto not_weighed = WithRobustCovariance(std::make_unique<FixedModel>(c.answer), false);
-  EXPECT_EQ(AnswerOf(*weighed, c.problem, true).pose_cov, expected(c.problem));
-  EXPECT_EQ(AnswerOf(*not_weighed, c.problem, true).pose_cov, expected(all_alike));
+  EXPECT_EQ(EstimateWithCovariance(*weighed, c.problem, true).pose_cov, expected(c.problem));
+  EXPECT_EQ(EstimateWithCovariance(*not_weighed, c.problem, true).pose_cov, expected(all_alike));
 }
 
 TEST(CovarianceOption, IsNotAddedASecondTime) {

@@ -21,7 +21,7 @@ struct DrawnResiduals {
 };
 
 // c_ij(l) of two matches, at the key points' first matches.
-double CorrelationOf(const DrawnResiduals& sample, size_t first_i, size_t first_j, double length_px) {
+double ComputeCorrelation(const DrawnResiduals& sample, size_t first_i, size_t first_j, double length_px) {
   const Correspondence &a = sample.scores.matches[first_i], &b = sample.scores.matches[first_j];
   const Eigen::Vector4d &u = sample.scores.normals[first_i], &v = sample.scores.normals[first_j];
   return u.head<2>().dot(v.head<2>()) * std::exp(-(a.x1_px - b.x1_px).norm() / length_px) +
@@ -40,7 +40,7 @@ std::vector<size_t> FirstOfEach(const std::vector<int>& groups) {
 }
 
 // K_b: what v_b stands before.
-std::array<Eigen::MatrixXd, 5> KernelsOf(const DrawnResiduals& sample) {
+std::array<Eigen::MatrixXd, 5> ComputeKernels(const DrawnResiduals& sample) {
   const std::vector<size_t> first = FirstOfEach(sample.groups);
   const auto n = static_cast<Eigen::Index>(first.size());
   std::array<Eigen::MatrixXd, 5> K;
@@ -51,14 +51,14 @@ std::array<Eigen::MatrixXd, 5> KernelsOf(const DrawnResiduals& sample) {
       const size_t a = first[static_cast<size_t>(i)], b = first[static_cast<size_t>(j)];
       K[1](i, j) = a == b;
       for (size_t k = 0; k < 3; ++k)
-        K[2 + k](i, j) = a == b ? 1.0 : CorrelationOf(sample, a, b, kLengthsPx[k]);
+        K[2 + k](i, j) = a == b ? 1.0 : ComputeCorrelation(sample, a, b, kLengthsPx[k]);
     }
   }
   return K;
 }
 
 // W_a: the quadratic forms of the moments.
-std::array<Eigen::MatrixXd, 5> WeightsOf(const std::array<Eigen::MatrixXd, 5>& K) {
+std::array<Eigen::MatrixXd, 5> ComputeWeights(const std::array<Eigen::MatrixXd, 5>& K) {
   const auto n = K[0].rows();
   const Eigen::VectorXd m = K[1].rowwise().sum();  // matches of each one's key point
   std::array<Eigen::MatrixXd, 5> W;
@@ -85,8 +85,8 @@ ResidualVariances VariancesByHand(const DrawnResiduals& sample) {
   }
   const Matrix5d inverse = Inverse(sample.scores.information);
   const Eigen::MatrixXd P = Eigen::MatrixXd::Identity(n, n) - Propagate(J, inverse);
-  const auto K = KernelsOf(sample);
-  const auto W = WeightsOf(K);
+  const auto K = ComputeKernels(sample);
+  const auto W = ComputeWeights(K);
   Eigen::VectorXd q(5);
   Eigen::MatrixXd T(5, 5), M(5, 5);
   for (int a = 0; a < 5; ++a) {
@@ -156,7 +156,7 @@ DrawnResiduals DrawSample(bool is_repeated, double own, double of_key_point, dou
     sample.scores.rows.push_back(row);
     sample.scores.information += row * row.transpose();
   }
-  const auto K = KernelsOf(sample);
+  const auto K = ComputeKernels(sample);
   const Eigen::MatrixXd V = own * K[0] + of_key_point * K[1] + of_neighbours * K[3];
   Eigen::VectorXd z(kNumMatches);
   for (double& x : z) x = rng.Normal();

@@ -268,8 +268,8 @@ TEST(RobustCovariance, CoversWhereErrorsAreCorrelatedAndMatchesRepeated) {
 struct EstimatorCoverages {
   CoverageCount robust, own;
 };
-EstimatorCoverages CoverageOf(const std::string& name, Settings options, const NoiseModel& noise,
-                              std::uint32_t num_trials) {
+EstimatorCoverages MeasureCoverages(const std::string& name, Settings options, const NoiseModel& noise,
+                                    std::uint32_t num_trials) {
   const std::unique_ptr<MotionEstimator> with_own = MakeEstimator(name, options);
   options.emplace_back("covariance", "robust");
   const std::unique_ptr<MotionEstimator> with_robust = MakeEstimator(name, options);
@@ -303,7 +303,7 @@ TEST(RobustCovariance, OfEstimatorsOfEachFamilyCoversWhereErrorsAreNotIndependen
          std::vector<std::pair<std::string, Settings>>{{"rcme_calibrated", {{"leave_out", "model_check"}}},
                                                        {"rcme", {{"reading", "rank_aware"}}},
                                                        {"m_estimator", {}}}) {
-      const EstimatorCoverages coverages = CoverageOf(name, options, *noise, 150);
+      const EstimatorCoverages coverages = MeasureCoverages(name, options, *noise, 150);
       EXPECT_GT(coverages.robust.interval().upper, 0.92) << name << " " << coverages.robust;
       EXPECT_LT(coverages.robust.interval().lower, 0.98) << name << " " << coverages.robust;
       EXPECT_LT(coverages.own.interval().upper, 0.92) << name << " " << coverages.own;
@@ -314,7 +314,7 @@ TEST(RobustCovariance, OfEstimatorsOfEachFamilyCoversWhereErrorsAreNotIndependen
 // Wrong matches of great leverage within the reach of its loss: in Gaussian noise its own covariance covers
 // .84 of 300, exact interval of confidence 0.9999 below .95.
 TEST(RobustCovariance, CoversWhatWrongMatchesDoToAnMEstimator) {
-  const EstimatorCoverages coverages = CoverageOf("m_estimator", {}, *MakeGaussianNoise(0.5), 300);
+  const EstimatorCoverages coverages = MeasureCoverages("m_estimator", {}, *MakeGaussianNoise(0.5), 300);
   EXPECT_GT(coverages.robust.interval().upper, 0.95) << coverages.robust;
   EXPECT_LT(coverages.own.interval().upper, 0.95) << coverages.own;
 }

@@ -34,7 +34,7 @@ std::optional<LinearFit> Fit(const MotionProblem& problem) {
 }
 
 // The rows kron(x2, x1), written out.
-Eigen::MatrixXd MatrixOf(const Rays& rays) {
+Eigen::MatrixXd MakeDesignMatrix(const Rays& rays) {
   Eigen::MatrixXd M(rays.first.size(), 9);
   for (size_t k = 0; k < rays.first.size(); ++k) {
     for (int row = 0; row < 3; ++row) {
@@ -79,7 +79,7 @@ TEST(FitLinear, IsTheSmallestEigenvectorAndThePseudoInverse) {
       RandomProblem random = MakeRandomProblem(rng, {.num_matches = m});
       AddNoise(1.0, rng, &random.problem);
       const LinearFit fit = Fit(random.problem).value();
-      const Eigen::MatrixXd M = MatrixOf(ComputeRays(random.problem));
+      const Eigen::MatrixXd M = MakeDesignMatrix(ComputeRays(random.problem));
       const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Multiply(M.transpose(), M));
       const double tolerance = 1e-13 / (fit.conditioning * fit.conditioning);
       EXPECT_LT(DistanceOfLines(fit.f, eigen.eigenvectors().col(0)), tolerance);
@@ -112,7 +112,7 @@ struct Jacobians {
   Eigen::MatrixXd analytic, numeric;
 };
 
-Jacobians JacobiansOf(const MotionProblem& problem, double step_px) {
+Jacobians ComputeJacobians(const MotionProblem& problem, double step_px) {
   const LinearFit fit = Fit(problem).value();
   const auto m = static_cast<Eigen::Index>(problem.matches.size());
   const auto f_of = [&](const Eigen::VectorXd& X) -> Eigen::VectorXd {
@@ -142,7 +142,7 @@ TEST(FitLinear, GHasANumericTwinWhereThereIsNoResidual) {
       const RandomProblem random = MakeRandomProblem(rng, {.num_matches = m});
       const double conditioning = Fit(random.problem).value().conditioning;
       if (conditioning < 3e-4) continue;  // the step would have to be too small for double precision
-      const Jacobians jacobians = JacobiansOf(random.problem, 20.0 * conditioning);
+      const Jacobians jacobians = ComputeJacobians(random.problem, 20.0 * conditioning);
       EXPECT_JACOBIAN_NEAR(jacobians.analytic, jacobians.numeric, 1e-5);
       ++num_compared;
     }
@@ -160,7 +160,7 @@ TEST(FitLinear, GLeavesOutNoMoreThanTheResidual) {
       RandomStream noise({.seed = 1, .trial = static_cast<std::uint32_t>(i), .purpose = 905});
       MotionProblem noisy = random.problem;
       AddNoise(sigma_px, noise, &noisy);
-      const Jacobians jacobians = JacobiansOf(noisy, 20.0 * Fit(noisy).value().conditioning);
+      const Jacobians jacobians = ComputeJacobians(noisy, 20.0 * Fit(noisy).value().conditioning);
       return (jacobians.analytic - jacobians.numeric).norm() / jacobians.numeric.norm();
     };
     const double at_1 = relative_error(0.1), at_10 = relative_error(0.01);

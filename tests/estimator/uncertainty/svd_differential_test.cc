@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-EssentialProjection ProjectionOf(const Vector9d& f) { return ProjectToEssential(Matricize(f)); }
+EssentialProjection ComputeProjection(const Vector9d& f) { return ProjectToEssential(Matricize(f)); }
 
 // A unit vector about 0.2 from an essential matrix.
 Vector9d NoisyF(RandomStream& rng) {
@@ -25,7 +25,7 @@ Vector9d NoisyF(RandomStream& rng) {
 auto MotionNear(const RelativePose& pose) {
   return [pose](const Eigen::VectorXd& f) -> Eigen::VectorXd {
     Vector5d nearest = Vector5d::Constant(10.0);
-    for (const RelativePose& moved : PosesFromEssential(ProjectionOf(f))) {
+    for (const RelativePose& moved : PosesFromEssential(ComputeProjection(f))) {
       const Vector5d tangent = LocalCoordinates(pose, moved);
       if (tangent.norm() < nearest.norm()) nearest = tangent;
     }
@@ -39,7 +39,7 @@ TEST(MotionJacobianBySvd, IsMotionJacobianAtAnEssentialMatrix) {
   for (int i = 0; i < 100; ++i) {
     const Vector9d e = Vectorize(EssentialFromPose(RandomPose(rng, 180.0))) / std::sqrt(2.0);
     for (const Vector9d& f : {e, Vector9d(-e)}) {
-      const EssentialProjection projection = ProjectionOf(f);
+      const EssentialProjection projection = ComputeProjection(f);
       for (const RelativePose& pose : PosesFromEssential(projection)) {
         const double sign = Vectorize(EssentialFromPose(pose)).dot(f) > 0.0 ? 1.0 : -1.0;
         EXPECT_JACOBIAN_NEAR(MotionJacobianBySvd(projection, pose), sign * MotionJacobian(pose), 1e-13);
@@ -55,7 +55,7 @@ TEST(MotionJacobianBySvd, HasANumericTwinAwayFromTheEssentialMatrices) {
   double least_difference = 1.0;
   for (int i = 0; i < 100; ++i) {
     const Vector9d f = NoisyF(rng);
-    const EssentialProjection projection = ProjectionOf(f);
+    const EssentialProjection projection = ComputeProjection(f);
     const double gap = projection.singular_values(1) - std::abs(projection.singular_values(2));
     if (gap < 0.1) continue;  // there the step would have to be too small for double precision
     num_positive += projection.singular_values(2) > 0.0 ? 1 : 0;
@@ -78,7 +78,7 @@ TEST(MotionJacobianBySvd, DoesNotSeeTheScaleOfF) {
   RandomStream rng({.seed = 1, .purpose = 242});
   for (int i = 0; i < 50; ++i) {
     const Vector9d f = NoisyF(rng);
-    const EssentialProjection projection = ProjectionOf(f);
+    const EssentialProjection projection = ComputeProjection(f);
     for (const RelativePose& pose : PosesFromEssential(projection)) {
       const Eigen::Matrix<double, 5, 9> jacobian = MotionJacobianBySvd(projection, pose);
       EXPECT_LT((jacobian * f).norm(), 1e-13 * jacobian.norm());

@@ -9,6 +9,7 @@
 
 #include "experiments/conform/conform_output.h"
 #include "experiments/conform/conform_report.h"
+#include "experiments/conform/cross_validate.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"

@@ -147,9 +147,9 @@ TEST_F(MatchFileTest, AColumnMayGiveEachMatchItsOwnSigma) {
 
 // Each over their median; how large they are all together is not passed on.
 TEST_F(MatchFileTest, EstimatorsAreToldHowTheSigmasCompare) {
-  EXPECT_TRUE(ProblemOf(Read(FullText()), 0.7).noise_scale.empty());
+  EXPECT_TRUE(MakeMotionProblem(Read(FullText()), 0.7).noise_scale.empty());
   const std::string rows = MatchHeader() + "x1,y1,x2,y2,sigma_px\n1,2,3,4,0.5\n5,6,7,8,4\n9,1,2,3,2\n";
-  const MotionProblem problem = ProblemOf(Read(rows), 0.7);
+  const MotionProblem problem = MakeMotionProblem(Read(rows), 0.7);
   EXPECT_EQ(problem.noise_scale, (std::vector<double>{0.25, 2.0, 1.0}));
   EXPECT_EQ(problem.sigma_px, 0.7);
   EXPECT_EQ(problem.matches.size(), 3u);

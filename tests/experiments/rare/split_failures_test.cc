@@ -34,7 +34,7 @@ std::vector<RareCell> SplitBy(std::uint64_t seed, int num_threads) {
 }
 
 // What a replicate went through.
-std::vector<double> PathOf(const SplittingReplicate& replicate) {
+std::vector<double> ListSteps(const SplittingReplicate& replicate) {
   std::vector<double> path = replicate.shares;
   path.insert(path.end(), replicate.acceptance.begin(), replicate.acceptance.end());
   path.push_back(static_cast<double>(replicate.num_ancestors));
@@ -50,14 +50,14 @@ TEST(SplitFailures, HasStreamsOfItsOwnForEachReplicate) {
     ASSERT_EQ(cells[c].condition, c);
     ASSERT_EQ(cells[c].replicates.size(), 4u);
     for (size_t r = 0; r < 4; ++r) {
-      EXPECT_EQ(PathOf(cells[c].replicates[r]), PathOf(again[c].replicates[r]));
-      paths.insert(PathOf(cells[c].replicates[r]));
+      EXPECT_EQ(ListSteps(cells[c].replicates[r]), ListSteps(again[c].replicates[r]));
+      paths.insert(ListSteps(cells[c].replicates[r]));
     }
     EXPECT_EQ(cells[c].rate.estimate, again[c].rate.estimate);
   }
   EXPECT_GE(paths.size(), 6u);  // of eight, whose shares may agree by chance
   EXPECT_NE(cells[0].pilot.levels.levels, cells[1].pilot.levels.levels);
-  EXPECT_NE(PathOf(cells[0].replicates[0]), PathOf(other[0].replicates[0]));
+  EXPECT_NE(ListSteps(cells[0].replicates[0]), ListSteps(other[0].replicates[0]));
 }
 
 // The mean of the replicates is the rate.
@@ -85,7 +85,8 @@ TEST(SplitFailures, DrawsFromTheStreamsOfItsConditions) {
     EXPECT_EQ(pilot.levels.levels, cells[c].pilot.levels.levels);
     for (size_t r = 0; r < cells[c].replicates.size(); ++r) {
       RandomStream rng = stream_of(static_cast<std::uint32_t>(r) + 1);
-      EXPECT_EQ(PathOf(Split(system, kEffort.splitting, pilot.levels, rng)), PathOf(cells[c].replicates[r]));
+      EXPECT_EQ(ListSteps(Split(system, kEffort.splitting, pilot.levels, rng)),
+                ListSteps(cells[c].replicates[r]));
     }
   }
 }

@@ -37,7 +37,8 @@ TEST(StratifyFailures, RunsTheShareThatWasAskedFor) {
 
 // The easiest trials are run once in 64, none less often; where hardly any is run all strata are used.
 TEST(StratifyFailures, GoesToTheEasiestStratum) {
-  const StratifiedCell cell = StratifyInMemory(EasyAndHardPlan(), {.num_trials = 4000, .run_share = 0.02}, 2)[0];
+  const StratifiedCell cell =
+      StratifyInMemory(EasyAndHardPlan(), {.num_trials = 4000, .run_share = 0.02}, 2)[0];
   std::int64_t num_trials = 0;
   for (const StratumCount& count : cell.strata) num_trials += count.num_trials;
   EXPECT_EQ(num_trials, 4000);
@@ -48,7 +49,7 @@ TEST(StratifyFailures, GoesToTheEasiestStratum) {
 }
 
 // The chances of failure that the bounds of a condition's trials tell, the greatest first.
-std::vector<double> ChancesOf(const StudyPlan& plan, std::uint32_t num_trials) {
+std::vector<double> ComputeFailureChances(const StudyPlan& plan, std::uint32_t num_trials) {
   const CaseMaker make = StudyCases(plan, plan.conditions[0]);
   std::vector<double> chances;
   for (std::uint32_t trial = 0; trial < num_trials; ++trial) {
@@ -66,7 +67,7 @@ TEST(StratifyFailures, EndAtQuartersOfTheChance) {
   constexpr std::uint32_t kTrials = 3000;
   const StudyPlan plan = EasyAndHardPlan();
   const StratifiedCell cell = StratifyInMemory(plan, {.num_trials = kTrials, .run_share = 0.1}, 2)[0];
-  const std::vector<double> chances = ChancesOf(plan, kTrials);
+  const std::vector<double> chances = ComputeFailureChances(plan, kTrials);
   std::vector<Interval> ends;
   size_t num_within = 0;
   for (size_t k = 0; k + 1 < kNumStrata; ++k) {

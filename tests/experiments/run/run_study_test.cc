@@ -20,7 +20,7 @@
 namespace rcme {
 namespace {
 
-Study StudyOf(int trials) {
+Study MakeStudy(int trials) {
   Study study = SmallStudy();
   study.trials = trials;
   return study;
@@ -68,14 +68,14 @@ class QuickEstimator : public MotionEstimator {
 };
 
 StudyPlan QuickPlan(int trials) {
-  StudyPlan plan = MakePlan(StudyOf(trials));
+  StudyPlan plan = MakePlan(MakeStudy(trials));
   for (Condition& condition : plan.conditions) condition.source = std::make_shared<QuickData>();
   for (auto& estimator : plan.estimators) estimator = std::make_shared<QuickEstimator>();
   return plan;
 }
 
 TEST_F(RunStudyTest, ThreadsChangeNothing) {
-  const StudyPlan plan = MakePlan(StudyOf(21));
+  const StudyPlan plan = MakePlan(MakeStudy(21));
   const RunReport report = Run("one", plan, 1);
   EXPECT_EQ(report.num_trials, 42);
   EXPECT_EQ(report.num_run_now, 42);
@@ -89,7 +89,7 @@ TEST_F(RunStudyTest, ThreadsChangeNothing) {
 }
 
 TEST_F(RunStudyTest, RecordsAreThoseOfRunTrial) {
-  const StudyPlan plan = MakePlan(StudyOf(3));
+  const StudyPlan plan = MakePlan(MakeStudy(3));
   Run("run", plan, 2);
   std::string expected;
   for (const Condition& condition : plan.conditions) {
@@ -102,7 +102,7 @@ TEST_F(RunStudyTest, RecordsAreThoseOfRunTrial) {
 }
 
 TEST_F(RunStudyTest, ResumingGivesTheSame) {
-  const StudyPlan plan = MakePlan(StudyOf(20));
+  const StudyPlan plan = MakePlan(MakeStudy(20));
   Run("whole", plan, 1);
   {  // what a run leaves that was cut off: some trials, with gaps
     ResultStore store = ResultStore::OpenForRun(folder_.Path("resumed"), plan);
@@ -171,16 +171,16 @@ TEST_F(RunStudyTest, TenTimesTheTrialsNeedNoMoreMemory) {
 }
 
 TEST_F(RunStudyTest, MoreTrialsExtendARun) {
-  Run("whole", MakePlan(StudyOf(20)), 1);
-  EXPECT_EQ(Run("extended", MakePlan(StudyOf(5)), 1).num_run_now, 10);
-  EXPECT_EQ(Run("extended", MakePlan(StudyOf(20)), 1).num_run_now, 30);
+  Run("whole", MakePlan(MakeStudy(20)), 1);
+  EXPECT_EQ(Run("extended", MakePlan(MakeStudy(5)), 1).num_run_now, 10);
+  EXPECT_EQ(Run("extended", MakePlan(MakeStudy(20)), 1).num_run_now, 30);
   EXPECT_EQ(Records("extended"), Records("whole"));
-  EXPECT_EQ(Run("extended", MakePlan(StudyOf(5)), 1).num_run_now, 0);
+  EXPECT_EQ(Run("extended", MakePlan(MakeStudy(5)), 1).num_run_now, 0);
   EXPECT_EQ(Records("extended"), Records("whole")) << "fewer trials than before must lose none";
 }
 
 TEST_F(RunStudyTest, AnImpossibleSceneArrivesAsInputErrorAndWhatWasDoneIsKept) {
-  Study study = StudyOf(20);
+  Study study = MakeStudy(20);
   study.factors = {{"baseline_m", {"1", "1e6"}}};  // from a baseline of 1,000 km image 2 sees nothing
   const StudyPlan plan = MakePlan(study);
   for (const int num_threads : {1, 2}) {
@@ -202,7 +202,7 @@ class FailingData : public DataSource {
 };
 
 TEST_F(RunStudyTest, OtherErrorsArriveAsTheyAre) {
-  StudyPlan plan = MakePlan(StudyOf(20));
+  StudyPlan plan = MakePlan(MakeStudy(20));
   plan.conditions[1].source = std::make_shared<FailingData>();
   EXPECT_THROW(Run("run", plan, 2), std::runtime_error);
   EXPECT_NO_THROW(Records("run"));

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "experiments/statistics/summarize.h"
 #include "experiments/run/store/merge_results.h"
+#include "experiments/statistics/summarize.h"
 #include "stats/confidence_sequence.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
@@ -31,7 +31,7 @@ class RunUntilTest : public testing::Test {
     ResultStore store = ResultStore::OpenForRun(folder_.Path(name), plan_);
     return RunUntil(plan_, options, &store);
   }
-  std::string CsvOf(const std::string& name) {
+  std::string ReadRecordTexts(const std::string& name) {
     std::string text;
     ResultStore::OpenForReading(folder_.Path(name)).ForEachRecord([&](const TrialRecord& record) {
       text += RecordText(record) + "\n";
@@ -77,7 +77,7 @@ TEST_F(RunUntilTest, TheSameTrialsWhateverTheThreadsAndHoweverOftenItWasCutOff) 
     ResultStore store = ResultStore::OpenForRun(folder_.Path("parts"), plan_);
     for (const std::uint32_t trial : {101u, 130u}) {  // as if killed within a round
       const TrialResult result = RunTrial(plan_, plan_.conditions[1], trial);
-      if (store.RecordsOf(1, trial).empty()) store.Add({result.problem}, result.records);
+      if (store.ReadTrialRecords(1, trial).empty()) store.Add({result.problem}, result.records);
     }
   }
   const std::vector<CellPrecision> parts = Run("parts", Until("ci=0.08", 1'000'000, 2));
@@ -85,7 +85,7 @@ TEST_F(RunUntilTest, TheSameTrialsWhateverTheThreadsAndHoweverOftenItWasCutOff) 
     EXPECT_EQ(whole[c].num_trials, parts[c].num_trials);
     EXPECT_EQ(whole[c].rate, parts[c].rate);
   }
-  EXPECT_EQ(CsvOf("whole"), CsvOf("parts"));
+  EXPECT_EQ(ReadRecordTexts("whole"), ReadRecordTexts("parts"));
 }
 
 // Two shards in rounds, one of which is lost once: the trials of one run, and so its tables.
@@ -114,7 +114,7 @@ TEST_F(RunUntilTest, ShardsInRoundsRunTheTrialsOfOneRun) {
         << "how many there are to be is not known";
   }
   EXPECT_GT(num_rounds, 3);
-  EXPECT_EQ(CsvOf("whole"), CsvOf(std::filesystem::path(merged).filename()));
+  EXPECT_EQ(ReadRecordTexts("whole"), ReadRecordTexts(std::filesystem::path(merged).filename()));
   ResultStore store = ResultStore::OpenForRun(merged, plan_);
   const std::int64_t num_before = store.NumTrials();
   const std::vector<CellPrecision> cells = RunUntil(plan_, options, &store);

@@ -52,8 +52,8 @@ class CompareTest : public testing::Test {
       for (int i = 0; i < count; ++i) AddRecords(store, Trial(0, trial++, letters));
     }
   }
-  Comparison ComparisonOf(const std::string& name, const std::string& reference = "",
-                          const CompareOptions& options = {}) {
+  Comparison CompareRun(const std::string& name, const std::string& reference = "",
+                        const CompareOptions& options = {}) {
     return Compare(ResultStore::OpenForReading(folder_.Path(name)), reference, options);
   }
   static ComparisonRow Row(const Comparison& comparison, const std::string& event,
@@ -84,17 +84,17 @@ TEST_F(CompareTest, PooledConditionsAreOne) {
   }
   CompareOptions options;
   options.pooling = Pooling::kPooled;
-  const Comparison pooled = ComparisonOf("run", "", options);
+  const Comparison pooled = CompareRun("run", "", options);
   EXPECT_TRUE(pooled.factor_names.empty());
   const ComparisonRow row = Row(pooled, "failure");
   ExpectCounts(row.counts, {.both = 0, .first_only = 1, .second_only = 5, .neither = 4});
   EXPECT_NEAR(row.p_value, 2.0 * (1.0 + 6.0) / 64.0, 1e-12);  // two-sided binomial of 1 in 6
-  EXPECT_EQ(Row(ComparisonOf("run"), "failure", "ours", 1).counts.second_only, 2);
+  EXPECT_EQ(Row(CompareRun("run"), "failure", "ours", 1).counts.second_only, 2);
 }
 
 TEST_F(CompareTest, CountsByHand) {
   Write("run", {{"ss", 5}, {"sf", 1}, {"fs", 3}, {"ff", 2}, {"rs", 4}, {"sr", 1}, {"fr", 2}, {"rr", 1}});
-  const Comparison comparison = ComparisonOf("run");
+  const Comparison comparison = CompareRun("run");
   EXPECT_EQ(comparison.reference, "standard");
   EXPECT_EQ(comparison.num_trials_done, 19);
   EXPECT_EQ(comparison.rows.size(), 2 * 3);  // two conditions, three events, one pair
@@ -107,7 +107,7 @@ TEST_F(CompareTest, CountsByHand) {
 
 TEST_F(CompareTest, ATrialThatOneMotionIsNotScoredInTellsNothingOfFailures) {
   Write("run", {{"ss", 5}, {"uf", 2}, {"su", 3}, {"uu", 1}, {"ru", 4}, {"fs", 1}, {"rs", 1}});
-  const Comparison comparison = ComparisonOf("run");
+  const Comparison comparison = CompareRun("run");
   // both, ours only, standard only, neither
   ExpectCounts(Row(comparison, "failure").counts, {0, 0, 1, 6});
   ExpectCounts(Row(comparison, "refusal").counts, {0, 0, 5, 12});
@@ -117,7 +117,7 @@ TEST_F(CompareTest, ATrialThatOneMotionIsNotScoredInTellsNothingOfFailures) {
 TEST_F(CompareTest, PublishedIntervalAndPValue) {
   // Tango's interval and McNemar's p-value as in stats/paired_test.cc: (1, 1, 7, 12).
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
-  const ComparisonRow row = Row(ComparisonOf("run"), "failure");
+  const ComparisonRow row = Row(CompareRun("run"), "failure");
   EXPECT_NEAR(row.interval.lower, -0.517232276, 2e-9);
   EXPECT_NEAR(row.interval.upper, -0.026003034, 2e-9);
   EXPECT_NEAR(row.p_value, 0.0703125, 1e-12);
@@ -126,7 +126,7 @@ TEST_F(CompareTest, PublishedIntervalAndPValue) {
 
 TEST_F(CompareTest, AnotherReferenceMirrorsTheComparison) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
-  const Comparison comparison = ComparisonOf("run", "ours");
+  const Comparison comparison = CompareRun("run", "ours");
   const ComparisonRow row = Row(comparison, "failure", "standard");
   EXPECT_EQ(comparison.reference, "ours");
   ExpectCounts(row.counts, {1, 7, 1, 12});
@@ -141,7 +141,7 @@ TEST_F(CompareTest, HolmGoesOverAllEventsEstimatorsAndConditions) {
   study_.estimators[2].label = "third";
   // ours fails alone in 8 of 12: p = 2 / 2^8; third in 4: p = 2 / 2^4; nobody refuses: p = 1.
   Write("run", {{"sff", 4}, {"sfs", 4}, {"sss", 4}});
-  const Comparison one = ComparisonOf("run");
+  const Comparison one = CompareRun("run");
   const double p8 = 2.0 / 256.0, p4 = 2.0 / 16.0;
   EXPECT_DOUBLE_EQ(Row(one, "failure", "ours").p_value, p8);
   EXPECT_DOUBLE_EQ(Row(one, "failure", "ours").holm_p_value, 6 * p8) << "two estimators, three events";
@@ -155,12 +155,12 @@ TEST_F(CompareTest, HolmGoesOverAllEventsEstimatorsAndConditions) {
     ResultStore store = ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_));
     for (std::uint32_t trial = 0; trial < 4; ++trial) AddRecords(store, Trial(1, trial, "sss"));
   }
-  EXPECT_DOUBLE_EQ(Row(ComparisonOf("run"), "failure", "ours").holm_p_value, 12 * p8);
+  EXPECT_DOUBLE_EQ(Row(CompareRun("run"), "failure", "ours").holm_p_value, 12 * p8);
 }
 
 TEST_F(CompareTest, NoTrialsNoNumbers) {
   Write("run", {{"sf", 1}});
-  const ComparisonRow row = Row(ComparisonOf("run"), "failure", "ours", 1);
+  const ComparisonRow row = Row(CompareRun("run"), "failure", "ours", 1);
   EXPECT_EQ(row.n, 0);
   EXPECT_TRUE(std::isnan(row.difference) && std::isnan(row.p_value) && std::isnan(row.holm_p_value));
   EXPECT_EQ(row.interval.lower, -1.0);
@@ -176,7 +176,7 @@ TEST_F(CompareTest, RatesAreThoseOfTheSummary) {
     }
     return -1.0;
   };
-  const Comparison comparison = ComparisonOf("run");
+  const Comparison comparison = CompareRun("run");
   const double failure = rate("ours", "failure") - rate("standard", "failure");
   const double refusal = rate("ours", "no_candidate") - rate("standard", "no_candidate");
   EXPECT_NEAR(Row(comparison, "failure").difference, failure, 1e-12);
@@ -187,19 +187,19 @@ TEST_F(CompareTest, RatesAreThoseOfTheSummary) {
 TEST_F(CompareTest, OneEstimatorHasNothingToCompare) {
   study_.estimators.pop_back();
   Write("run", {{"s", 3}});
-  EXPECT_TRUE(ComparisonOf("run").rows.empty());
-  EXPECT_EQ(ComparisonOf("run").num_trials_done, 3);
+  EXPECT_TRUE(CompareRun("run").rows.empty());
+  EXPECT_EQ(CompareRun("run").num_trials_done, 3);
 }
 
 TEST_F(CompareTest, ABadLabelNamesWhatIsAllowed) {
   Write("run", {{"ss", 1}});
-  EXPECT_TRUE(ThrowsInputError([&] { ComparisonOf("run", "rcme"); },
+  EXPECT_TRUE(ThrowsInputError([&] { CompareRun("run", "rcme"); },
                                {"--against", "'rcme'", "'small'", "allowed: standard, ours"}));
 }
 
 TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
-  const Comparison comparison = ComparisonOf("run");
+  const Comparison comparison = CompareRun("run");
   std::istringstream csv(ComparisonAsCsv(comparison));
   std::vector<std::string> lines;
   for (std::string line; std::getline(csv, line);) lines.push_back(line);
@@ -246,7 +246,7 @@ class CompareMeasuresTest : public CompareTest {
 TEST_F(CompareMeasuresTest, ScoresByHand) {
   // AUC@10 of standard: 0.9, 0.5, 0, 0.8 and a refusal; of ours: 1, 0.8, 0.2, a refusal, a refusal.
   Write("run", {{1.0, 0.0}, {5.0, 2.0}, {20.0, 8.0}, {2.0, -1.0}, {-1.0, -1.0}});
-  const Comparison comparison = ComparisonOf("run", "", {.compared = {"scores"}});
+  const Comparison comparison = CompareRun("run", "", {.compared = {"scores"}});
   EXPECT_EQ(comparison.rows.size(), 2 * (TrialScores().size() + 1)) << "and Brier";
   const ComparisonRow row = Row(comparison, "auc_10_deg");
   ScoreMean expected({-1.0, 1.0});
@@ -263,7 +263,7 @@ TEST_F(CompareMeasuresTest, ScoresByHand) {
   EXPECT_NEAR(answered.difference, 0.2, 1e-12);
   // The other way round it is the same with the sign changed.
   const ComparisonRow mirrored =
-      Row(ComparisonOf("run", "ours", {.compared = {"scores"}}), "auc_10_deg", "standard");
+      Row(CompareRun("run", "ours", {.compared = {"scores"}}), "auc_10_deg", "standard");
   EXPECT_NEAR(mirrored.difference, 0.04, 1e-12);
   EXPECT_NEAR(mirrored.p_value, row.p_value, 1e-9);
   EXPECT_NEAR(mirrored.interval.lower, -row.interval.upper, 1e-9);
@@ -272,7 +272,7 @@ TEST_F(CompareMeasuresTest, ScoresByHand) {
 TEST_F(CompareMeasuresTest, ErrorsByHand) {
   // Ours minus standard: -1 (6 times), -3, +2, refused by ours alone: infinitely greater, and by both: equal.
   Write("run", {{2, 1}, {2, 1}, {2, 1}, {2, 1}, {2, 1}, {2, 1}, {5, 2}, {1, 3}, {1, -1}, {-1, -1}});
-  const ComparisonRow row = Row(ComparisonOf("run", "", {.compared = {"errors"}}), "max_error_median_deg");
+  const ComparisonRow row = Row(CompareRun("run", "", {.compared = {"errors"}}), "max_error_median_deg");
   ExpectCounts(row.counts, {0, 2, 7, 1});  // greater, less, equal
   EXPECT_EQ(row.n, 10);
   EXPECT_EQ(row.difference, -1.0);
@@ -287,12 +287,12 @@ TEST_F(CompareMeasuresTest, WhatLooksAgainAndAgainGetsTestsThatAreValidAtEveryLo
   const CompareOptions all{.compared = {"failure", "max_error_median_deg"}};
   CompareOptions asked_for = all;
   asked_for.is_anytime_valid = true;
-  const ComparisonRow once = Row(ComparisonOf("run", "", all), "failure");
+  const ComparisonRow once = Row(CompareRun("run", "", all), "failure");
   EXPECT_EQ(once.p_value, McNemarExactPValue(once.counts));
   EXPECT_FALSE(once.is_anytime_valid);
-  const Comparison by_hand = ComparisonOf("run", "", asked_for);
+  const Comparison by_hand = CompareRun("run", "", asked_for);
   ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_)).NoteStoppingRule("a reason");
-  const Comparison stopped = ComparisonOf("run", "", all);
+  const Comparison stopped = CompareRun("run", "", all);
   EXPECT_TRUE(stopped.caution.empty());
   ScoreMean difference({-1.0, 1.0});  // the concordant trials count as zero
   difference.Add(1.0, 2);
@@ -326,7 +326,7 @@ TEST_F(CompareMeasuresTest, OnlyWhatIsAskedForIsComparedAndCostsTheOthersAnythin
   Write("run", {{1.0, 0.0}, {5.0, 2.0}, {20.0, 8.0}});
   const auto names_of = [&](const std::vector<std::string>& compared) {
     std::vector<std::string> names;
-    for (const Compared& each : ComparisonOf("run", "", {.compared = compared}).compared)
+    for (const Compared& each : CompareRun("run", "", {.compared = compared}).compared)
       names.push_back(each.name);
     return names;
   };
@@ -334,7 +334,7 @@ TEST_F(CompareMeasuresTest, OnlyWhatIsAskedForIsComparedAndCostsTheOthersAnythin
   EXPECT_EQ(names_of({"auc_5_deg", "failure", "auc_5_deg"}),
             (std::vector<std::string>{"failure", "auc_5_deg"}));
   EXPECT_EQ(names_of({"events", "scores", "errors"}).size(), AllCompared().size());
-  const Comparison two = ComparisonOf("run", "", {.compared = {"auc_5_deg", "max_error_median_deg"}});
+  const Comparison two = CompareRun("run", "", {.compared = {"auc_5_deg", "max_error_median_deg"}});
   EXPECT_DOUBLE_EQ(Row(two, "max_error_median_deg").p_value, 0.25);
   EXPECT_DOUBLE_EQ(Row(two, "max_error_median_deg").holm_p_value, 0.5);
   EXPECT_TRUE(
@@ -348,7 +348,7 @@ TEST_F(CompareMeasuresTest, RepeatedScenesAreComparedByTheirMeans) {
   // Failures (beyond 3 deg) of standard and ours, trial by trial: 10, 00 | 11, 10 | 00.
   Write("run", {{10.0, 1.0}, {1.0, 1.0}, {10.0, 10.0}, {10.0, 2.0}, {1.0, 1.0}});
   const Comparison comparison =
-      ComparisonOf("run", "", {.compared = {"failure", "auc_20_deg", "max_error_median_deg"}});
+      CompareRun("run", "", {.compared = {"failure", "auc_20_deg", "max_error_median_deg"}});
   ScoreMean failure({-1.0, 1.0}), area({-1.0, 1.0});
   failure.Add(-0.5, 2), failure.Add(0.0);
   area.Add((0.45 + 0.0) / 2.0), area.Add((0.0 + 0.4) / 2.0), area.Add(0.0);
@@ -370,7 +370,7 @@ TEST_F(CompareMeasuresTest, RepeatedScenesAreComparedByTheirMeans) {
 
 TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
-  const std::string table = ComparisonAsTable(ComparisonOf("run"));
+  const std::string table = ComparisonAsTable(CompareRun("run"));
   EXPECT_TRUE(std::regex_search(table, std::regex("ours +21 +1 +1 +7 +12\\n")))
       << table;  // n, both, ours only
   for (const char* part : {"Study small against standard: 21 of 12 trials done", "standard only",

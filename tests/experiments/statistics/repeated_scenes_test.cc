@@ -30,7 +30,7 @@ class RepeatedScenesTest : public SummarizedRun {
     Write("repeated", records);
   }
   SummaryRow FindRow(const std::string& quantity, const std::string& estimator = "standard") {
-    for (const SummaryRow& row : SummaryOf("repeated", true).rows) {
+    for (const SummaryRow& row : SummarizeRun("repeated", true).rows) {
       if (row.quantity == quantity && row.condition == 0 && row.estimator == estimator) return row;
     }
     ADD_FAILURE() << "no row of " << quantity;
@@ -96,19 +96,19 @@ TEST_F(RepeatedScenesTest, ScenesOfBothOutcomesAndSharesAreThoseOfWholeScenes) {
   EXPECT_EQ(FindRow("refusal_flips").value, 0.0);
   EXPECT_EQ(FindRow("refusal_flips").n, 37) << "a refusal needs no truth";
   EXPECT_EQ(FindRow("refusal_within_scenes").n, 0) << "nothing varies";
-  const std::string table = SummaryAsTable(SummaryOf("repeated"));
+  const std::string table = SummaryAsTable(SummarizeRun("repeated"));
   for (const std::string part :
        {"3 trials per scene", "failure_between_scenes", "depends on the sampler's seed",
         "standard: 38.89 % [23.14, 56.54] of the scenes at outlier_ratio 0", "n counts scenes",
         "estimator  scenes  failure"})
     EXPECT_NE(table.find(part), std::string::npos) << part << " is not in\n" << table;
-  EXPECT_EQ(nlohmann::json::parse(SummaryAsJson(SummaryOf("repeated")))["repeats_per_scene"], 3);
+  EXPECT_EQ(nlohmann::json::parse(SummaryAsJson(SummarizeRun("repeated")))["repeats_per_scene"], 3);
 }
 
 TEST_F(RepeatedScenesTest, WithoutRepeatsNothingOfThisIsThere) {
-  for (const SummaryRow& row : SummaryOf("run").rows)
+  for (const SummaryRow& row : SummarizeRun("run").rows)
     EXPECT_EQ(row.quantity.find("_flips"), std::string::npos);
-  EXPECT_EQ(SummaryAsTable(SummaryOf("run")).find("sampler"), std::string::npos);
+  EXPECT_EQ(SummaryAsTable(SummarizeRun("run")).find("sampler"), std::string::npos);
 }
 
 }  // namespace

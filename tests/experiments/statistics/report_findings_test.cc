@@ -39,7 +39,7 @@ SummaryRow Rate(const std::string& quantity, const std::string& label, const std
   return row;
 }
 
-TEST(FindingsOf, NamesTheEndsOfEveryRangeAndWhatTheTestsTell) {
+TEST(ListFindings, NamesTheEndsOfEveryRangeAndWhatTheTestsTell) {
   Summary summary;
   summary.factor_names = {"outlier_ratio"};
   summary.rows = {Failure(0, "0.1", "standard", 0.02), Failure(0, "0.1", "ours", 0.05),
@@ -51,7 +51,7 @@ TEST(FindingsOf, NamesTheEndsOfEveryRangeAndWhatTheTestsTell) {
                      Difference(1, "refusal", 0.1, 0.001)};
   comparison.rows[1].levels = {"0.4"};
   comparison.rows[1].interval = {-0.3, -0.2};
-  const std::vector<std::string> sentences = FindingsOf(summary, comparison, {});
+  const std::vector<std::string> sentences = ListFindings(summary, comparison, {});
   ASSERT_EQ(sentences.size(), 3u);
   EXPECT_THAT(sentences[0],
               HasSubstr("Against standard on the same trials ours fails less often in 1 (by -25.00 points "
@@ -64,7 +64,7 @@ TEST(FindingsOf, NamesTheEndsOfEveryRangeAndWhatTheTestsTell) {
   EXPECT_EQ(sentences[2], "Failure rate of ours: 5.00 % [2.50, 10.00] throughout.");
 }
 
-TEST(FindingsOf, WhatMattersMostComesFirst) {
+TEST(ListFindings, WhatMattersMostComesFirst) {
   Summary summary;
   summary.factor_names = {"outlier_ratio"};
   summary.rows = {
@@ -81,7 +81,7 @@ TEST(FindingsOf, WhatMattersMostComesFirst) {
   forecast.mean_probability = 0.1;
   forecast.failure.value = 0.2;
   forecast.failure.interval = {0.15, 0.25};
-  const std::vector<std::string> sentences = FindingsOf(summary, comparison, {forecast});
+  const std::vector<std::string> sentences = ListFindings(summary, comparison, {forecast});
   ASSERT_EQ(sentences.size(), 6u);
   EXPECT_EQ(
       sentences[0],
@@ -98,18 +98,18 @@ TEST(FindingsOf, WhatMattersMostComesFirst) {
   EXPECT_THAT(sentences[5], HasSubstr("Failure rate of a"));
 }
 
-TEST(FindingsOf, TheOneAheadComesBeforeTheOneBehind) {
+TEST(ListFindings, TheOneAheadComesBeforeTheOneBehind) {
   Comparison comparison;
   comparison.reference = "c";
   comparison.rows = {Difference(0, "failure", 0.3, 0.001), Difference(0, "failure", -0.2, 0.001)};
   comparison.rows[0].estimator = "behind";
-  const std::vector<std::string> sentences = FindingsOf({}, comparison, {});
+  const std::vector<std::string> sentences = ListFindings({}, comparison, {});
   ASSERT_EQ(sentences.size(), 2u);
   EXPECT_THAT(sentences[0], HasSubstr("ours fails less often"));
   EXPECT_THAT(sentences[1], HasSubstr("behind fails more often"));
 }
 
-TEST(FindingsOf, RightProbabilitiesAndSmallSamplesAreNoFinding) {
+TEST(ListFindings, RightProbabilitiesAndSmallSamplesAreNoFinding) {
   Summary summary;
   summary.rows = {Rate("nees_coverage", "a", "", 0.8, 0.15)};
   summary.rows[0].levels = {};
@@ -118,10 +118,10 @@ TEST(FindingsOf, RightProbabilitiesAndSmallSamplesAreNoFinding) {
   forecast.mean_probability = 0.2;
   forecast.failure.value = 0.2;
   forecast.failure.interval = {0.15, 0.25};
-  EXPECT_TRUE(FindingsOf(summary, {}, {forecast}).empty());
+  EXPECT_TRUE(ListFindings(summary, {}, {forecast}).empty());
 }
 
-TEST(FindingsOf, SaysNothingOfNothing) { EXPECT_TRUE(FindingsOf({}, {}, {}).empty()); }
+TEST(ListFindings, SaysNothingOfNothing) { EXPECT_TRUE(ListFindings({}, {}, {}).empty()); }
 
 }  // namespace
 }  // namespace rcme

@@ -126,7 +126,7 @@ TEST_F(SummarizeTest, MedianErrorsByHand) {
 // What was there before stands before what was added: files of old and new programs can be compared line by
 // line.
 TEST_F(SummarizeTest, ScoresAndMedianErrorsComeLast) {
-  const std::vector<SummaryRow> rows = SummaryOf("run", true).rows;
+  const std::vector<SummaryRow> rows = SummarizeRun("run", true).rows;
   const auto time = std::ranges::find(rows, "time_ms", &SummaryRow::quantity);
   ASSERT_NE(time, rows.end());
   EXPECT_EQ((time + 1)->quantity, "mean_time_ms");
@@ -147,7 +147,7 @@ TEST_F(SummarizeTest, AnInfiniteNeesCountsInTheMedian) {
   Write("run", records);
   EXPECT_EQ(Row("nees_median", 1).n, 9);
   EXPECT_EQ(Row("nees_median", 1).value, 7.0);  // of 3 .. 8 and three infinite ones
-  EXPECT_NE(SummaryAsCsv(SummaryOf("run")).find(",nees_median,median,7,4,,,9,,,\n"), std::string::npos)
+  EXPECT_NE(SummaryAsCsv(SummarizeRun("run")).find(",nees_median,median,7,4,,,9,,,\n"), std::string::npos)
       << "an infinite end is empty";
 }
 
@@ -166,7 +166,7 @@ std::vector<TrialRecord> Covered(int num_covered, int n) {
 TEST_F(SummarizeTest, CoverageHasAVerdictAndWhatWouldDecide) {
   const auto verdict_of = [&](const std::string& name, int num_covered, int n) {
     Write(name, Covered(num_covered, n));
-    for (const SummaryRow& row : SummaryOf(name).rows) {
+    for (const SummaryRow& row : SummarizeRun(name).rows) {
       if (row.condition == 1 && row.quantity == "nees_coverage") return row.coverage_verdict.value();
     }
     return CoverageVerdict();
@@ -177,13 +177,13 @@ TEST_F(SummarizeTest, CoverageHasAVerdictAndWhatWouldDecide) {
   EXPECT_EQ(verdict_of("too few", 180, 200).verdict, RegionVerdict::kTooNarrow);   // [.850, .938]
   EXPECT_EQ(verdict_of("too many", 1990, 2000).verdict, RegionVerdict::kTooWide);  // [.991, .998]
   EXPECT_NEAR(verdict_of("undecided", 0, 0).trials_to_decide, TrialsToDecide(0.95, {0.94, 0.96}), 1e-9);
-  EXPECT_NE(SummaryAsTable(SummaryOf("covers")).find(": covers"), std::string::npos);
-  EXPECT_NE(SummaryAsTable(SummaryOf("too few")).find(": too narrow"), std::string::npos);
-  EXPECT_NE(SummaryAsTable(SummaryOf("too many")).find(": too wide"), std::string::npos);
-  EXPECT_NE(SummaryAsTable(SummaryOf("undecided")).find(": undecided, about 6200 trials would do"),
+  EXPECT_NE(SummaryAsTable(SummarizeRun("covers")).find(": covers"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummarizeRun("too few")).find(": too narrow"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummarizeRun("too many")).find(": too wide"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummarizeRun("undecided")).find(": undecided, about 6200 trials would do"),
             std::string::npos)
-      << SummaryAsTable(SummaryOf("undecided"));
-  EXPECT_NE(SummaryAsCsv(SummaryOf("too few")).find(",200,exact,too narrow,\n"), std::string::npos);
+      << SummaryAsTable(SummarizeRun("undecided"));
+  EXPECT_NE(SummaryAsCsv(SummarizeRun("too few")).find(",200,exact,too narrow,\n"), std::string::npos);
   EXPECT_FALSE(Row("success").coverage_verdict) << "a rate that nothing is claimed of";
   EXPECT_FALSE(Row("nees_coverage", 1).coverage_verdict) << "no trials";
 }
@@ -226,10 +226,10 @@ TEST_F(SummarizeTest, StatusesOfOutsideEstimatorsHaveRowsOnlyWhereTheyHappened) 
   };
   std::vector<TrialRecord> records = HandMadeRecords();
   Write("none", records);
-  EXPECT_EQ(count(SummaryOf("none")), 0);
+  EXPECT_EQ(count(SummarizeRun("none")), 0);
   records[0].status = MotionStatus::kTimedOut;
   Write("one", records);
-  EXPECT_GT(count(SummaryOf("one")), 0);
+  EXPECT_GT(count(SummarizeRun("one")), 0);
 }
 
 // Of three answers with P: .05 (right), .02 (fails), .5 (fails); refusals and answers without one are in
@@ -242,7 +242,7 @@ TEST_F(SummarizeTest, ProbabilitiesOfFailure) {
   records[5].failure_probability = 0.5;
   Write("stated", records);
   std::map<std::string, SummaryRow> rows;
-  for (const SummaryRow& row : SummaryOf("stated").rows) {
+  for (const SummaryRow& row : SummarizeRun("stated").rows) {
     if (row.condition == 0) rows.try_emplace(row.quantity, row);
   }
   EXPECT_EQ(rows["failure_probability"].n, 3);
@@ -259,7 +259,7 @@ TEST_F(SummarizeTest, WithoutProbabilitiesThereAreNoRowsOfThem) {
   for (TrialRecord& record : records)
     record.failure_probability = record.inlier_brier = record.sigma_estimated_px = kNaN;
   Write("unstated", records);
-  for (const SummaryRow& row : SummaryOf("unstated").rows) {
+  for (const SummaryRow& row : SummarizeRun("unstated").rows) {
     for (const char* quantity :
          {"failure_probability", "brier", "failure_of_sure", "inlier_brier", "sigma_estimated_px"})
       EXPECT_NE(row.quantity, quantity);
@@ -279,7 +279,7 @@ TEST_F(SummarizeTest, EmptyCellsSayThatNothingIsKnown) {
 }
 
 TEST_F(SummarizeTest, RowsAreComplete) {
-  const Summary summary = SummaryOf("run", true);
+  const Summary summary = SummarizeRun("run", true);
   EXPECT_EQ(summary.study, "small");
   EXPECT_EQ(summary.factor_names, std::vector<std::string>{"outlier_ratio"});
   EXPECT_EQ(summary.num_trials_done, 10);
@@ -293,7 +293,7 @@ TEST_F(SummarizeTest, RowsAreComplete) {
                 2 * static_cast<size_t>(std::ranges::count_if(SummaryQuantities(), is_left_out)));
   EXPECT_EQ(Row("success", 0).levels, std::vector<std::string>{"0"});
   EXPECT_EQ(Row("success", 1).levels, std::vector<std::string>{"0.3"});
-  for (const SummaryRow& row : SummaryOf("run").rows)
+  for (const SummaryRow& row : SummarizeRun("run").rows)
     EXPECT_EQ(row.quantity.find("time_ms"), std::string::npos) << "times were not asked for";
 }
 
@@ -365,7 +365,7 @@ TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
     ResultStore store = ResultStore::OpenForRun(folder_.Path("severe"), MakePlan(study_));
     store.Add(problems, records);
   }
-  for (const SummaryRow& row : SummaryOf("severe").rows) {
+  for (const SummaryRow& row : SummarizeRun("severe").rows) {
     if (row.condition != 0 || row.estimator != kSceneLabel) continue;
     if (row.quantity == "impossible") {
       EXPECT_EQ(row.value, 0.5);
@@ -377,7 +377,7 @@ TEST_F(SummarizeTest, SeverityIsAveragedAndTellsTheImpossible) {
       EXPECT_EQ(row.n, 0);  // unknown
     }
   }
-  EXPECT_NE(SummaryAsTable(SummaryOf("severe")).find("50.00 % [6.76, 93.24]"), std::string::npos);
+  EXPECT_NE(SummaryAsTable(SummarizeRun("severe")).find("50.00 % [6.76, 93.24]"), std::string::npos);
 }
 
 // Twelve problems with the numbers 11, 10, ..., 0, the last two unknown; of the two hardest the rotation is
@@ -436,7 +436,7 @@ TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
     store.Add(problems, {Motion(0, 9.0, 1.0, 1.0), Motion(1, 9.0, 1.0, 1.0), Motion(2, 1.0, 1.0, 1.0),
                          NoMotion(3, MotionStatus::kNoCandidate)});
   }
-  for (const SummaryRow& row : SummaryOf("weighted").rows) {
+  for (const SummaryRow& row : SummarizeRun("weighted").rows) {
     if (row.condition != 0 || row.estimator != "standard") continue;
     EXPECT_EQ(row.interval_kind, IntervalKind::kWeighted);
     if (row.quantity == "failure") {

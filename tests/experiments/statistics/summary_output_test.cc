@@ -22,7 +22,7 @@ namespace {
 class SummaryOutputTest : public SummarizedRun {};
 
 TEST_F(SummaryOutputTest, ScoresInEveryFormat) {
-  const Summary summary = SummaryOf("run");
+  const Summary summary = SummarizeRun("run");
   const SummaryRow row = Row("auc_20_deg");
   EXPECT_NE(SummaryAsCsv(summary).find(fmt::format(",auc_20_deg,score,0.3625,{:.8g},{:.8g},,10,betting,,\n",
                                                    row.interval.lower, row.interval.upper)),
@@ -52,8 +52,8 @@ std::vector<std::string> Lines(const std::string& text) {
 }
 
 TEST_F(SummaryOutputTest, Csv) {
-  const std::vector<std::string> lines = Lines(SummaryAsCsv(SummaryOf("run")));
-  ASSERT_EQ(lines.size(), 1 + SummaryOf("run").rows.size());
+  const std::vector<std::string> lines = Lines(SummaryAsCsv(SummarizeRun("run")));
+  ASSERT_EQ(lines.size(), 1 + SummarizeRun("run").rows.size());
   EXPECT_EQ(lines[0],
             "study,condition,outlier_ratio,estimator,quantity,kind,value,lower,upper,standard_error,n,"
             "interval,verdict,"
@@ -72,14 +72,13 @@ TEST_F(SummaryOutputTest, CsvQuotesWhatNeedsIt) {
   study_.name = "a, \"b\"";
   study_.estimators[0].label = "=1+1";
   Write("quoted", {});
-  const std::string csv = SummaryAsCsv(SummaryOf("quoted"));
-  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"'=1+1\",success,rate,,0,1,,0,exact,,\n"),
-            std::string::npos)
+  const std::string csv = SummaryAsCsv(SummarizeRun("quoted"));
+  EXPECT_NE(csv.find("\n\"a, \"\"b\"\"\",0,0,\"'=1+1\",success,rate,,0,1,,0,exact,,\n"), std::string::npos)
       << csv;
 }
 
 TEST_F(SummaryOutputTest, JsonHoldsTheSameRows) {
-  const Summary summary = SummaryOf("run");
+  const Summary summary = SummarizeRun("run");
   const nlohmann::json json = nlohmann::json::parse(SummaryAsJson(summary));
   EXPECT_EQ(json["study"], "small");
   EXPECT_EQ(json["trials_done"], 10);
@@ -108,27 +107,27 @@ TEST_F(SummaryOutputTest, JsonHoldsTheSameRows) {
 }
 
 TEST_F(SummaryOutputTest, TableShowsIntervalsAndCounts) {
-  const std::string table = SummaryAsTable(SummaryOf("run"));
+  const std::string table = SummaryAsTable(SummarizeRun("run"));
   EXPECT_NE(table.find("Study small: 10 of 12 trials done"), std::string::npos) << table;
   EXPECT_NE(table.find("20.00 % [2.52, 55.61]"), std::string::npos) << table;  // failure, 2 of 10
   EXPECT_NE(table.find("Clopper-Pearson"), std::string::npos) << table;
 }
 
 TEST_F(SummaryOutputTest, TableOfChosenQuantities) {
-  const std::string table = QuantitiesAsTable(SummaryOf("run"), {"kappa_flag", "failure"});
+  const std::string table = QuantitiesAsTable(SummarizeRun("run"), {"kappa_flag", "failure"});
   EXPECT_NE(table.find("kappa_flag"), std::string::npos) << table;
   EXPECT_NE(table.find("20.00 % [2.52, 55.61]"), std::string::npos) << table;
   EXPECT_EQ(table.find("auc_5_deg"), std::string::npos) << table;
-  EXPECT_THROW(QuantitiesAsTable(SummaryOf("run"), {"failures"}), InputError);
-  Summary kept = SummaryOf("run");
+  EXPECT_THROW(QuantitiesAsTable(SummarizeRun("run"), {"failures"}), InputError);
+  Summary kept = SummarizeRun("run");
   KeepQuantities({"failure"}, &kept);
   EXPECT_EQ(kept.rows.size(), 2u) << "one per condition";
   EXPECT_THROW(KeepQuantities({"failures"}, &kept), InputError);
 }
 
 TEST_F(SummaryOutputTest, LatexHasARowPerConditionAndEstimatorAndIntervals) {
-  const std::vector<std::string> lines = Lines(
-      SummaryAsLatex(SummaryOf("run"), {"failure", "nees_median", "rotation_error_deg", "kappa_flag"}, {}));
+  const std::vector<std::string> lines = Lines(SummaryAsLatex(
+      SummarizeRun("run"), {"failure", "nees_median", "rotation_error_deg", "kappa_flag"}, {}));
   ASSERT_EQ(lines.size(), 12u);
   EXPECT_EQ(lines[3], "\\begin{tabular}{llrrrrr}");
   EXPECT_EQ(lines[4], "\\toprule");
@@ -148,7 +147,7 @@ TEST_F(SummaryOutputTest, LatexEscapesEveryNameAndTakesLabels) {
   study_.name = "50 % of_all";
   study_.estimators[0].label = "[a]_b&c\\d~$";
   Write("named", HandMadeRecords());
-  const Summary summary = SummaryOf("named");
+  const Summary summary = SummarizeRun("named");
   const std::string text = SummaryAsLatex(summary, {"failure"}, {{"outlier_ratio", "share of x_i"}});
   EXPECT_NE(text.find("% Study 50 \\% of\\_all: "), std::string::npos) << text;
   EXPECT_NE(text.find("{[}a]\\_b\\&c\\textbackslash{}d\\textasciitilde{}\\$ & "), std::string::npos) << text;
@@ -158,7 +157,7 @@ TEST_F(SummaryOutputTest, LatexEscapesEveryNameAndTakesLabels) {
 }
 
 TEST_F(SummaryOutputTest, LatexRefusesNamesThatThereAreNot) {
-  const Summary summary = SummaryOf("run");
+  const Summary summary = SummarizeRun("run");
   EXPECT_THROW(SummaryAsLatex(summary, {"failures"}, {}), InputError);
   EXPECT_THROW(SummaryAsLatex(summary, {"failure"}, {{"sandard", "S"}}), InputError);
   EXPECT_THROW(SummaryAsLatex(summary, {"failure"}, {{"nees_median", "not shown"}}), InputError);
@@ -169,9 +168,9 @@ TEST_F(SummaryOutputTest, EqualDataGiveEqualBytesInWhateverOrderTheyCame) {
   std::reverse(reversed.begin(), reversed.end());
   for (TrialRecord& record : reversed) record.seconds *= 7.0;
   Write("reversed", reversed);
-  EXPECT_EQ(SummaryAsCsv(SummaryOf("run")), SummaryAsCsv(SummaryOf("reversed")));
-  EXPECT_EQ(SummaryAsJson(SummaryOf("run")), SummaryAsJson(SummaryOf("reversed")));
-  EXPECT_EQ(SummaryAsTable(SummaryOf("run")), SummaryAsTable(SummaryOf("reversed")));
+  EXPECT_EQ(SummaryAsCsv(SummarizeRun("run")), SummaryAsCsv(SummarizeRun("reversed")));
+  EXPECT_EQ(SummaryAsJson(SummarizeRun("run")), SummaryAsJson(SummarizeRun("reversed")));
+  EXPECT_EQ(SummaryAsTable(SummarizeRun("run")), SummaryAsTable(SummarizeRun("reversed")));
 }
 
 // Three problems, the second without a bound: the matches do not determine its motion.
@@ -187,7 +186,7 @@ TEST_F(SummaryOutputTest, AMeanWithInfiniteNumbersIsInfiniteEverywhere) {
     ResultStore store = ResultStore::OpenForRun(folder_.Path("infinite"), MakePlan(study_));
     store.Add(problems, records);
   }
-  const Summary summary = SummaryOf("infinite");
+  const Summary summary = SummarizeRun("infinite");
   const auto row = std::ranges::find_if(
       summary.rows, [](const SummaryRow& r) { return r.condition == 0 && r.quantity == "crb_rotation_deg"; });
   ASSERT_NE(row, summary.rows.end());

@@ -43,7 +43,8 @@ TrialResult RunAnswered(const StudyPlan& plan) {
   }
 }
 
-Json JsonOf(const StudyPlan& plan, const TrialResult& result, const std::vector<size_t>& drawn = {0}) {
+Json ParseTrialJson(const StudyPlan& plan, const TrialResult& result,
+                    const std::vector<size_t>& drawn = {0}) {
   return Json::parse(TrialAsJson(plan, result, drawn));
 }
 
@@ -69,7 +70,7 @@ TEST(TrialAsJson, TrueLinesGoThroughTrueMatchesAndMissWrongOnes) {
   // The estimators assume a wrong focal length: the truth's lines are those of the true cameras.
   for (const char* cameras : {"pinhole", "euroc_and_office"}) {
     const StudyPlan plan = PlanWith({{"sigma_px", "1e-7"}, {"cameras", cameras}, {"focal_error", "0.1"}});
-    const Json json = JsonOf(plan, RunLast(plan));
+    const Json json = ParseTrialJson(plan, RunLast(plan));
     const Eigen::Matrix3d F = MatrixFrom(json["truth"]["F"]);
     int num_missed = 0, num_wrong = 0;
     for (size_t i = 0; i < json["matches"].size(); ++i) {
@@ -88,7 +89,7 @@ TEST(TrialAsJson, EstimatedLinesAreThoseOfTheCamerasTheEstimatorIsTold) {
   const StudyPlan plan = PlanWith({{"focal_error", "0.1"}, {"image_width", "800"}});
   const TrialResult result = RunAnswered(plan);
   ASSERT_EQ(result.estimates[1].status, MotionStatus::kOk);
-  const Json json = JsonOf(plan, result);
+  const Json json = ParseTrialJson(plan, result);
   const Eigen::Matrix3d F = MatrixFrom(json["estimators"][1]["F"]);
   const Eigen::Matrix3d R = MatrixFrom(json["estimators"][1]["R"]);
   const Eigen::Vector3d t = VectorFrom(json["estimators"][1]["t"]);
@@ -101,7 +102,7 @@ TEST(TrialAsJson, EstimatedLinesAreThoseOfTheCamerasTheEstimatorIsTold) {
 TEST(TrialAsJson, EveryMatchKnowsItsPointOfTheScene) {
   const StudyPlan plan = PlanWith({{"sigma_px", "1e-7"}});
   const TrialResult result = RunLast(plan, 3);
-  const Json json = JsonOf(plan, result);
+  const Json json = ParseTrialJson(plan, result);
   ASSERT_EQ(json["points_in_cam1_m"].size(), 60u);
   const Camera& camera = result.data.problem.camera1;
   int num_true = 0;
@@ -118,7 +119,7 @@ TEST(TrialAsJson, EveryMatchKnowsItsPointOfTheScene) {
 TEST(TrialAsJson, ShowsWhereTheCamerasAre) {
   const StudyPlan plan = MakePlan(SmallStudy());
   const TrialResult result = RunLast(plan);
-  const Json json = JsonOf(plan, result);
+  const Json json = ParseTrialJson(plan, result);
   const RelativePose& pose = *result.data.truth.cam2_from_cam1_true;
   const double baseline_m = json["truth"]["baseline_m"];
   EXPECT_GT(baseline_m, 0.0);
@@ -137,7 +138,7 @@ TEST(TrialAsJson, ShowsWhereTheCamerasAre) {
 TEST(TrialAsJson, SaysWhichTrialItIsAndHowItEnded) {
   const StudyPlan plan = MakePlan(SmallStudy());
   const TrialResult result = RunAnswered(plan);
-  const Json json = JsonOf(plan, result, {1, 0});
+  const Json json = ParseTrialJson(plan, result, {1, 0});
   EXPECT_EQ(json["format"], "rcme trial 2");
   EXPECT_EQ(json["study"], "small");
   EXPECT_EQ(json["seed"], 3);
@@ -166,7 +167,7 @@ TEST(TrialAsJson, SaysWhichTrialItIsAndHowItEnded) {
 TEST(TrialAsJson, SelectsTrueInliersThatAreSpreadOverTheImage) {
   const StudyPlan plan = MakePlan(SmallStudy());
   const TrialResult result = RunLast(plan);
-  const auto selected = JsonOf(plan, result)["selected"].get<std::vector<int>>();
+  const auto selected = ParseTrialJson(plan, result)["selected"].get<std::vector<int>>();
   ASSERT_EQ(selected.size(), 8u);
   const auto distance_from_chosen = [&](int i, size_t num_chosen) {
     double distance_px = std::numeric_limits<double>::infinity();
@@ -188,14 +189,14 @@ TEST(TrialAsJson, SelectsTrueInliersThatAreSpreadOverTheImage) {
 
 TEST(TrialAsJson, NoTrueMatchesNothingToSelect) {
   const StudyPlan plan = PlanWith({{"outlier_ratio", "1"}});
-  const Json json = JsonOf(plan, RunLast(plan));
+  const Json json = ParseTrialJson(plan, RunLast(plan));
   EXPECT_EQ(json["selected"], Json::array());
   EXPECT_EQ(std::ranges::count(json["kinds"], "inlier"), 0);
 }
 
 TEST(TrialAsJson, APureRotationHasNoDirectionAndNoTrueLines) {
   const StudyPlan plan = PlanWith({{"motion", "pure_rotation"}});
-  const Json json = JsonOf(plan, RunLast(plan));
+  const Json json = ParseTrialJson(plan, RunLast(plan));
   EXPECT_TRUE(json["truth"]["t"].is_null());
   EXPECT_TRUE(json["truth"]["F"].is_null());
   EXPECT_FALSE(json["truth"]["R"].is_null());
@@ -221,7 +222,7 @@ TEST(TrialAsJson, ARefusalHasItsReasonAndNoMotion) {
   StudyPlan plan = MakePlan(SmallStudy());
   plan.estimators[1] = std::make_shared<RefusingEstimator>();
   const TrialResult result = RunLast(plan);
-  const Json refusal = JsonOf(plan, result)["estimators"][1];
+  const Json refusal = ParseTrialJson(plan, result)["estimators"][1];
   EXPECT_EQ(refusal["outcome"], "refusal");
   EXPECT_EQ(refusal["status"], "no_candidate");
   EXPECT_EQ(refusal["message"], "no, thank you");
@@ -239,7 +240,7 @@ TEST(TrialAsJson, AnInvalidAnswerIsAFailureWithItsReasonAndNoMotion) {
   const TrialResult result = RunAnswered(plan);
   ASSERT_EQ(result.records[0].status, MotionStatus::kInvalidMotion);
   EXPECT_EQ(MostTelling(plan, result), 0u);
-  const Json json = JsonOf(plan, result)["estimators"][0];
+  const Json json = ParseTrialJson(plan, result)["estimators"][0];
   EXPECT_EQ(json["outcome"], "failure");
   EXPECT_EQ(json["status"], "invalid_motion");
   EXPECT_EQ(json["message"], "inlier 1000000000 is not an index of one of the 60 matches");
@@ -255,7 +256,7 @@ TEST(TrialAsJson, RealPairsHaveNeitherSceneNorLabels) {
       ParseStudy("data: {scene: match_files, folder: " + folder.path() + "}\nestimators: [{name: rcme}]\n",
                  "real.yaml"));
   const TrialResult result = RunLast(plan);
-  const Json json = JsonOf(plan, result);
+  const Json json = ParseTrialJson(plan, result);
   for (const char* key : {"kinds", "points_in_cam1_m", "views"}) EXPECT_TRUE(json[key].is_null()) << key;
   EXPECT_TRUE(json["truth"]["baseline_m"].is_null());
   const Eigen::Matrix3d F = MatrixFrom(json["truth"]["F"]);

@@ -50,16 +50,16 @@ TEST(ParseEstimatorFile, ReadsEveryPart) {
   const EstimatorSpec spec = ParseEstimatorFile(TunedFileYaml(), "tuned.yaml");
   EXPECT_EQ(spec.name, "rcme");
   EXPECT_EQ(spec.label, "rcme_tuned");
-  EXPECT_EQ(OptionOf(spec, "reading"), "rank_aware");
-  EXPECT_EQ(OptionOf(spec, "mu"), "5.25");
-  EXPECT_EQ(OptionOf(spec, "lambda"), "0.6");
-  EXPECT_EQ(OptionOf(spec, "num_iterations"), "200");
+  EXPECT_EQ(ReadOption(spec, "reading"), "rank_aware");
+  EXPECT_EQ(ReadOption(spec, "mu"), "5.25");
+  EXPECT_EQ(ReadOption(spec, "lambda"), "0.6");
+  EXPECT_EQ(ReadOption(spec, "num_iterations"), "200");
 }
 
 TEST(ParseEstimatorFile, FillsInWhatIsLeftOut) {
   const EstimatorSpec spec = ParseEstimatorFile("name: prcme\n", "short.yaml");
   EXPECT_EQ(spec.label, "prcme");
-  EXPECT_EQ(OptionOf(spec, "mu"), "auto");
+  EXPECT_EQ(ReadOption(spec, "mu"), "auto");
 }
 
 TEST(ParseEstimatorFileErrors, NameLineKeyAndWhatIsAllowed) {

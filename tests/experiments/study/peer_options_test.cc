@@ -31,7 +31,7 @@ class PeerOptions : public testing::Test {
 TEST_F(PeerOptions, InAStudy) {
   const Study study = WithPeer("effort: high");
   EXPECT_EQ(OwnOptions(study.estimators[2]), (Settings{{"min_inliers", "8"}, {"effort", "high"}}));
-  EXPECT_EQ(OptionOf(study.estimators[2], "model_choice"), "off");
+  EXPECT_EQ(ReadOption(study.estimators[2], "model_choice"), "off");
   EXPECT_EQ(ToYaml(ParseStudy(ToYaml(study), "again.yaml")), ToYaml(study));
   EXPECT_NE(MakePlan(study).identity, MakePlan(WithPeer("effort: low")).identity);
   EXPECT_TRUE(ThrowsInputError([] { WithPeer("mu: 3"); },
@@ -49,7 +49,7 @@ TEST_F(PeerOptions, HaveTheirEffectInATrial) {
 
 TEST_F(PeerOptions, InAnEstimatorFile) {
   const EstimatorSpec spec = ParseEstimatorFile("name: peer\noptions: {min_inliers: 9}\n", "peer.yaml");
-  EXPECT_EQ(OptionOf(spec, "min_inliers"), "9");
+  EXPECT_EQ(ReadOption(spec, "min_inliers"), "9");
   EXPECT_EQ(ParseEstimatorFile(EstimatorFileText(spec, {}), "again.yaml").options, spec.options);
   EXPECT_TRUE(ThrowsInputError([] { ParseEstimatorFile("name: peer\noptions:\n  kappa: 1\n", "peer.yaml"); },
                                {"peer.yaml:3:", "no option 'kappa'", kItsOptions}));
@@ -61,7 +61,7 @@ TEST_F(PeerOptions, OnTheCommandLine) {
   Override(&study, "peer.min_inliers", "12");
   Override(&study, "num_iterations", "30");  // of those that have it
   EXPECT_EQ(OwnOptions(study.estimators[2]), (Settings{{"min_inliers", "12"}, {"effort", "high"}}));
-  EXPECT_EQ(OptionOf(study.estimators[1], "num_iterations"), "30");
+  EXPECT_EQ(ReadOption(study.estimators[1], "num_iterations"), "30");
   EXPECT_TRUE(ThrowsInputError([&] { Override(&study, "peer.num_iterations", "30"); },
                                {"estimator peer has no option 'num_iterations'", kItsOptions}));
 }
@@ -69,7 +69,7 @@ TEST_F(PeerOptions, OnTheCommandLine) {
 TEST_F(PeerOptions, InATuning) {
   const StudyPlan plan =
       TunedPlan("  options: {min_inliers: [0, 50, 1000], effort: [low, high]}\n", "peer", Entry(""));
-  const SettingPlan settings = SettingsOf(plan);
+  const SettingPlan settings = MakeTunedSettings(plan);
   EXPECT_EQ(settings.groups.size(), 2u) << "min_inliers is a limit: its levels share a call";
   const std::vector<SettingCount> counts = CountOutcomes(plan, settings, {0, 10})[0];
   EXPECT_EQ(counts[0].false_refusals, 0);
@@ -87,7 +87,7 @@ TEST_F(PeerOptions, InATuning) {
 TEST_F(PeerOptions, ATargetThatMeansNothingIsRefused) {
   const StudyPlan plan =
       TunedPlan("  target: false_refusal\n  options: {num_iterations: [10, 20]}\n", "standard");
-  EXPECT_TRUE(ThrowsInputError([&] { SettingsOf(plan); }, {"false_refusal", "standard", "limit"}));
+  EXPECT_TRUE(ThrowsInputError([&] { MakeTunedSettings(plan); }, {"false_refusal", "standard", "limit"}));
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ Study DrawnStudy(const std::string& conditions, const std::string& more = "data:
   return ParseStudy(more + "conditions:\n" + conditions + "estimators: [{name: standard}]\n", "study.yaml");
 }
 
-std::string MessageOf(const std::string& conditions, const std::string& more = "data: {num_matches: 60}\n") {
+std::string CatchMessage(const std::string& conditions,
+                         const std::string& more = "data: {num_matches: 60}\n") {
   try {
     DrawnStudy(conditions, more);
   } catch (const InputError& error) {
@@ -44,7 +45,7 @@ std::string MessageOf(const std::string& conditions, const std::string& more = "
 }
 
 // The level of a key in a draw.
-std::string LevelOf(const Study& study, const PopulationDraw& draw, const std::string& key) {
+std::string FindLevel(const Study& study, const PopulationDraw& draw, const std::string& key) {
   const std::vector<std::string> keys = ListDrawnKeys(*study.population);
   return draw.levels[static_cast<size_t>(std::ranges::find(keys, key) - keys.begin())];
 }
@@ -70,8 +71,8 @@ TEST(Population, DrawsEachKeyFromItsRange) {
   ASSERT_EQ(draws.size(), 64U);
   for (const PopulationDraw& draw : draws) {
     for (const std::string& key : ListDrawnKeys(*study.population))
-      seen[key].insert(LevelOf(study, draw, key));
-    const double sigma_px = std::stod(LevelOf(study, draw, "sigma_px"));
+      seen[key].insert(FindLevel(study, draw, key));
+    const double sigma_px = std::stod(FindLevel(study, draw, "sigma_px"));
     EXPECT_TRUE(sigma_px >= 0.1 && sigma_px <= 3.0);
     sum_of_logs += std::log(sigma_px);
   }
@@ -87,13 +88,14 @@ TEST(Population, DrawsEachKeyFromItsRange) {
 TEST(Population, DrawsWhatBelongsToASceneOrALawWithItAlone) {
   const Study study = DrawnStudy(kSmall);
   for (const PopulationDraw& draw : DrawPopulation(study)) {
-    const bool is_room = LevelOf(study, draw, "scene") == "room";
-    EXPECT_EQ(LevelOf(study, draw, "num_boxes") != kNotDrawn, is_room);
-    EXPECT_EQ(LevelOf(study, draw, "cameras") != kNotDrawn, is_room);
-    EXPECT_EQ(LevelOf(study, draw, "plane_depth_m") != kNotDrawn, !is_room);
+    const bool is_room = FindLevel(study, draw, "scene") == "room";
+    EXPECT_EQ(FindLevel(study, draw, "num_boxes") != kNotDrawn, is_room);
+    EXPECT_EQ(FindLevel(study, draw, "cameras") != kNotDrawn, is_room);
+    EXPECT_EQ(FindLevel(study, draw, "plane_depth_m") != kNotDrawn, !is_room);
     // A flat key: wherever the noise law has it, and the motion of a room, hand_held, has no bound.
-    EXPECT_EQ(LevelOf(study, draw, "student_dof") != kNotDrawn, LevelOf(study, draw, "noise") == "student_t");
-    EXPECT_EQ(LevelOf(study, draw, "max_rotation_deg") != kNotDrawn, !is_room);
+    EXPECT_EQ(FindLevel(study, draw, "student_dof") != kNotDrawn,
+              FindLevel(study, draw, "noise") == "student_t");
+    EXPECT_EQ(FindLevel(study, draw, "max_rotation_deg") != kNotDrawn, !is_room);
   }
 }
 
@@ -104,8 +106,8 @@ TEST(Population, WholeNumbersIncludeBothEnds) {
       "");
   std::map<std::string, int> boxes, matches;
   for (const PopulationDraw& draw : DrawPopulation(study)) {
-    ++boxes[LevelOf(study, draw, "num_boxes")];
-    ++matches[LevelOf(study, draw, "num_matches")];
+    ++boxes[FindLevel(study, draw, "num_boxes")];
+    ++matches[FindLevel(study, draw, "num_matches")];
   }
   ASSERT_EQ(boxes.size(), 4U);
   // Binomial counts: 500 +- 19 each; n in proportion to log((n + 1) / n), log 2 / log 5 of them 1: 861 +- 22.
@@ -135,8 +137,8 @@ TEST(Population, GivenKeepsThePlaces) {
   int num_outside = 0;
   for (size_t i = 0; i < draws.size(); ++i) {
     EXPECT_EQ(draws[i].levels, restricted[i].levels);
-    const bool is_rough = std::stod(LevelOf(all, draws[i], "sigma_px")) >= 1.0;
-    const std::string dof = LevelOf(all, draws[i], "student_dof");
+    const bool is_rough = std::stod(FindLevel(all, draws[i], "sigma_px")) >= 1.0;
+    const std::string dof = FindLevel(all, draws[i], "student_dof");
     const bool has_tails = dof != kNotDrawn && std::stod(dof) < 5.0;  // without the key: not restricted
     EXPECT_EQ(!restricted[i].outside_of.empty(), is_rough || has_tails);
     num_outside += !restricted[i].outside_of.empty();
@@ -204,8 +206,8 @@ TEST(Population, ChosenDrawsAreThoseOfTheSequence) {
   }
   EXPECT_THROW(MakePlan(DrawnStudy(std::string("  design: latin_hypercube\n") + kSmall + "  draws: [99]\n")),
                InputError);
-  EXPECT_THAT(MessageOf("  draws: [3, 3]\n  ranges: {scene: plane}\n"), HasSubstr("3 stands there twice"));
-  EXPECT_THAT(MessageOf("  draws: [-1]\n  ranges: {scene: plane}\n"), HasSubstr("'-1' is not allowed"));
+  EXPECT_THAT(CatchMessage("  draws: [3, 3]\n  ranges: {scene: plane}\n"), HasSubstr("3 stands there twice"));
+  EXPECT_THAT(CatchMessage("  draws: [-1]\n  ranges: {scene: plane}\n"), HasSubstr("'-1' is not allowed"));
 }
 
 TEST(Population, AnImpossibleOneIsAnError) {
@@ -239,10 +241,12 @@ TEST(Population, CrossesWithFactors) {
   const TrialResult a = RunTrial(plan, first, 0), b = RunTrial(plan, second, 0);
   EXPECT_EQ(a.data.problem.matches.size(), 60U);
   EXPECT_EQ(a.data.problem.matches[7].x2_px, b.data.problem.matches[7].x2_px);
-  EXPECT_EQ(EstimatorsOf(study, first.levels)[0].options, EstimatorsOf(study, other.levels)[0].options);
-  EXPECT_NE(EstimatorsOf(study, first.levels)[0].options, EstimatorsOf(study, second.levels)[0].options);
-  EXPECT_NE(EstimatorsOf(plan, first)[0], EstimatorsOf(plan, second)[0]);
-  EXPECT_EQ(EstimatorsOf(plan, first)[0], EstimatorsOf(plan, other)[0]);
+  EXPECT_EQ(ResolveEstimators(study, first.levels)[0].options,
+            ResolveEstimators(study, other.levels)[0].options);
+  EXPECT_NE(ResolveEstimators(study, first.levels)[0].options,
+            ResolveEstimators(study, second.levels)[0].options);
+  EXPECT_NE(FindEstimators(plan, first)[0], FindEstimators(plan, second)[0]);
+  EXPECT_EQ(FindEstimators(plan, first)[0], FindEstimators(plan, other)[0]);
 }
 
 TEST(Population, SetFixesAKey) {
@@ -250,29 +254,30 @@ TEST(Population, SetFixesAKey) {
   Override(&study, "sigma_px", "0.5");
   Override(&study, "scene", "room");
   for (const PopulationDraw& draw : DrawPopulation(study))
-    EXPECT_NE(LevelOf(study, draw, "num_boxes"), kNotDrawn);
+    EXPECT_NE(FindLevel(study, draw, "num_boxes"), kNotDrawn);
   EXPECT_EQ(std::ranges::count(ListDrawnKeys(*study.population), "plane_depth_m"), 0);
   EXPECT_THROW(Override(&study, "conditions.size", "3"), InputError);
 }
 
 TEST(Population, MessagesNameLineAndKey) {
-  EXPECT_THAT(MessageOf("  ranges: {scene: plane, sigma_px: [3, 0.1]}\n"),
+  EXPECT_THAT(CatchMessage("  ranges: {scene: plane, sigma_px: [3, 0.1]}\n"),
               HasSubstr("sigma_px: two numbers are needed, the first less than the second"));
-  EXPECT_THAT(MessageOf("  ranges: {scene: plane, sigma_px: {log: [0, 1]}}\n"),
+  EXPECT_THAT(CatchMessage("  ranges: {scene: plane, sigma_px: {log: [0, 1]}}\n"),
               HasSubstr("above 0 and less"));
-  EXPECT_THAT(MessageOf("  ranges: {scene: plane, sigma_px: [1, 2, 3]}\n"), HasSubstr("{any: [...]}"));
-  EXPECT_THAT(MessageOf("  ranges: {scene: plane, num_boxes: [1, 2]}\n"),
+  EXPECT_THAT(CatchMessage("  ranges: {scene: plane, sigma_px: [1, 2, 3]}\n"), HasSubstr("{any: [...]}"));
+  EXPECT_THAT(CatchMessage("  ranges: {scene: plane, num_boxes: [1, 2]}\n"),
               HasSubstr("num_boxes: no draw has this key (needs scene: room)"));
-  EXPECT_THAT(MessageOf("  ranges: {scene: plane, outlier_ratio: [0, 1.5]}\n"), HasSubstr("1.5"));
-  EXPECT_THAT(MessageOf("  ranges: {scene: [plane, planet]}\n"), HasSubstr("'planet' is not allowed"));
-  EXPECT_THAT(MessageOf("  ranges: {scene: [room, plane]}\n", "data: {plane_depth_m: 3}\n"),
+  EXPECT_THAT(CatchMessage("  ranges: {scene: plane, outlier_ratio: [0, 1.5]}\n"), HasSubstr("1.5"));
+  EXPECT_THAT(CatchMessage("  ranges: {scene: [plane, planet]}\n"), HasSubstr("'planet' is not allowed"));
+  EXPECT_THAT(CatchMessage("  ranges: {scene: [room, plane]}\n", "data: {plane_depth_m: 3}\n"),
               HasSubstr("plane_depth_m"));
-  EXPECT_THAT(MessageOf("  ranges: {scene: match_files}\n", ""), HasSubstr("cannot be drawn"));
-  EXPECT_THAT(MessageOf("  ranges: {scene: plane}\n  given: sigma_px = 2\n"),
+  EXPECT_THAT(CatchMessage("  ranges: {scene: match_files}\n", ""), HasSubstr("cannot be drawn"));
+  EXPECT_THAT(CatchMessage("  ranges: {scene: plane}\n  given: sigma_px = 2\n"),
               HasSubstr("given: 'sigma_px = 2'"));
-  EXPECT_THAT(MessageOf("  number: 0\n  ranges: {scene: plane}\n"), HasSubstr("number: '0' is not allowed"));
-  EXPECT_THAT(MessageOf("  number: 5\n"), HasSubstr("key 'ranges' or 'population' is missing"));
-  EXPECT_THAT(MessageOf("  population: documented_range\n"), HasSubstr("documented_ranges"));
+  EXPECT_THAT(CatchMessage("  number: 0\n  ranges: {scene: plane}\n"),
+              HasSubstr("number: '0' is not allowed"));
+  EXPECT_THAT(CatchMessage("  number: 5\n"), HasSubstr("key 'ranges' or 'population' is missing"));
+  EXPECT_THAT(CatchMessage("  population: documented_range\n"), HasSubstr("documented_ranges"));
 }
 
 TEST(EstimatorOptions, AreCheckedAsFactors) {

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "experiments/statistics/trial_output.h"
 #include "experiments/run/run_until.h"
+#include "experiments/statistics/trial_output.h"
 #include "experiments/study/run_description.h"
 #include "experiments/study/study_file.h"
 #include "experiments/trial/trial.h"
@@ -21,7 +21,7 @@ StudyPlan PlanWithRepeats(int repeats_per_scene) {
   return MakePlan(study);
 }
 
-std::vector<Correspondence> MatchesOf(const StudyPlan& plan, std::uint32_t trial) {
+std::vector<Correspondence> DrawMatches(const StudyPlan& plan, std::uint32_t trial) {
   return RunTrial(plan, plan.conditions[1], trial).data.problem.matches;
 }
 
@@ -45,7 +45,7 @@ TEST(RepeatsPerScene, ShareTheSceneAndNotTheSamples) {
     const MotionEstimate estimate = single.estimators[0]->Estimate(scene.data.problem, rng);
     EXPECT_EQ(repeat.estimates[0].cam2_from_cam1.R, estimate.cam2_from_cam1.R);
   }
-  EXPECT_NE(MatchesOf(triple, 2)[0].x1_px, MatchesOf(triple, 3)[0].x1_px) << "another scene";
+  EXPECT_NE(DrawMatches(triple, 2)[0].x1_px, DrawMatches(triple, 3)[0].x1_px) << "another scene";
   EXPECT_NE(RunTrial(triple, triple.conditions[1], 0).estimates[0].cam2_from_cam1.R,
             RunTrial(triple, triple.conditions[1], 1).estimates[0].cam2_from_cam1.R)
       << "other samples";

@@ -74,11 +74,11 @@ TEST(ParseStudy, ReadsEveryPart) {
   EXPECT_EQ(study.factors[1].levels, (std::vector<std::string>{"0", "0.25", "0.5"}));
   ASSERT_EQ(study.estimators.size(), 2u);
   EXPECT_EQ(study.estimators[0].label, "standard");
-  EXPECT_EQ(OptionOf(study.estimators[0], "num_iterations"), "200");
+  EXPECT_EQ(ReadOption(study.estimators[0], "num_iterations"), "200");
   EXPECT_EQ(study.estimators[1].name, "rcme");
   EXPECT_EQ(study.estimators[1].label, "ours");
-  EXPECT_EQ(OptionOf(study.estimators[1], "mu"), "-2");
-  EXPECT_EQ(OptionOf(study.estimators[1], "reading"), "rank_aware");
+  EXPECT_EQ(ReadOption(study.estimators[1], "mu"), "-2");
+  EXPECT_EQ(ReadOption(study.estimators[1], "reading"), "rank_aware");
   EXPECT_EQ(study.failure.max_rotation_error_deg, 1.5);
   EXPECT_EQ(study.failure.max_direction_error_deg, 15.0);
 }
@@ -91,7 +91,7 @@ TEST(ParseStudy, FillsInWhatIsLeftOut) {
   EXPECT_EQ(study.trials, 100);
   EXPECT_TRUE(study.factors.empty());
   EXPECT_EQ(study.failure.max_rotation_error_deg, 3.0);
-  EXPECT_EQ(OptionOf(study.estimators[0], "mu"), "auto");
+  EXPECT_EQ(ReadOption(study.estimators[0], "mu"), "auto");
 }
 
 TEST(ToYaml, RoundTrip) {
@@ -318,11 +318,11 @@ TEST(Override, FactorBecomesOneLevel) {
 TEST(Override, OptionOfAllOrOne) {
   Study study = SmallStudy();
   Override(&study, "num_iterations", "33");
-  EXPECT_EQ(OptionOf(study.estimators[0], "num_iterations"), "33");
-  EXPECT_EQ(OptionOf(study.estimators[1], "num_iterations"), "33");
+  EXPECT_EQ(ReadOption(study.estimators[0], "num_iterations"), "33");
+  EXPECT_EQ(ReadOption(study.estimators[1], "num_iterations"), "33");
   Override(&study, "ours.num_iterations", "44");
-  EXPECT_EQ(OptionOf(study.estimators[0], "num_iterations"), "33");
-  EXPECT_EQ(OptionOf(study.estimators[1], "num_iterations"), "44");
+  EXPECT_EQ(ReadOption(study.estimators[0], "num_iterations"), "33");
+  EXPECT_EQ(ReadOption(study.estimators[1], "num_iterations"), "44");
 }
 
 TEST(Override, FailureBound) {

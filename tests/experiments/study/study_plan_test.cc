@@ -18,7 +18,7 @@ StudyPlan PlanOfText(std::string text) {
 }
 
 // The key of the condition with these levels.
-std::uint64_t KeyOf(const StudyPlan& plan, const std::vector<std::string>& levels) {
+std::uint64_t FindStreamKey(const StudyPlan& plan, const std::vector<std::string>& levels) {
   for (const Condition& condition : plan.conditions) {
     if (condition.levels == levels) return condition.stream_key;
   }
@@ -44,9 +44,9 @@ TEST(StreamKey, IsTheSameInEveryStudyThatHoldsTheCondition) {
       "factors: {sigma_px: [0.50, 1.0], outlier_ratio: [0.5, 0.10]}\n");
   const StudyPlan fixed = PlanOfText(
       "data: {sigma_px: 1, scene: uniform_volume, outlier_ratio: 0.5, num_matches: 60, noise: gaussian}\n");
-  const std::uint64_t key = KeyOf(plan, {"0.5", "1"});
-  EXPECT_EQ(key, KeyOf(more_levels, {"0.5", "1"}));
-  EXPECT_EQ(key, KeyOf(other_order, {"1", "0.5"}));
+  const std::uint64_t key = FindStreamKey(plan, {"0.5", "1"});
+  EXPECT_EQ(key, FindStreamKey(more_levels, {"0.5", "1"}));
+  EXPECT_EQ(key, FindStreamKey(other_order, {"1", "0.5"}));
   EXPECT_EQ(key, fixed.conditions.front().stream_key);
 }
 

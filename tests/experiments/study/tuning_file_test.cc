@@ -122,10 +122,10 @@ TEST(TuneBlock, SettingsInOrder) {
   EXPECT_EQ(LevelsOfSetting(tuning, 6), (Levels{"0.3", "0.5", "mean_entropy"}));
   EXPECT_EQ(LevelsOfSetting(tuning, 29), (Levels{"1.2", "1", "predictive_likelihood"}));
   const EstimatorSpec spec = WithLevels(tuning, LevelsOfSetting(tuning, 29), SmallStudy().estimators[1]);
-  EXPECT_EQ(OptionOf(spec, "mu"), "1.2");
-  EXPECT_EQ(OptionOf(spec, "lambda"), "1");
-  EXPECT_EQ(OptionOf(spec, "selection"), "predictive_likelihood");
-  EXPECT_EQ(OptionOf(spec, "num_iterations"), "20");
+  EXPECT_EQ(ReadOption(spec, "mu"), "1.2");
+  EXPECT_EQ(ReadOption(spec, "lambda"), "1");
+  EXPECT_EQ(ReadOption(spec, "selection"), "predictive_likelihood");
+  EXPECT_EQ(ReadOption(spec, "num_iterations"), "20");
 }
 
 TEST(TuneBlockErrors, Keys) {

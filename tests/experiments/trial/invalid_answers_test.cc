@@ -32,7 +32,7 @@ struct Totals {
   int num_failures = 0, num_refusals = 0, num_invalid = 0;
 };
 
-std::vector<Totals> TotalsOf(const StudyPlan& plan, const ResultStore& store) {
+std::vector<Totals> CountTotals(const StudyPlan& plan, const ResultStore& store) {
   std::vector<Totals> totals(plan.estimators.size());
   store.ForEachRecord([&](const TrialRecord& record) {
     totals[record.estimator].num_failures += HasFailed(record, plan.study.failure);
@@ -56,7 +56,7 @@ TEST(InvalidAnswers, AreFailuresInSummaryComparisonAndVerification) {
   const TempFolder folder;
   ResultStore store = ResultStore::OpenForRun(folder.Path("run.sqlite"), plan);
   RunStudy(plan, 2, &store);
-  const std::vector<Totals> totals = TotalsOf(plan, store);
+  const std::vector<Totals> totals = CountTotals(plan, store);
   EXPECT_EQ(totals[0].num_invalid, 0);
   ASSERT_GE(totals[1].num_invalid, 8);
   EXPECT_EQ(totals[1].num_failures, totals[0].num_failures + totals[1].num_invalid);
@@ -99,7 +99,7 @@ TEST(InvalidAnswers, AreCountedByAStoppingRule) {
   options.target = PrecisionTarget::Parse("ci=0.9");
   options.num_threads = 2;
   const std::vector<CellPrecision> cells = RunUntil(plan, options, &store);
-  const std::vector<Totals> totals = TotalsOf(plan, store);
+  const std::vector<Totals> totals = CountTotals(plan, store);
   ASSERT_GE(totals[1].num_invalid, 3);
   EXPECT_EQ(cells[0].estimator, 1u) << "the one with the wider interval";
   EXPECT_DOUBLE_EQ(cells[0].rate, totals[1].num_failures / 100.0);

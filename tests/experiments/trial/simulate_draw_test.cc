@@ -149,7 +149,7 @@ TEST(SimulateDraw, AnAuditLeavesSingleTrialsOut) {
 TEST(SimulateDraw, AMapHasNoSampleOfThem) {
   const StudyPlan plan = HalfPlan();
   ValidityMapOptions options;
-  options.conditions = MapConditionsOf(plan);
+  options.conditions = ListMapConditions(plan);
   options.sigmas_px = {0.5};
   options.nums_points = {8};
   options.trials = 3;

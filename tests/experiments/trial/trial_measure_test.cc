@@ -32,7 +32,7 @@ TrialMeasure Find(const std::string& name) {
   return {};
 }
 
-double MeanOf(const std::string& name, const std::vector<double>& errors_deg) {
+double ComputeMeanMeasure(const std::string& name, const std::vector<double>& errors_deg) {
   double sum = 0.0;
   for (const double error : errors_deg) sum += Find(name).Of(Motion(error, 0.0)).value();
   return sum / static_cast<double>(errors_deg.size());
@@ -54,9 +54,9 @@ TEST(TrialMeasure, AreaIsTheIntegralOfTheRecallCurve) {
   std::vector<double> errors_deg;
   for (int i = 0; i < 300; ++i) errors_deg.push_back(std::exp(1.5 + 1.5 * rng.Normal()));
   errors_deg.push_back(180.0);
-  EXPECT_NEAR(MeanOf("auc_5_deg", errors_deg), AreaUnderRecallCurve(errors_deg, 5.0), 1e-12);
-  EXPECT_NEAR(MeanOf("auc_10_deg", errors_deg), AreaUnderRecallCurve(errors_deg, 10.0), 1e-12);
-  EXPECT_NEAR(MeanOf("auc_20_deg", errors_deg), AreaUnderRecallCurve(errors_deg, 20.0), 1e-12);
+  EXPECT_NEAR(ComputeMeanMeasure("auc_5_deg", errors_deg), AreaUnderRecallCurve(errors_deg, 5.0), 1e-12);
+  EXPECT_NEAR(ComputeMeanMeasure("auc_10_deg", errors_deg), AreaUnderRecallCurve(errors_deg, 10.0), 1e-12);
+  EXPECT_NEAR(ComputeMeanMeasure("auc_20_deg", errors_deg), AreaUnderRecallCurve(errors_deg, 20.0), 1e-12);
 }
 
 // Exponential errors of mean s: AUC@t = 1 - (s / t) (1 - e^(-t / s)), the accuracy at k is 1 - e^(-k / s).
@@ -68,11 +68,11 @@ TEST(TrialMeasure, ClosedFormsOfExponentialErrors) {
   for (const auto& [name, t] :
        {std::pair<std::string, double>{"auc_5_deg", 5.0}, {"auc_10_deg", 10.0}, {"auc_20_deg", 20.0}}) {
     const double area = 1.0 - kMeanDeg / t * (1.0 - std::exp(-t / kMeanDeg));
-    EXPECT_NEAR(MeanOf(name, errors_deg), area, 1e-4) << name;
+    EXPECT_NEAR(ComputeMeanMeasure(name, errors_deg), area, 1e-4) << name;
   }
   double accuracy = 0.0;
   for (int k = 1; k <= 10; ++k) accuracy += (1.0 - std::exp(-k / kMeanDeg)) / 10.0;
-  EXPECT_NEAR(MeanOf("maa_10_deg", errors_deg), accuracy, 1e-4);
+  EXPECT_NEAR(ComputeMeanMeasure("maa_10_deg", errors_deg), accuracy, 1e-4);
 }
 
 TEST(TrialMeasure, ByHand) {

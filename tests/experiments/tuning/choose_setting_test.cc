@@ -44,8 +44,8 @@ TEST(ChooseSetting, FailuresOfAcceptedTrialsAreOutOfThese) {
   EXPECT_EQ(choice.setting, 1u) << "the least refusal of those";
   EXPECT_EQ(Choose(TuningFor(TuneTarget::kAcceptedFailure, 0.05, 0.1), counts, counts).num_certified, 0u);
   // 40 of 1,000 trials fail: too many of the 500 that are accepted, not of all.
-  EXPECT_EQ(VerdictOf(tuning, Of(1000, 40, 500)), Verdict::kDoesNotHold);
-  EXPECT_NE(VerdictOf(TuningFor(TuneTarget::kFailure, 0.05), Of(1000, 40, 500)), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideSetting(tuning, Of(1000, 40, 500)), Verdict::kDoesNotHold);
+  EXPECT_NE(DecideSetting(TuningFor(TuneTarget::kFailure, 0.05), Of(1000, 40, 500)), Verdict::kDoesNotHold);
   const std::vector<SettingCount> none = {Of(100, 0, 100)};
   EXPECT_TRUE(Says(Choose(tuning, none, none).why, {"no trial is accepted", "that are not refused fail"}));
 }

@@ -15,7 +15,7 @@ struct GoodAndBad {
 };
 
 std::vector<EntropyRoc> Measure(const StudyPlan& plan, TrialRange trials) {
-  return RocsOf(plan, MeasureEntropies(plan, trials));
+  return ComputeRocs(plan, MeasureEntropies(plan, trials));
 }
 
 void ExpectSame(const EntropyRoc& roc, const GoodAndBad& expected) {

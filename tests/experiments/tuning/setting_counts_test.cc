@@ -16,7 +16,7 @@ namespace rcme {
 namespace {
 
 std::vector<SettingCount> Count(const StudyPlan& plan, size_t condition, TrialRange trials) {
-  return CountOutcomes(plan, SettingsOf(plan), trials)[condition];
+  return CountOutcomes(plan, MakeTunedSettings(plan), trials)[condition];
 }
 
 // The study's plan with two estimators: one setting, and the same without its limits.
@@ -50,7 +50,7 @@ SettingCount CountByPlainCalls(const StudyPlan& plan, const EstimatorSpec& setti
 
 // The study has two conditions: no wrong matches, and 30 %.
 void ExpectPlainCounts(const StudyPlan& plan, TrialRange trials) {
-  const SettingPlan settings = SettingsOf(plan);
+  const SettingPlan settings = MakeTunedSettings(plan);
   for (const size_t condition : {0, 1}) {
     std::vector<SettingCount> plain;
     for (const TunedSetting& setting : settings.settings) {
@@ -137,7 +137,7 @@ TEST(SettingCounts, AreThoseOfAnEstimatorInOnePiece) {
       "  - {name: whole, options: {num_iterations: 20, reading: rank_aware}}\n"
       "  - {name: counted, options: {num_iterations: 20, reading: rank_aware}}\n";
   const StudyPlan whole = TunedPlan(options, "whole", both), parts = TunedPlan(options, "counted", both);
-  EXPECT_EQ(SettingsOf(whole).groups.size(), 2u) << "by what they are without their limits: mu";
+  EXPECT_EQ(MakeTunedSettings(whole).groups.size(), 2u) << "by what they are without their limits: mu";
   ExpectPlainCounts(whole, {0, 10});
   EXPECT_EQ(Text(Count(whole, 1, {0, 10})), Text(Count(parts, 1, {0, 10})));
 }
@@ -147,7 +147,7 @@ TEST(SettingCounts, LevelsOfTheProbabilityLimitShareOneCall) {
   const StudyPlan plan =
       TunedPlan("  options: {max_failure_probability: [0.01, 0.05, 0.2, 1], max_samples: [70, 100]}\n",
                 "rcme_calibrated", "  - {name: rcme_calibrated, options: {max_samples: 100}}\n");
-  const SettingPlan settings = SettingsOf(plan);
+  const SettingPlan settings = MakeTunedSettings(plan);
   EXPECT_EQ(settings.groups.size(), 2u) << "one for each number of samples";
   std::set<std::int64_t> refusals;
   for (const size_t condition : {0, 1}) {

@@ -12,7 +12,7 @@ namespace rcme {
 namespace {
 
 SettingPlan PlanWith(const std::string& options) {
-  return SettingsOf(TunedPlan("  options: {" + options + "}\n"));
+  return MakeTunedSettings(TunedPlan("  options: {" + options + "}\n"));
 }
 
 TEST(SettingPlan, TheFirstOptionIsTheSlowest) {
@@ -20,10 +20,10 @@ TEST(SettingPlan, TheFirstOptionIsTheSlowest) {
   ASSERT_EQ(plan.settings.size(), 6u);
   EXPECT_EQ(plan.settings[1].levels, (std::vector<std::string>{"0.5", "4"}));
   EXPECT_EQ(plan.settings[3].levels, (std::vector<std::string>{"1", "2"}));
-  EXPECT_EQ(OptionOf(plan.settings[3].spec, "lambda"), "1");
-  EXPECT_EQ(OptionOf(plan.settings[3].spec, "mu"), "2");
+  EXPECT_EQ(ReadOption(plan.settings[3].spec, "lambda"), "1");
+  EXPECT_EQ(ReadOption(plan.settings[3].spec, "mu"), "2");
   EXPECT_EQ(plan.settings[3].spec.label, "ours");
-  EXPECT_EQ(OptionOf(plan.settings[3].spec, "num_iterations"), "20") << "what is not tuned is the study's";
+  EXPECT_EQ(ReadOption(plan.settings[3].spec, "num_iterations"), "20") << "what is not tuned is the study's";
 }
 
 TEST(SettingPlan, DecisionOptionsShareOneTrace) {
@@ -64,7 +64,7 @@ TEST(SettingPlan, WithoutItsLimitsASettingIsSharedByThoseThatDifferInLimitsAlone
 
 TEST(SettingPlan, TheTraceHasAsManyHypothesesAsAnySettingLooksAt) {
   const StudyPlan study = TunedPlan("  options: {num_iterations: [10, 30, 20], early_stop_entropy: [50]}\n");
-  const SettingPlan plan = SettingsOf(study);
+  const SettingPlan plan = MakeTunedSettings(study);
   ASSERT_EQ(plan.groups.size(), 1u);
   const StreamName name{1, 0, 0, 0};
   RandomStream rng = StreamFor(name, StreamPurpose::kSampling);

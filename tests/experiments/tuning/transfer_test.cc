@@ -32,7 +32,7 @@ StudyPlan FourConditions(const std::string& design = "") {
 }
 
 TransferResult Transfer(const StudyPlan& plan, const std::string& by, int num_threads = 2) {
-  return MeasureTransferInMemory(plan, SettingsOf(plan), by, num_threads);
+  return MeasureTransferInMemory(plan, MakeTunedSettings(plan), by, num_threads);
 }
 
 std::vector<std::string> Words(const TransferResult& result) {
@@ -69,7 +69,7 @@ TEST(Transfer, AFamilyIsTunedOnItsOwnConditionsAlone) {
   for (size_t f = 0; f < 2; ++f) {
     StudyPlan alone = plan;
     alone.conditions = {plan.conditions[f], plan.conditions[2 + f]};
-    const TuneResult tuned = TuneInMemory(alone, SettingsOf(alone), Unreached::kVerifyAll, 2);
+    const TuneResult tuned = TuneInMemory(alone, MakeTunedSettings(alone), Unreached::kVerifyAll, 2);
     EXPECT_EQ(result.families[f].choice.setting, tuned.choice.setting);
     EXPECT_EQ(result.families[f].choice.path, tuned.choice.path);
     EXPECT_EQ(result.families[f].choice.why, tuned.choice.why);
@@ -80,8 +80,8 @@ TEST(Transfer, AFamilyIsTunedOnItsOwnConditionsAlone) {
 
 TEST(Transfer, DoesNotDependOnThreads) {
   const StudyPlan plan = FourConditions();
-  EXPECT_EQ(TransferAsJson(plan, SettingsOf(plan), Transfer(plan, "", 1)),
-            TransferAsJson(plan, SettingsOf(plan), Transfer(plan, "", 3)));
+  EXPECT_EQ(TransferAsJson(plan, MakeTunedSettings(plan), Transfer(plan, "", 1)),
+            TransferAsJson(plan, MakeTunedSettings(plan), Transfer(plan, "", 3)));
 }
 
 TEST(Transfer, WhatHasNoPromiseOrNoOtherFamilyIsRefused) {
@@ -105,13 +105,13 @@ TEST(TargetVerdict, TheWholeIntervalOnOneSideOfTheLimit) {
   tuning.at_most = 0.1;
   tuning.max_refusal = 1.0;
   // 95 % intervals of 100: 4 [1.1, 9.9], 5 [1.6, 11.3], 17 [10.2, 25.8], 16 [9.4, 24.7] %.
-  EXPECT_EQ(VerdictOf(tuning, {100, 4, 90, 0, 0}), Verdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {100, 5, 0, 0, 0}), Verdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 16, 0, 0, 0}), Verdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 17, 0, 0, 0}), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideSetting(tuning, {100, 4, 90, 0, 0}), Verdict::kHolds);
+  EXPECT_EQ(DecideSetting(tuning, {100, 5, 0, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(DecideSetting(tuning, {100, 16, 0, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(DecideSetting(tuning, {100, 17, 0, 0, 0}), Verdict::kDoesNotHold);
   tuning.target = TuneTarget::kFalseRefusal;
-  EXPECT_EQ(VerdictOf(tuning, {1000, 900, 4, 100, 4}), Verdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {1000, 0, 0, 0, 0}), Verdict::kUndecided) << "no trial is good";
+  EXPECT_EQ(DecideSetting(tuning, {1000, 900, 4, 100, 4}), Verdict::kHolds);
+  EXPECT_EQ(DecideSetting(tuning, {1000, 0, 0, 0, 0}), Verdict::kUndecided) << "no trial is good";
 }
 
 // The target limits refusals as well: a setting that refuses everything never fails.
@@ -120,10 +120,10 @@ TEST(TargetVerdict, RefusalsAreLimitedToo) {
   tuning.target = TuneTarget::kFailure;
   tuning.at_most = 0.1;
   tuning.max_refusal = 0.5;
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 100, 0, 0}), Verdict::kDoesNotHold);
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 50, 0, 0}), Verdict::kUndecided);
-  EXPECT_EQ(VerdictOf(tuning, {100, 0, 20, 0, 0}), Verdict::kHolds);
-  EXPECT_EQ(VerdictOf(tuning, {100, 30, 50, 0, 0}), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideSetting(tuning, {100, 0, 100, 0, 0}), Verdict::kDoesNotHold);
+  EXPECT_EQ(DecideSetting(tuning, {100, 0, 50, 0, 0}), Verdict::kUndecided);
+  EXPECT_EQ(DecideSetting(tuning, {100, 0, 20, 0, 0}), Verdict::kHolds);
+  EXPECT_EQ(DecideSetting(tuning, {100, 30, 50, 0, 0}), Verdict::kDoesNotHold);
 }
 
 TEST(TransferOutput, CellsAndCountsOfTheOthers) {
@@ -138,7 +138,7 @@ TEST(TransferOutput, CellsAndCountsOfTheOthers) {
   result.verified = {{none, none, none, none}, {many, many, many, many}, {none, some, none, none}};
   const std::string table = TransferAsTable(plan, result);
   EXPECT_NE(table.find("none: out of reach"), std::string::npos) << table;
-  const auto json = nlohmann::json::parse(TransferAsJson(plan, SettingsOf(plan), result));
+  const auto json = nlohmann::json::parse(TransferAsJson(plan, MakeTunedSettings(plan), result));
   ASSERT_EQ(json["cells"].size(), 6u);  // of two families
   EXPECT_EQ(json["cells"][1]["verified_on"], 1);
   EXPECT_EQ(json["cells"][1]["verdict"], "does not hold");

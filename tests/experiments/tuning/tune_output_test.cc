@@ -27,7 +27,7 @@ TuneResult Result(const StudyPlan& plan) {
   result.choice.setting = 1;
   result.choice.path = {1, 2};
   result.choice.num_certified = 1;
-  const SettingPlan settings = SettingsOf(plan);
+  const SettingPlan settings = MakeTunedSettings(plan);
   result.estimators.push_back({settings.settings[1].spec, {4, 100}, {20, 100}, {24, 100}, {24, 0, 0, 76}});
   result.estimators.push_back({plan.study.estimators[0], {50, 100}, {0, 100}, {50, 100}, {20, 4, 30, 46}});
   return result;
@@ -55,7 +55,7 @@ testing::AssertionResult Holds(const std::string& broken, const std::vector<std:
 
 TEST(TuneOutput, RatesOfTheJsonAreThoseOfVerification) {
   const StudyPlan plan = Plan();
-  const Json json = Json::parse(TuneAsJson(plan, SettingsOf(plan), Result(plan), {}));
+  const Json json = Json::parse(TuneAsJson(plan, MakeTunedSettings(plan), Result(plan), {}));
   ASSERT_EQ(json["settings"].size(), 3u);
   EXPECT_EQ(json["settings"][1]["levels"], Json::array({"2"}));
   EXPECT_EQ(json["settings"][1]["failure"]["value"], 0.04);
@@ -86,7 +86,7 @@ TEST(TuneOutput, TheFrontHasTheSettingsThatNoneBeats) {
                      {100, 0, 50, 50, 0},
                      {100, 4, 20, 80, 0},
                      {100, 5, 20, 80, 0}};
-  const Json json = Json::parse(TuneAsJson(plan, SettingsOf(plan), result, {}));
+  const Json json = Json::parse(TuneAsJson(plan, MakeTunedSettings(plan), result, {}));
   std::string on_front;
   for (const Json& setting : json["settings"]) on_front += setting["is_on_front"] ? '1' : '0';
   EXPECT_EQ(on_front, "10110");
@@ -98,7 +98,7 @@ TEST(TuneOutput, AnotherEstimatorHasAPlaceIfItDiffersInTheTunedOptionsAlone) {
   TuneResult result = Result(plan);
   result.estimators[1].spec = plan.study.estimators[1];
   const auto levels = [&] {
-    return Json::parse(TuneAsJson(plan, SettingsOf(plan), result, {}))["others"][0]["levels"];
+    return Json::parse(TuneAsJson(plan, MakeTunedSettings(plan), result, {}))["others"][0]["levels"];
   };
   EXPECT_EQ(levels(), Json::array({"6"}));
   SetOptions(&result.estimators[1].spec, {{"lambda", "0.9"}});
@@ -110,7 +110,7 @@ TEST(TuneOutput, WithoutAChoiceTheRatesAreThereAllTheSame) {
   TuneResult result = Result(plan);
   result.choice = {std::nullopt, {1, 2}, 0, 0.0, "out of reach"};
   result.estimators.clear();
-  const Json json = Json::parse(TuneAsJson(plan, SettingsOf(plan), result, {Roc(10)}));
+  const Json json = Json::parse(TuneAsJson(plan, MakeTunedSettings(plan), result, {Roc(10)}));
   EXPECT_TRUE(json["tuned"].is_null());
   EXPECT_EQ(json["settings"][2]["failure"]["value"], 0.25);
   EXPECT_FALSE(json["settings"][1]["is_certified"]);
@@ -145,7 +145,7 @@ TEST(TuneOutput, TheVerdictTakesBothLimits) {
   TuneResult result = Result(plan);
   const auto verdict = [&](std::int64_t failures, std::int64_t refusals) {
     result.verified[1] = {100, failures, refusals, 50, 0};
-    for (const auto& [key, text] : ProvenanceOf(plan, result)) {
+    for (const auto& [key, text] : DescribeProvenance(plan, result)) {
       if (key == "verdict") return text;
     }
     return std::string();
@@ -159,7 +159,7 @@ TEST(TuneOutput, TheVerdictTakesBothLimits) {
 TEST(TuneOutput, ProvenanceHasTheFigures) {
   const StudyPlan plan = Plan();
   std::string text;
-  for (const auto& [key, value] : ProvenanceOf(plan, Result(plan))) text += key + ": " + value + "\n";
+  for (const auto& [key, value] : DescribeProvenance(plan, Result(plan))) text += key + ": " + value + "\n";
   EXPECT_TRUE(Holds(text, {"study: small", "seed: 3", "tuned: mu = 2", "at most 10 %", "probability 0.05",
                            "failure: rotation error above 3 deg or direction error above 15 deg",
                            "as_tuned: failure 3.00 %", "verified: failure 4.00 % [", "of 100",
@@ -172,14 +172,14 @@ TEST(TuneOutput, TheRiskIsGivenWithItsBound) {
   TuneResult result = Result(plan);
   result.choice.risk_bound = 0.321;
   EXPECT_TRUE(Holds(TuneAsTable(plan, result, {}), {"verified risk 0.24; bound 0.321"}));
-  const Json json = Json::parse(TuneAsJson(plan, SettingsOf(plan), result, {}));
+  const Json json = Json::parse(TuneAsJson(plan, MakeTunedSettings(plan), result, {}));
   EXPECT_TRUE(json["target"]["at_most"].is_null());
 }
 
 TEST(TuneOutput, CurvesRiseFromNothingToEverything) {
   const StudyPlan plan = Plan();
   for (const size_t num_each : {1u, 10u, 150u, 5000u}) {
-    const Json json = Json::parse(TuneAsJson(plan, SettingsOf(plan), Result(plan), {Roc(num_each)}));
+    const Json json = Json::parse(TuneAsJson(plan, MakeTunedSettings(plan), Result(plan), {Roc(num_each)}));
     const Json& curve = json["roc"][0]["curve"];
     EXPECT_LE(curve.size(), 303u);
     EXPECT_EQ(curve.front()[1], 0.0);
@@ -190,7 +190,7 @@ TEST(TuneOutput, CurvesRiseFromNothingToEverything) {
     }
   }
   // Of good ones 0 ... 9 and bad ones 5 ... 14, mu = 6 accepts 7 and 2.
-  const Json roc = Json::parse(TuneAsJson(plan, SettingsOf(plan), Result(plan), {Roc(10)}))["roc"][0];
+  const Json roc = Json::parse(TuneAsJson(plan, MakeTunedSettings(plan), Result(plan), {Roc(10)}))["roc"][0];
   EXPECT_EQ(roc["marks"][0]["words"], "mu = 6");
   EXPECT_EQ(roc["marks"][0]["true_accept_rate"], 0.7);
   EXPECT_EQ(roc["marks"][0]["false_accept_rate"], 0.2);
@@ -206,7 +206,7 @@ TEST(TuneOutput, RepetitionsCountViolationsOfAllRepetitions) {
   repetitions.num_undecided = 2;
   repetitions.num_chosen = {0, 14, 1};
   repetitions.reference = Result(plan).verified;
-  const std::string table = RepetitionsAsTable(plan, SettingsOf(plan), repetitions);
+  const std::string table = RepetitionsAsTable(plan, MakeTunedSettings(plan), repetitions);
   EXPECT_TRUE(
       Holds(table, {"tuned 20 times", "Violated: 1 of 20: 5.00 %", "Violated or undecided: 3: 15.00 %",
                     "promised at most 5 %", "without a choice: 5", "mu = 2", "mu = 3"}));

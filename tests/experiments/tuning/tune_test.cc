@@ -29,11 +29,12 @@ const std::string kBlock =
     "  options: {mu: [1, 2, 3], lambda: [0.5, 1]}\n";
 
 TuneResult TuneIt(const StudyPlan& plan, int num_threads = 2, Unreached unreached = Unreached::kVerifyAll) {
-  return TuneInMemory(plan, SettingsOf(plan), unreached, num_threads);
+  return TuneInMemory(plan, MakeTunedSettings(plan), unreached, num_threads);
 }
 
-std::string AllOf(const StudyPlan& plan, const TuneResult& result) {
-  return TuneAsJson(plan, SettingsOf(plan), result, {}) + Text(result.explored) + Text(result.calibrated);
+std::string RenderTuning(const StudyPlan& plan, const TuneResult& result) {
+  return TuneAsJson(plan, MakeTunedSettings(plan), result, {}) + Text(result.explored) +
+         Text(result.calibrated);
 }
 
 // A condition's data; from trial `first_bad` on without a match, so that nothing can be estimated. Notes
@@ -118,7 +119,8 @@ TEST(Tune, VerifiesTheTunedEstimatorAndThoseOfTheStudyOnTheLastTrials) {
   const TuneResult result = TuneIt(plan);
   ASSERT_TRUE(result.choice.setting.has_value()) << result.choice.why;
   Study study = plan.study;
-  study.estimators.insert(study.estimators.begin(), SettingsOf(plan).settings[*result.choice.setting].spec);
+  study.estimators.insert(study.estimators.begin(),
+                          MakeTunedSettings(plan).settings[*result.choice.setting].spec);
   study.estimators[0].label = "tuned";
   const StudyPlan with_tuned = MakePlan(study);
   std::vector<VerifiedEstimator> expected(3);
@@ -152,17 +154,17 @@ TEST(Tune, VerifiesTheTunedEstimatorAndThoseOfTheStudyOnTheLastTrials) {
 
 TEST(Tune, DoesNotDependOnThreads) {
   const StudyPlan plan = TunedPlan(kBlock);
-  EXPECT_EQ(AllOf(plan, TuneIt(plan, 1)), AllOf(plan, TuneIt(plan, 4)));
+  EXPECT_EQ(RenderTuning(plan, TuneIt(plan, 1)), RenderTuning(plan, TuneIt(plan, 4)));
 }
 
 // The number of trials that `rcme run` would take, and everything but the block, has no say.
 TEST(Tune, IsAFunctionOfSeedAndBlock) {
   StudyPlan plan = TunedPlan(kBlock), other = plan;
-  const std::string whole = AllOf(plan, TuneIt(plan));
+  const std::string whole = RenderTuning(plan, TuneIt(plan));
   plan.study.trials = 77;
-  EXPECT_EQ(AllOf(plan, TuneIt(plan)), whole);
+  EXPECT_EQ(RenderTuning(plan, TuneIt(plan)), whole);
   other.study.seed = 4;
-  EXPECT_NE(AllOf(other, TuneIt(other)), whole);
+  EXPECT_NE(RenderTuning(other, TuneIt(other)), whole);
 }
 
 // Verification takes the most time, and without a choice only a figure shows it.
@@ -177,7 +179,7 @@ TEST(Tune, WithoutAChoiceItMayStop) {
   EXPECT_TRUE(stopped.verified.empty());
   EXPECT_EQ(whole.verified.size(), 6u);
   plan.study.tuning->max_refusal = 0.9;
-  EXPECT_EQ(AllOf(plan, TuneIt(plan, 2, Unreached::kStop)), AllOf(plan, TuneIt(plan)));
+  EXPECT_EQ(RenderTuning(plan, TuneIt(plan, 2, Unreached::kStop)), RenderTuning(plan, TuneIt(plan)));
 }
 
 TEST(Tune, TooFewTrialsAreRefusedBeforeAnyIsRun) {
@@ -225,13 +227,13 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
   WatchedData::Log log;
   const StudyPlan watched = Watched(plan, &log);
   Runner runner = Runner::InMemory(PlanRepetitions(watched, 8), 2);
-  const Repetitions repetitions = RepeatTuning(watched, SettingsOf(watched), &runner);
+  const Repetitions repetitions = RepeatTuning(watched, MakeTunedSettings(watched), &runner);
   EXPECT_EQ(log.seeds.size(), 9u);
   std::vector<std::int64_t> num_chosen(6, 0);
   std::int64_t num_without = 0;
   std::map<Verdict, std::int64_t> num_with;
   const std::vector<SettingCount> reference =
-      SumOver(CountOutcomes(plan, SettingsOf(plan), {30, 40}), {0, 1});
+      SumOver(CountOutcomes(plan, MakeTunedSettings(plan), {30, 40}), {0, 1});
   EXPECT_EQ(Text(repetitions.reference), Text(reference));
   for (std::uint64_t r = 1; r <= 8; ++r) {
     StudyPlan of_seed = plan;
@@ -242,7 +244,7 @@ TEST(RepeatTuning, RepeatsTheTuningOfOtherSeeds) {
       continue;
     }
     ++num_chosen[*setting];
-    ++num_with[VerdictOf(*plan.study.tuning, reference[*setting])];
+    ++num_with[DecideSetting(*plan.study.tuning, reference[*setting])];
   }
   EXPECT_EQ(repetitions.num_done, 8);
   EXPECT_EQ(repetitions.num_without_choice, num_without);

@@ -25,7 +25,7 @@ using Paths = std::vector<std::string>;
 using PartJson = nlohmann::ordered_json;
 
 std::string Bytes(const StudyPlan& plan, const TuneResult& result, const std::vector<EntropyRoc>& rocs) {
-  return TuneAsTable(plan, result, rocs) + TuneAsJson(plan, SettingsOf(plan), result, rocs);
+  return TuneAsTable(plan, result, rocs) + TuneAsJson(plan, MakeTunedSettings(plan), result, rocs);
 }
 
 class TuneParts : public testing::Test {
@@ -36,7 +36,7 @@ class TuneParts : public testing::Test {
     return GetTuningShard(plan_, settings_, work, merged, &runner);
   }
   // Both rounds of a tuning, the one of a transfer.
-  Paths PartsOf(const TuningWork& work, std::uint32_t count) const {
+  Paths ListParts(const TuningWork& work, std::uint32_t count) const {
     Paths paths;
     for (std::uint32_t number = 1; number <= count; ++number)
       paths.push_back(folder_.Path(fmt::format("{}_of_{}", number, count)));
@@ -50,30 +50,30 @@ class TuneParts : public testing::Test {
     }
     return paths;
   }
-  std::string BytesOf(const TuningWork& work, const WorkResults& merged) const {
+  std::string RenderMerged(const TuningWork& work, const WorkResults& merged) const {
     const TuneResult result =
         Tune(plan_, settings_, Unreached::kStop, CountsIn(plan_, settings_, work, merged));
-    return Bytes(plan_, result, RocsOf(plan_, EntropiesIn(plan_, work, merged)));
+    return Bytes(plan_, result, ComputeRocs(plan_, EntropiesIn(plan_, work, merged)));
   }
 
   const TempFolder folder_;
   const StudyPlan plan_ = PlanInPieces();
-  const SettingPlan settings_ = SettingsOf(plan_);
+  const SettingPlan settings_ = MakeTunedSettings(plan_);
 };
 
 TEST_F(TuneParts, OfAnyNumberInAnyOrderGiveTheBytesOfOneMachine) {
   const TuneResult one = TuneInMemory(plan_, settings_, Unreached::kStop, 2);
   ASSERT_TRUE(one.choice.setting.has_value());
   const std::vector<EntropyRoc> rocs =
-      RocsOf(plan_, MeasureEntropies(plan_, TuningTrials(*plan_.study.tuning).verify));
+      ComputeRocs(plan_, MeasureEntropies(plan_, TuningTrials(*plan_.study.tuning).verify));
   ASSERT_FALSE(rocs.empty());
   const std::string whole = Bytes(plan_, one, rocs);
   const TuningWork work = PlanTuningWork(plan_);
   EXPECT_EQ(work.items.NumItems(), 2 * (3 + 5 + 4 + 4 + 4));
   for (const std::uint32_t count : {1, 7, 64}) {
-    Paths paths = PartsOf(work, count);
+    Paths paths = ListParts(work, count);
     for (int order = 0; order < 2; ++order) {
-      EXPECT_EQ(BytesOf(work, MergeParts(work.items, paths)), whole) << count << " shards";
+      EXPECT_EQ(RenderMerged(work, MergeParts(work.items, paths)), whole) << count << " shards";
       std::ranges::reverse(paths);
     }
     if (count == 1) continue;
@@ -90,7 +90,7 @@ TEST_F(TuneParts, OfAnyNumberInAnyOrderGiveTheBytesOfOneMachine) {
       EXPECT_GT(of_round_one.num_items, 0);
       Part(work, MergeParts(work.items, paths), shard, paths[2]);
     }
-    EXPECT_EQ(BytesOf(work, MergeParts(work.items, paths)), whole);
+    EXPECT_EQ(RenderMerged(work, MergeParts(work.items, paths)), whole);
   }
 }
 
@@ -99,7 +99,7 @@ TEST_F(TuneParts, OfATransferGiveTheBytesOfOneMachine) {
   const std::string whole = TransferAsTable(plan_, one) + TransferAsJson(plan_, settings_, one);
   const TuningWork work = PlanTransferWork(plan_);
   for (const std::uint32_t count : {1, 7, 64}) {
-    const WorkResults merged = MergeParts(work.items, PartsOf(work, count));
+    const WorkResults merged = MergeParts(work.items, ListParts(work, count));
     EXPECT_EQ(FindMissingIn(work.items, merged, 0, work.num_first).num_items, 0);
     const TransferResult result =
         MeasureTransfer(plan_, settings_, "", CountsIn(plan_, settings_, work, merged));
@@ -108,7 +108,7 @@ TEST_F(TuneParts, OfATransferGiveTheBytesOfOneMachine) {
 }
 
 TEST_F(TuneParts, OfOtherLevelsAreRefused) {
-  const std::string path = PartsOf(PlanTransferWork(plan_), 1).front();
+  const std::string path = ListParts(PlanTransferWork(plan_), 1).front();
   StudyPlan other = plan_;
   other.study.tuning->options.front().levels.back() = "5";
   EXPECT_TRUE(ThrowsInputError([&] { MergeParts(PlanTransferWork(other).items, {path}); },
@@ -117,7 +117,7 @@ TEST_F(TuneParts, OfOtherLevelsAreRefused) {
 
 TEST_F(TuneParts, DamageIsNamed) {
   const TuningWork work = PlanTuningWork(plan_);
-  const std::string path = PartsOf(work, 1).front();
+  const std::string path = ListParts(work, 1).front();
   // Whether a change of the first piece of a group is found when it is read.
   const auto is_refused = [&](size_t group, const std::function<void(PartJson*)>& change,
                               const std::string& word) {
@@ -126,7 +126,7 @@ TEST_F(TuneParts, DamageIsNamed) {
         if (piece["group"] == group && piece["piece"] == 0) change(&piece["result"]);
       }
     });
-    return ThrowsInputError([&] { BytesOf(work, MergeParts(work.items, {changed})); },
+    return ThrowsInputError([&] { RenderMerged(work, MergeParts(work.items, {changed})); },
                             {changed, "damaged: block 0 of " + work.items.groups[group].name, word});
   };
   const auto erase = [](PartJson* result) { result->erase(0); };

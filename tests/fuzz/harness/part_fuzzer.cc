@@ -25,7 +25,7 @@ void CountTuning(const std::string& json) {
   static const StudyPlan plan = TunedPlan(
       "  target: failure\n  at_most: 0.3\n  explore: 3\n  calibrate: 5\n  verify: 3\n  options: {mu: [1, "
       "2]}\n");
-  static const SettingPlan settings = SettingsOf(plan);
+  static const SettingPlan settings = MakeTunedSettings(plan);
   static const TuningWork work = PlanTuningWork(plan);
   const WorkResults merged = GiveEachPiece(work.items, json);
   OnlyInputError([&] { CountsIn(plan, settings, work, merged).count({0, 3}); });

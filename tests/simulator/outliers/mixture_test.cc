@@ -11,7 +11,7 @@ namespace rcme {
 namespace {
 
 // All weights zero but these.
-std::unique_ptr<OutlierLaw> MixtureOf(const Settings& weights) {
+std::unique_ptr<OutlierLaw> MakeMixture(const Settings& weights) {
   auto law = MakeOutlierMixture();
   for (const Parameter& parameter : law->Parameters()) {
     if (parameter.name().starts_with("weight_")) parameter.SetFromText("0");
@@ -31,7 +31,7 @@ TEST(OutlierMixture, HasAWeightForEveryOtherLaw) {
 // Three laws that are easy to distinguish: flagged; sharing a point with a true match; near the true point.
 TEST(OutlierMixture, SplitsByTheWeightsToOneMatch) {
   const auto law =
-      MixtureOf({{"weight_epipolar", "3"}, {"weight_one_to_many", "2"}, {"weight_displaced", "1"}});
+      MakeMixture({{"weight_epipolar", "3"}, {"weight_one_to_many", "2"}, {"weight_displaced", "1"}});
   for (const auto& [num_wrong, expected] :
        {std::pair{60u, std::array{30, 20, 10}}, {61u, std::array{31, 20, 10}}, {1u, std::array{1, 0, 0}}}) {
     const WrongMatches wrong = MakeWrong(*law, SceneForOutliers(100), num_wrong, 0.1);
@@ -52,7 +52,7 @@ TEST(OutlierMixture, OfOneLawIsThatLaw) {
     if (entry.name == "mixture") continue;
     const Scene scene = SceneForOutliers(100);
     const WrongMatches alone = MakeWrong(*entry.make(), scene, 50, 0.5);
-    const WrongMatches mixed = MakeWrong(*MixtureOf({{"weight_" + entry.name, "0.1"}}), scene, 50, 0.5);
+    const WrongMatches mixed = MakeWrong(*MakeMixture({{"weight_" + entry.name, "0.1"}}), scene, 50, 0.5);
     EXPECT_TRUE(std::ranges::equal(alone.matches, mixed.matches, AreEqual)) << entry.name;
     EXPECT_EQ(alone.is_undetectable, mixed.is_undetectable) << entry.name;
   }
@@ -61,7 +61,7 @@ TEST(OutlierMixture, OfOneLawIsThatLaw) {
 // A key that two laws have is one key, and sets both.
 TEST(OutlierMixture, ASharedKeySetsAllLawsThatHaveIt) {
   const auto law =
-      MixtureOf({{"weight_epipolar", "1"}, {"weight_displaced", "1"}, {"outlier_min_shift_px", "20"}});
+      MakeMixture({{"weight_epipolar", "1"}, {"weight_displaced", "1"}, {"outlier_min_shift_px", "20"}});
   const WrongMatches wrong = MakeWrong(*law, SceneForOutliers(200), 200);
   for (size_t i = 0; i < 200; ++i) {
     const bool is_on_own_ray = (wrong.matches[i].x1_px - wrong.exact[i].x1_px).norm() < 1e-9;
@@ -76,7 +76,7 @@ TEST(OutlierMixture, ASharedKeySetsAllLawsThatHaveIt) {
 }
 
 TEST(OutlierMixture, WithoutAnyWeightItNamesTheKeys) {
-  EXPECT_TRUE(ThrowsInputError([] { MakeWrong(*MixtureOf({}), SceneForOutliers(10), 1); },
+  EXPECT_TRUE(ThrowsInputError([] { MakeWrong(*MakeMixture({}), SceneForOutliers(10), 1); },
                                {"mixture", "weight_uniform", "weight_epipolar"}));
 }
 

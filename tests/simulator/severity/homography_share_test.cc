@@ -13,7 +13,7 @@ namespace {
 // chi2_2 at 95 % of the difference of two noisy points, in units of sigma.
 const double kRadiusSigma = std::sqrt(2.0) * 2.448;
 
-double ShareOf(const Scene& scene, std::uint32_t trial = 0) {
+double ComputeShare(const Scene& scene, std::uint32_t trial = 0) {
   RandomStream rng({1, 0, trial, 7});
   return HomographyShare(scene, scene.points_in_cam1, kRadiusSigma * 0.5, rng);
 }
@@ -28,17 +28,17 @@ Scene WithPlane(Scene scene, size_t of_ten) {
 }
 
 TEST(HomographyShare, IsOneOnAPlaneAndWithoutTranslation) {
-  EXPECT_EQ(ShareOf(WithPlane(TwoCameraScene(500, 0), 10)), 1.0);
-  EXPECT_EQ(ShareOf(TwoCameraScene(500, 0, 0.0)), 1.0);
+  EXPECT_EQ(ComputeShare(WithPlane(TwoCameraScene(500, 0), 10)), 1.0);
+  EXPECT_EQ(ComputeShare(TwoCameraScene(500, 0, 0.0)), 1.0);
 }
 
 // 60 % on a plane are found with probability 1 - 3e-7, and are 60 +- 10 % (3 sd) of 200 points drawn; some
 // others lie near the plane by chance. In a volume of depth 2 to 8 m no plane has more than a third.
 TEST(HomographyShare, FindsThePlaneAmongOthers) {
-  const double share = ShareOf(WithPlane(TwoCameraScene(500, 0), 6));
+  const double share = ComputeShare(WithPlane(TwoCameraScene(500, 0), 6));
   EXPECT_GT(share, 0.5);
   EXPECT_LT(share, 0.8);
-  EXPECT_LT(ShareOf(TwoCameraScene(500, 0)), 0.34);
+  EXPECT_LT(ComputeShare(TwoCameraScene(500, 0)), 0.34);
 }
 
 // A plane explains what is within the distance: sqrt(2) 2.448 = 3.46 sigma here.
@@ -55,9 +55,9 @@ TEST(HomographyShare, ExplainsWhatIsWithinTheDistance) {
 TEST(HomographyShare, OfNothingIsUnknownAndOfTwoPointsDefined) {
   Scene scene = TwoCameraScene(500, 0);
   scene.points_in_cam1.resize(2);
-  EXPECT_GE(ShareOf(scene), 0.0);
+  EXPECT_GE(ComputeShare(scene), 0.0);
   scene.points_in_cam1.clear();
-  EXPECT_TRUE(std::isnan(ShareOf(scene)));
+  EXPECT_TRUE(std::isnan(ComputeShare(scene)));
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(PointConstraint, DoesNotDependOnThePointAndMovesWithTheMotion) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const Scene scene = TwoCameraScene(30, trial);
     for (const Eigen::Vector3d& point : scene.points_in_cam1) {
-      const PointConstraint constraint = ConstraintOf(scene, point);
+      const PointConstraint constraint = ComputePointConstraint(scene, point);
       const Eigen::RowVectorXd moved = constraint.gradient_px.transpose() * PixelJacobian(scene, point);
       const double scale = constraint.gradient_motion.norm();
       ASSERT_GT(scale, 0.0);
@@ -53,7 +53,7 @@ TEST(PointConstraint, HasTheInformationOfTheEpipolarConstraint) {
     };
     Matrix5d ours = Matrix5d::Zero(), theirs = Matrix5d::Zero();
     for (const Eigen::Vector3d& point : scene.points_in_cam1) {
-      const PointConstraint constraint = ConstraintOf(scene, point);
+      const PointConstraint constraint = ComputePointConstraint(scene, point);
       ours += constraint.gradient_motion.transpose() * constraint.gradient_motion /
               constraint.gradient_px.squaredNorm();
       const Correspondence match{scene.camera1.Project(point), scene.camera2.Project(scene.InCamera2(point))};
@@ -79,7 +79,8 @@ TEST(RotationInformation, IsThatOfTheFullProblemWithoutTranslation) {
       const Eigen::MatrixXd cross = Multiply(Jr.transpose(), Jx);
       const Eigen::MatrixXd expected =
           Multiply(Jr.transpose(), Jr) - Propagate(cross, Inverse(Multiply(Jx.transpose(), Jx)));
-      EXPECT_LT((RotationInformationOf(scene, point, sigma_px) - expected).norm(), 1e-6 * expected.norm());
+      EXPECT_LT((ComputeRotationInformation(scene, point, sigma_px) - expected).norm(),
+                1e-6 * expected.norm());
     }
   }
 }

@@ -145,7 +145,7 @@ TEST(Severity, TheConditionIsThatOfTheInformation) {
   const Trial made = MakeTrial(0, 0.0);
   Matrix5d information = Matrix5d::Zero();
   for (const Eigen::Vector3d& point : made.scene.points_in_cam1) {
-    const PointConstraint constraint = ConstraintOf(made.scene, point);
+    const PointConstraint constraint = ComputePointConstraint(made.scene, point);
     information += constraint.gradient_motion.transpose() * constraint.gradient_motion /
                    constraint.gradient_px.squaredNorm();
   }

@@ -7,10 +7,10 @@
 namespace rcme {
 
 double MedianDeviation(const std::vector<double>& values) {
-  const double median = MedianOf(values);
+  const double median = ComputeMedian(values);
   std::vector<double> deviations;
   for (const double x : values) deviations.push_back(std::abs(x - median));
-  return MedianOf(deviations);
+  return ComputeMedian(deviations);
 }
 
 }  // namespace rcme

@@ -98,7 +98,7 @@ std::string Bytes(const Audit& audit) {
 
 class AuditParts : public testing::Test {
  protected:
-  std::string PathOf(std::uint32_t number, std::uint32_t count) const {
+  std::string MakePartPath(std::uint32_t number, std::uint32_t count) const {
     return folder_.Path(fmt::format("{}_of_{}.json", number, count));
   }
   std::string RoundPath() const { return folder_.Path("round.json"); }
@@ -106,9 +106,9 @@ class AuditParts : public testing::Test {
   std::string Part(std::uint32_t number, std::uint32_t count, bool is_first = true,
                    const AuditOptions& options = Options()) const {
     const Audit plan = PlanAudit(Claims(), options);
-    Runner runner = Runner::OfShard(PlanAuditBlocks(plan), {number, count}, PathOf(number, count), 1);
+    Runner runner = Runner::OfShard(PlanAuditBlocks(plan), {number, count}, MakePartPath(number, count), 1);
     GetAuditRound(plan, is_first ? FirstRound(plan) : ReadRound(plan, RoundPath()), &runner);
-    return PathOf(number, count);
+    return MakePartPath(number, count);
   }
   // Of all shards, all rounds.
   Paths Parts(std::uint32_t count) const {
@@ -172,7 +172,7 @@ TEST_F(AuditParts, FewTrialsAreRunForNothing) {
 TEST_F(AuditParts, EveryBlockIsInOneShardAndThoseOfACheckAreDividedEvenly) {
   const Audit plan = PlanAudit(Claims(), Options());
   const WorkPlan pieces = PlanAuditBlocks(plan);
-  EXPECT_EQ(pieces.groups.size(), PlacesOf(plan).size());
+  EXPECT_EQ(pieces.groups.size(), ListCheckPlaces(plan).size());
   EXPECT_EQ(pieces.groups.at(9).num_items, 0);  // not possible
   for (const std::uint32_t count : {1, 3, 7, 64}) {
     std::set<ItemPlace> seen;
@@ -301,7 +301,7 @@ TEST_F(AuditParts, ARoundOfAnotherAuditIsRefused) {
     return ThrowsInputError([&] { ReadRound(audit, path); }, {path, word});
   };
   EXPECT_TRUE(is_refused(PlanAudit(Claims(), seed), RoundPath(), "'seed: 1' there"));
-  EXPECT_TRUE(is_refused(plan, PathOf(1, 3), "'audit' there, 'round of an audit' here"));
+  EXPECT_TRUE(is_refused(plan, MakePartPath(1, 3), "'audit' there, 'round of an audit' here"));
   const auto changed = [&](const std::function<void(Json*)>& change) {
     return ChangedPart(RoundPath(), change);
   };

@@ -74,14 +74,14 @@ TEST(JudgeClaim, WithOneNoiseLevelHoldsIfItHoldsInEveryCondition) {
 }
 
 // Catches sides exchanged, of a coverage or of its law's mean, and one of a rate that is no region's.
-TEST(SideOf, ARegionThatCoversTooSeldomIsTooNarrow) {
+TEST(FindFailedSide, ARegionThatCoversTooSeldomIsTooNarrow) {
   Target coverage = ClaimedRate("coverage", 0.95, {0.94, 0.96});
   coverage.kind = Target::Kind::kCoverage;
   const auto side = [](const Target& target, const Interval& interval) {
     TargetResult result;
     result.interval = interval;
     result.verdict = DecideEquivalence(interval, target.allowed);
-    return SideOf(target, result);
+    return FindFailedSide(target, result);
   };
   EXPECT_EQ(side(coverage, {0.5, 0.6}), std::nullopt) << "a share within a threshold, of no region";
   coverage.degrees_of_freedom = 5;

@@ -49,7 +49,7 @@ Statistic WithSigmaScaled(const Statistic& statistic, double factor) {
 }
 
 // The noise of every coordinate drawn again from another law with the same standard deviation.
-Statistic WithNoiseOf(const Statistic& statistic, double (*draw_standardised)(RandomStream&)) {
+Statistic RedrawNoise(const Statistic& statistic, double (*draw_standardised)(RandomStream&)) {
   return [statistic, draw_standardised](Case& made) {
     MotionProblem& problem = made.data.problem;
     for (size_t i = 0; i < problem.matches.size(); ++i) {
@@ -196,7 +196,7 @@ std::vector<SoundTwin> SoundTwins() {
   return {{"known motion", PointCheck(true_pose, 0.5, 1, 1)},
           {"fresh point", PointCheck(FreshPointStatistic(RankAwareDistance), kLimitSigmaPx, 9, 1)},
           {"Sigma_f", PointCheck(SoundNeesOfF, kLimitSigmaPx, 8, 8)},
-          {"normal noise", PointCheck(WithNoiseOf(true_pose, DrawNormal), 0.5, 1, 1)},
+          {"normal noise", PointCheck(RedrawNoise(true_pose, DrawNormal), 0.5, 1, 1)},
           {"point outside of the sample", PointCheck(DistanceFromTen(10), 0.01, 11, 1)},
           {"reported covariance", EstimatorCheck(ErrorCovariance())}};
 }
@@ -212,7 +212,7 @@ std::vector<Fault> Faults() {
     return blocks;
   };
   const auto noisy = [&](double (*draw)(RandomStream&)) {
-    return PointCheck(WithNoiseOf(true_pose, draw), 0.5, 1, 1);
+    return PointCheck(RedrawNoise(true_pose, draw), 0.5, 1, 1);
   };
   return {
       {"wrong degrees of freedom: 2 for 1", "known motion", PointCheck(true_pose, 0.5, 1, 2)},

@@ -30,7 +30,7 @@ Check LawCheck(int degrees_of_freedom, double sigma_error, const std::vector<Tar
   return check;
 }
 
-CoverageCount ShareOf(Verdict verdict, const Check& check, double confidence, int num_seeds) {
+CoverageCount CountWithVerdict(Verdict verdict, const Check& check, double confidence, int num_seeds) {
   CoverageCount count;
   for (int seed = 1; seed <= num_seeds; ++seed) {
     count.Add(DecideCheck(check, {static_cast<std::uint64_t>(seed), 3, Budget::kQuick, confidence}).verdict ==
@@ -60,32 +60,32 @@ TEST(MeanPitWithin, IsWhatAWrongSigmaDoesToTheMean) {
 
 // What is promised is kept: by running checks at the nominal value and at the departure that is said to be
 // found. (A check that looks once, at its last trial, as the promise is made.)
-TEST(PowerOf, IsThePowerThatChecksHave) {
+TEST(FindPower, IsThePowerThatChecksHave) {
   constexpr double kPowerConfidence = 0.999;
   constexpr int kTrials = 2'000, kSeeds = 60;
   for (const Target& target : {CoverageTargets(5).front(), CoverageTargets(5).back()}) {
-    const TargetPower power = PowerOf(target, kTrials, kPowerConfidence);
+    const TargetPower power = FindPower(target, kTrials, kPowerConfidence);
     const CoverageCount holds =
-        ShareOf(Verdict::kHolds, LawCheck(5, 0.0, {target}, kTrials), kPowerConfidence, kSeeds);
+        CountWithVerdict(Verdict::kHolds, LawCheck(5, 0.0, {target}, kTrials), kPowerConfidence, kSeeds);
     EXPECT_TRUE(holds.Admits(power.holds_at_nominal))
         << target.quantity << power.holds_at_nominal << ", " << holds;
     for (const double error : {power.found_sigma.lower, power.found_sigma.upper}) {
-      const CoverageCount found =
-          ShareOf(Verdict::kDoesNotHold, LawCheck(5, error, {target}, kTrials), kPowerConfidence, kSeeds);
+      const CoverageCount found = CountWithVerdict(
+          Verdict::kDoesNotHold, LawCheck(5, error, {target}, kTrials), kPowerConfidence, kSeeds);
       EXPECT_TRUE(found.Admits(kPowerOfDesign)) << target.quantity << " at " << error << ": " << found;
     }
   }
 }
 
-TEST(PowerOf, SaysWhenNothingCanBeDecided) {
-  const TargetPower power = PowerOf(ClaimedRate("rate", 0.5, {0.49, 0.51}), 100, 0.999);
+TEST(FindPower, SaysWhenNothingCanBeDecided) {
+  const TargetPower power = FindPower(ClaimedRate("rate", 0.5, {0.49, 0.51}), 100, 0.999);
   EXPECT_EQ(power.holds_at_nominal, 0.0);
   EXPECT_LT(power.found.lower, 0.4);
-  const TargetPower one_sided = PowerOf(ClaimedRate("rate", 1.0, {0.9, 1.0}), 1'000, 0.999);
+  const TargetPower one_sided = FindPower(ClaimedRate("rate", 1.0, {0.9, 1.0}), 1'000, 0.999);
   EXPECT_EQ(one_sided.holds_at_nominal, 1.0);
   EXPECT_TRUE(std::isinf(one_sided.found.upper));
   EXPECT_EQ(DescribeFound(one_sided).find(" or "), std::string::npos);
-  EXPECT_EQ(DescribeFound(PowerOf(ClaimedRate("rate", 1.0, {0.9, 1.0}), 2, 0.999)), "nothing");
+  EXPECT_EQ(DescribeFound(FindPower(ClaimedRate("rate", 1.0, {0.9, 1.0}), 2, 0.999)), "nothing");
 }
 
 // The whole table: at either budget every claim can hold where everything is nominal, and can fail.
@@ -99,7 +99,7 @@ TEST(Design, EveryClaimCanHoldAndEveryTargetCanFail) {
       for (const Check& check : claim.checks) {
         for (const Target& target : check.targets) {
           if (!target.IsClaimed()) continue;
-          const TargetPower power = PowerOf(target, check.limits.Max(budget), plan.confidence);
+          const TargetPower power = FindPower(target, check.limits.Max(budget), plan.confidence);
           EXPECT_TRUE(std::isfinite(power.found.lower) || std::isfinite(power.found.upper))
               << claim.id << ": " << target.quantity << " cannot fail";
         }
@@ -114,7 +114,7 @@ TEST(Design, FullFindsASigmaThatIsFivePercentWrong) {
   for (const auto& [degrees_of_freedom, limits] :
        {std::pair{5, kReprojectionCoverage.limits}, std::pair{1, kSampleCoverage.limits}}) {
     const Target pit = CoverageTargets(degrees_of_freedom).back();
-    const TargetPower full = PowerOf(pit, limits.full, plan.confidence);
+    const TargetPower full = FindPower(pit, limits.full, plan.confidence);
     EXPECT_GT(full.found_sigma.lower, -0.05) << degrees_of_freedom;
     EXPECT_LT(full.found_sigma.upper, 0.05) << degrees_of_freedom;
   }
@@ -124,7 +124,7 @@ TEST(Design, FullFindsASigmaThatIsFivePercentWrong) {
 TEST(Design, QuickFindsAnEstimatorsSigmaThatIsEightPercentWrong) {
   const Audit plan = PlanAudit(AllClaims(EstimatorRegistry()), {});
   const Target pit = CoverageTargets(5, kEstimatorTolerance).back();
-  const TargetPower quick = PowerOf(pit, kEstimatorCoverage.limits.quick, plan.confidence);
+  const TargetPower quick = FindPower(pit, kEstimatorCoverage.limits.quick, plan.confidence);
   EXPECT_GT(quick.found_sigma.lower, -0.08);
   EXPECT_LT(quick.found_sigma.upper, 0.08);
 }

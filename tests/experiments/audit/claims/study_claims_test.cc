@@ -158,15 +158,15 @@ TEST(StudyClaims, RefuseMoreConditionsThanAnAuditCanTake) {
   for (int i = 0; i < 1'001; ++i) levels += fmt::format("{}{}", i > 0 ? ", " : "", 1 + i);
   const StudyPlan plan = PlanWith("num_matches: 8", "{focal_px: [" + levels + "]}");
   EXPECT_TRUE(ThrowsInputError([&] { StudyClaims(plan); }, {"1001", "1000", "--set"}));
-  EXPECT_TRUE(ThrowsInputError([&] { MapConditionsOf(plan); }, {"1001", "1000", "--set"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ListMapConditions(plan); }, {"1001", "1000", "--set"}));
 }
 
 // Samples of the map.
 
 // A study of the built-in scene gives the built-in map's samples, to the last bit.
-TEST(MapConditionsOf, OnTheBuiltInSceneDrawTheBuiltInSamples) {
+TEST(ListMapConditions, OnTheBuiltInSceneDrawTheBuiltInSamples) {
   const StudyPlan plan = PlanWith("num_matches: 13, baseline_m: 0.1, outlier_ratio: 0");
-  const MapSampler draw = MapConditionsOf(plan).at(0).sampler(12, 0.2);
+  const MapSampler draw = ListMapConditions(plan).at(0).sampler(12, 0.2);
   const MapSampler built_in = AtBaselines({0.1}).at(0).sampler(12, 0.2);
   for (std::uint32_t trial = 0; trial < 5; ++trial) {
     const MapSample a = draw({1, 2, trial}).value(), b = built_in({1, 2, trial}).value();
@@ -181,25 +181,25 @@ TEST(MapConditionsOf, OnTheBuiltInSceneDrawTheBuiltInSamples) {
   }
 }
 
-TEST(MapConditionsOf, AreThoseThatDifferInMoreThanTheNoiseLevel) {
+TEST(ListMapConditions, AreThoseThatDifferInMoreThanTheNoiseLevel) {
   const StudyPlan plan = PlanWith("num_matches: 20", "{outlier_ratio: [0, 0.5], sigma_px: [0.3, 2]}");
-  const std::vector<MapCondition> conditions = MapConditionsOf(plan);
+  const std::vector<MapCondition> conditions = ListMapConditions(plan);
   ASSERT_EQ(conditions.size(), 2);
   EXPECT_EQ(conditions[1].level, "outlier_ratio = 0.5");
-  EXPECT_EQ(SigmasOf(plan), (std::vector<double>{0.3, 2.0}));
+  EXPECT_EQ(ListSigmas(plan), (std::vector<double>{0.3, 2.0}));
   EXPECT_TRUE(conditions[1].sampler(9, 0.3)({1, 2, 3}));
   EXPECT_FALSE(conditions[1].sampler(10, 0.3)({1, 2, 3}));  // ten true matches: none is left as the fresh one
 }
 
-TEST(MapConditionsOf, KeepTheRatioOfTheAssumedSigma) {
+TEST(ListMapConditions, KeepTheRatioOfTheAssumedSigma) {
   const StudyPlan plan = PlanWith("num_matches: 20, sigma_px: 0.5, assumed_sigma_px: 0.75");
-  EXPECT_DOUBLE_EQ(MapConditionsOf(plan).at(0).sampler(8, 0.2)({1, 2, 3})->observed.problem.sigma_px, 0.3);
+  EXPECT_DOUBLE_EQ(ListMapConditions(plan).at(0).sampler(8, 0.2)({1, 2, 3})->observed.problem.sigma_px, 0.3);
 }
 
 // Cameras of different focal lengths: exchanged, a true match would lie far off its line.
 TEST(MapOfAStudy, EachImageHasItsOwnCamera) {
   const StudyPlan plan = PlanWith("cameras: euroc_and_office, num_matches: 40");
-  const MapSampler draw = MapConditionsOf(plan).at(0).sampler(20, 1e-4);
+  const MapSampler draw = ListMapConditions(plan).at(0).sampler(20, 1e-4);
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     const std::optional<MapSample> sample = draw({1, 0, trial});
     ASSERT_TRUE(sample);
@@ -212,7 +212,7 @@ TEST(MapOfAStudy, CountsOnlyTrialsWithASample) {
   ValidityMapOptions options{.sigmas_px = {0.5},
                              .nums_points = {8, 50},
                              .condition_key = "condition",
-                             .conditions = MapConditionsOf(plan),
+                             .conditions = ListMapConditions(plan),
                              .trials = 6};
   const std::string csv = MapCsvInMemory(options);
   EXPECT_NE(csv.find("0.5,8,motion = general,"), std::string::npos) << csv;

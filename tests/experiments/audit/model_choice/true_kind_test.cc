@@ -24,7 +24,7 @@ Scene OnAPlane(Scene scene) {
 }
 
 TEST(TrueKind, OfScenesThatAreClear) {
-  const auto kind = [](const Scene& scene) { return KindOf(Measure(scene), 0.1); };
+  const auto kind = [](const Scene& scene) { return ClassifyKind(Measure(scene), 0.1); };
   EXPECT_EQ(kind(TwoCameraScene(200, 0)), TrueKind::kGeneral);
   EXPECT_EQ(kind(OnAPlane(TwoCameraScene(200, 0))), TrueKind::kPlanar);
   EXPECT_EQ(kind(TwoCameraScene(200, 0, 0.0)), TrueKind::kRotationOnly);
@@ -69,7 +69,7 @@ TEST(TrueKind, ExpectsTheShareThatTheVerdictFinds) {
 
 TEST(TrueKind, HasABandToEitherSideOfEachBound) {
   const auto kind = [](int n, double baseline_m, double parallax, double plane) {
-    return KindOf({n, baseline_m, parallax, plane}, 0.1);
+    return ClassifyKind({n, baseline_m, parallax, plane}, 0.1);
   };
   EXPECT_EQ(kind(7, 0.0, 0.0, 1.0), TrueKind::kBorderline);
   EXPECT_EQ(kind(8, 0.0, 0.0, 1.0), TrueKind::kRotationOnly);

@@ -19,7 +19,7 @@ namespace {
 
 using Row = std::map<std::string, std::string>;
 
-std::vector<Row> RowsOf(const std::string& csv) {
+std::vector<Row> ParseRows(const std::string& csv) {
   const auto split = [](const std::string& line) {
     std::vector<std::string> fields;
     std::istringstream in(line);
@@ -64,7 +64,7 @@ ValidityMapOptions SmallMap(int trials) {
 TEST(ValidityMap, ThreadsChangeNothing) {
   ValidityMapOptions options = SmallMap(50);
   const std::string one = MapCsvInMemory(options, 1);
-  EXPECT_EQ(RowsOf(one).size(), 4u * 7u * 4u);  // cells, groups, quantities
+  EXPECT_EQ(ParseRows(one).size(), 4u * 7u * 4u);  // cells, groups, quantities
   for (const int num_threads : {2, 5}) {
     EXPECT_EQ(MapCsvInMemory(options, num_threads), one) << num_threads << " threads";
   }
@@ -77,7 +77,7 @@ TEST(ValidityMap, CoversWhereNoiseIsSmallAndShowsWhatWasMeasuredElsewhere) {
   // covered 0.947 there in another measurement, which 3,000 trials cannot tell from 0.95. At 0.5 px that
   // measurement (two cameras of different focal lengths) gave 0.787 for Sigma_f and 0.632 for Sigma_p, n =
   // 20,000: here within 0.05, more than the interval's 0.03 for the difference of the cameras.
-  const std::vector<Row> rows = RowsOf(MapCsvInMemory(SmallMap(3'000)));
+  const std::vector<Row> rows = ParseRows(MapCsvInMemory(SmallMap(3'000)));
   for (const std::string m : {"8", "20"}) {
     for (const std::string quantity : {"f", "pose", "fresh_point", "ml_pose"}) {
       const Row row = Find(
@@ -97,7 +97,7 @@ TEST(ValidityMap, CoversWhereNoiseIsSmallAndShowsWhatWasMeasuredElsewhere) {
 }
 
 TEST(ValidityMap, ThirdsAddUpToAllAndAreInOrder) {
-  const std::vector<Row> rows = RowsOf(MapCsvInMemory(SmallMap(100)));
+  const std::vector<Row> rows = ParseRows(MapCsvInMemory(SmallMap(100)));
   for (const std::string quantity : {"f", "pose", "fresh_point", "ml_pose"}) {
     const Row cell = {{"sigma_px", "0.5"}, {"num_points", "8"}, {"quantity", quantity}};
     const auto with = [&](const std::string& group) {
@@ -124,7 +124,7 @@ TEST(ValidityMap, ThirdsAddUpToAllAndAreInOrder) {
 TEST(ValidityMap, ParallaxGrowsWithTheBaseline) {
   ValidityMapOptions options = SmallMap(200);
   options.conditions = AtBaselines({0.1, 1.5});
-  const std::vector<Row> rows = RowsOf(MapCsvInMemory(options));
+  const std::vector<Row> rows = ParseRows(MapCsvInMemory(options));
   const auto parallax_deg = [&](const std::string& baseline) {
     return std::stod(Find(rows, {{"sigma_px", "0.5"},
                                  {"num_points", "8"},
@@ -148,7 +148,7 @@ ValidityReferenceOptions SmallReference() {
 TEST(ValidityReference, AllCovariancesAgreeWhereNoiseIsSmall) {
   // False alarm 1e-4 a row. The Monte-Carlo covariance from 2,000 noises covers 0.949 of Gaussian errors
   // (Hotelling), which 1,200 draws cannot tell from 0.95.
-  const std::vector<Row> rows = RowsOf(ReferenceCsvInMemory(SmallReference()));
+  const std::vector<Row> rows = ParseRows(ReferenceCsvInMemory(SmallReference()));
   EXPECT_EQ(rows.size(), 2u * 2u * 4u);
   for (const Row& row : rows) {
     EXPECT_EQ(row.at("n"), "1200");
@@ -235,9 +235,9 @@ TEST(MapCommand, WritesBothTablesAndPrintsTheirPaths) {
   const ProgramResult result = RunRcme({"map", "--out", out, "--trials", "3", "--threads", "2"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out, out + "/validity_map.csv\n" + out + "/validity_reference.csv\n");
-  const std::vector<Row> map = RowsOf(ReadBytes(out + "/validity_map.csv"));
+  const std::vector<Row> map = ParseRows(ReadBytes(out + "/validity_map.csv"));
   EXPECT_EQ(map.size(), 120u * 7u * 4u);
-  EXPECT_EQ(RowsOf(ReadBytes(out + "/validity_reference.csv")).size(), 6u * 2u * 4u);
+  EXPECT_EQ(ParseRows(ReadBytes(out + "/validity_reference.csv")).size(), 6u * 2u * 4u);
 }
 
 TEST(MapCommand, RefusesAPlaceThatCannotBeWritten) {

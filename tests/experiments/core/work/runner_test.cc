@@ -31,7 +31,7 @@ WorkPlan Plan() { return {"knitting", "row", "wool: red\n", {{"sleeve", 9}, {"co
 std::string Knit(const ItemPlace& place) { return fmt::format("[{},{}]", place.group, place.item); }
 
 // What was done, in order; a piece that is done twice is in it twice.
-std::string AllOf(const WorkResults& merged) {
+std::string JoinResults(const WorkResults& merged) {
   std::string text;
   ReadResults(Plan(), merged, 0, 3, [&](const ItemPlace& place, const std::string& json) {
     EXPECT_EQ(json, Knit(place));
@@ -81,7 +81,7 @@ TEST_F(RunnerOfShards, AnyNumberOrderAndGroupingHoldEveryPieceOnce) {
     Paths paths = Parts(count);
     for (int order = 0; order < 3; ++order) {
       const WorkResults merged = MergeParts(Plan(), paths);
-      EXPECT_EQ(AllOf(merged), whole);
+      EXPECT_EQ(JoinResults(merged), whole);
       EXPECT_EQ(merged.num_shards, count);
       EXPECT_EQ(FindMissingIn(Plan(), merged, 0, 3).num_items, 0);
       std::ranges::reverse(paths);
@@ -90,8 +90,8 @@ TEST_F(RunnerOfShards, AnyNumberOrderAndGroupingHoldEveryPieceOnce) {
     const auto half = paths.begin() + count / 2;
     Paths groups = {Joined({half, paths.end()}, "second"), paths.front()};  // a part is there twice
     if (count > 1) groups.push_back(Joined({paths.begin(), half}, "first"));
-    EXPECT_EQ(AllOf(MergeParts(Plan(), groups)), whole);
-    EXPECT_EQ(AllOf(MergeParts(Plan(), {Joined(groups, "all")})), whole);
+    EXPECT_EQ(JoinResults(MergeParts(Plan(), groups)), whole);
+    EXPECT_EQ(JoinResults(MergeParts(Plan(), {Joined(groups, "all")})), whole);
   }
 }
 
@@ -292,7 +292,7 @@ class RunnerWithCheckpoint : public testing::Test {
       message_ = error.what();
       return num_calls;
     }
-    all_ = AllOf(runner.results());
+    all_ = JoinResults(runner.results());
     runner.RemoveCheckpoint();
     return num_calls;
   }

@@ -82,7 +82,7 @@ TEST(Shard, EveryTrialIsInOneShardAndEveryShardKnowsItsOwn) {
             EXPECT_TRUE(seen.insert(trial).second) << trial;
             EXPECT_TRUE(trials.Has(trial));
             EXPECT_EQ(trials.NumBefore(trial), place);
-            EXPECT_EQ(ShardOf(condition, trial / static_cast<std::uint32_t>(repeats), count), number);
+            EXPECT_EQ(FindShard(condition, trial / static_cast<std::uint32_t>(repeats), count), number);
           }
         }
         EXPECT_EQ(seen.size(), kNumTrials);

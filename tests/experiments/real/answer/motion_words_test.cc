@@ -23,15 +23,15 @@ TEST(MotionWords, ATurnToTheRightMovesTheSceneToTheLeft) {
   };
   const Eigen::Matrix3d right = R_of({0.0, 10.0, 0.0});
   EXPECT_LT((right * ahead).x(), 0.0);
-  EXPECT_EQ(TurnOf(right).words, "10 deg to the right");
+  EXPECT_EQ(ComputeTurn(right).words, "10 deg to the right");
   const Eigen::Matrix3d up = R_of({10.0, 0.0, 0.0});
   EXPECT_GT((up * ahead).y(), 0.0) << "what was ahead is lower in the image";
-  EXPECT_EQ(TurnOf(up).words, "10 deg up");
+  EXPECT_EQ(ComputeTurn(up).words, "10 deg up");
   const Eigen::Matrix3d clockwise = R_of({0.0, 0.0, 10.0});
   EXPECT_LT((clockwise * Eigen::Vector3d::UnitX()).y(), 0.0) << "the right of the scene goes up";
-  EXPECT_EQ(TurnOf(clockwise).words, "10 deg clockwise");
-  EXPECT_EQ(TurnOf(R_of({0.5, -8.0, -3.0})).words, "8 deg to the left, 3 deg anticlockwise");
-  EXPECT_EQ(TurnOf(Eigen::Matrix3d::Identity()).angle_deg, 0.0);
+  EXPECT_EQ(ComputeTurn(clockwise).words, "10 deg clockwise");
+  EXPECT_EQ(ComputeTurn(R_of({0.5, -8.0, -3.0})).words, "8 deg to the left, 3 deg anticlockwise");
+  EXPECT_EQ(ComputeTurn(Eigen::Matrix3d::Identity()).angle_deg, 0.0);
 }
 
 TEST(MotionWords, ACameraThatMovesForwardStandsForward) {
@@ -40,7 +40,7 @@ TEST(MotionWords, ACameraThatMovesForwardStandsForward) {
   EXPECT_EQ(DescribePlace(forward), "forward");
   const RelativePose turned{RotationFromVector({0.0, -1.2, 0.3}),
                             Eigen::Vector3d(-2.0, 0.1, 1.0).normalized()};
-  const Eigen::Vector3d place = PlaceOf(turned);
+  const Eigen::Vector3d place = ComputePlace(turned);
   EXPECT_LT((turned.R * place + turned.t).norm(), 1e-12) << "camera 2 is its own origin";
 }
 
@@ -52,12 +52,12 @@ TEST(MotionWords, RegionsHoldWhatTheySay) {
   root(1, 0) = 1e-3;
   root(4, 3) = 3e-3;
   const Matrix5d cov = root * root.transpose();
-  const MotionSpread spread = SpreadOf(pose, cov);
+  const MotionSpread spread = ComputeSpread(pose, cov);
   RandomStream rng({.seed = 1, .purpose = 5});
   constexpr int kDraws = 20000;
   int num_rotations = 0, num_directions = 0;
   double sum_squares = 0.0;
-  const double angle_deg = TurnOf(pose.R).angle_deg;
+  const double angle_deg = ComputeTurn(pose.R).angle_deg;
   for (int i = 0; i < kDraws; ++i) {
     Vector5d z;
     for (double& x : z) x = rng.Normal();
@@ -66,7 +66,7 @@ TEST(MotionWords, RegionsHoldWhatTheySay) {
     const Eigen::Vector2d b = p.tail<2>();
     num_rotations += w.dot(cov.topLeftCorner<3, 3>().inverse() * w) < 7.8147;
     num_directions += b.dot(cov.bottomRightCorner<2, 2>().inverse() * b) < 5.9915;
-    sum_squares += std::pow(TurnOf(Retract(pose, p).R).angle_deg - angle_deg, 2);
+    sum_squares += std::pow(ComputeTurn(Retract(pose, p).R).angle_deg - angle_deg, 2);
   }
   // Binomial sd 0.0015.
   EXPECT_NEAR(1.0 * num_rotations / kDraws, 0.95, 0.006);
@@ -103,7 +103,7 @@ TEST(RunnerUp, IsAnotherMotionThanTheAnswer) {
   MotionEstimate estimate;
   estimate.cam2_from_cam1.t = Eigen::Vector3d::UnitX();
   estimate.pose_cov = 1e-4 * Matrix5d::Identity();  // 0.0173 rad of rotation, 0.0141 of direction
-  EXPECT_EQ(RunnerUpOf(estimate), nullptr);
+  EXPECT_EQ(FindRunnerUp(estimate), nullptr);
   const auto add = [&](double turn, double swing) {
     MotionMode mode;
     mode.cam2_from_cam1.R = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitY()).toRotationMatrix();
@@ -111,12 +111,12 @@ TEST(RunnerUp, IsAnotherMotionThanTheAnswer) {
     estimate.other_modes.push_back(mode);
   };
   add(0.05 * 0.0173, 0.05 * 0.0141);
-  EXPECT_EQ(RunnerUpOf(estimate), nullptr);
+  EXPECT_EQ(FindRunnerUp(estimate), nullptr);
   add(0.0, 0.2 * 0.0141);
-  EXPECT_EQ(RunnerUpOf(estimate), &estimate.other_modes[1]);
+  EXPECT_EQ(FindRunnerUp(estimate), &estimate.other_modes[1]);
   estimate.other_modes.clear();
   add(0.2 * 0.0173, 0.0);
-  EXPECT_EQ(RunnerUpOf(estimate), &estimate.other_modes[0]);
+  EXPECT_EQ(FindRunnerUp(estimate), &estimate.other_modes[0]);
 }
 
 }  // namespace

@@ -22,14 +22,14 @@ struct Verdicts {
   std::string last_words;
 };
 
-Verdicts VerdictsOf(const std::string& data, const std::string& estimator, int trials) {
+Verdicts CollectVerdicts(const std::string& data, const std::string& estimator, int trials) {
   const StudyPlan plan = MakePlan(
       ParseStudy("name: why\nseed: 1\ndata: {" + data + "}\nestimators: [" + estimator + "]\n", "why.yaml"));
   Verdicts verdicts;
   for (int trial = 0; trial < trials; ++trial) {
     const TrialResult result = RunTrial(plan, plan.conditions[0], static_cast<std::uint32_t>(trial));
-    const Why why = WhyOf(plan.study.estimators[0], result.data, result.estimates[0], result.records[0],
-                          plan.study.failure);
+    const Why why = ExplainOutcome(plan.study.estimators[0], result.data, result.estimates[0],
+                                   result.records[0], plan.study.failure);
     verdicts.last_words = why.words;
     if (HasSucceeded(result.records[0], plan.study.failure)) {
       EXPECT_EQ(why.verdict, WhyVerdict::kRight);
@@ -51,7 +51,7 @@ TEST(Why, TooFewSamplesAreAFailureOfTheSearch) {
   for (const std::string name : {"standard", "msac", "mlesac", "rcme"}) {
     std::string entry = "{name: ";
     entry += name + ", options: {num_iterations: 1}}";
-    const Verdicts verdicts = VerdictsOf(kEasy, entry, 12);
+    const Verdicts verdicts = CollectVerdicts(kEasy, entry, 12);
     int num_search = 0, num_other = 0;
     for (const auto& of : {verdicts.of_failures, verdicts.of_refusals}) {
       for (const auto& [verdict, count] : of)
@@ -68,8 +68,8 @@ TEST(Why, TooFewSamplesAreAFailureOfTheSearch) {
 // 0.01.
 TEST(Why, TooFewSamplesOfTheCalibratedOne) {
   const Verdicts verdicts =
-      VerdictsOf("scene: uniform_volume, num_matches: 200, sigma_px: 0.5, outlier_ratio: 0.75",
-                 "{name: rcme_calibrated, options: {min_samples: 8, max_samples: 8}}", 12);
+      CollectVerdicts("scene: uniform_volume, num_matches: 200, sigma_px: 0.5, outlier_ratio: 0.75",
+                      "{name: rcme_calibrated, options: {min_samples: 8, max_samples: 8}}", 12);
   int num_search = 0, num_all = 0;
   for (const auto& of : {verdicts.of_failures, verdicts.of_refusals}) {
     for (const auto& [verdict, count] : of) {
@@ -87,7 +87,7 @@ TEST(Why, APlaneIsMoreThanTheModelCanTell) {
   for (const std::string name : {"standard", "msac"}) {
     std::string entry = "{name: ";
     entry += name + ", options: {solver: five_point, num_iterations: 300}}";
-    const Verdicts verdicts = VerdictsOf(plane, entry, 16);
+    const Verdicts verdicts = CollectVerdicts(plane, entry, 16);
     const auto found = verdicts.of_failures.find(WhyVerdict::kModelCannotTell);
     ASSERT_NE(found, verdicts.of_failures.end()) << name;
     EXPECT_GE(found->second, 3) << name;
@@ -100,8 +100,8 @@ TEST(Why, APlaneIsMoreThanTheModelCanTell) {
 
 TEST(Why, ABaselineWithinTheNoiseIsMoreThanTheModelCanTell) {
   const Verdicts verdicts =
-      VerdictsOf("scene: uniform_volume, motion: vanishing_baseline, num_matches: 100, sigma_px: 0.5",
-                 "{name: standard, options: {solver: five_point, num_iterations: 300}}", 12);
+      CollectVerdicts("scene: uniform_volume, motion: vanishing_baseline, num_matches: 100, sigma_px: 0.5",
+                      "{name: standard, options: {solver: five_point, num_iterations: 300}}", 12);
   ASSERT_FALSE(verdicts.of_failures.empty());
   for (const auto& [verdict, count] : verdicts.of_failures) {
     EXPECT_EQ(verdict, WhyVerdict::kModelCannotTell) << count << " " << verdicts.last_words;
@@ -112,14 +112,15 @@ TEST(Why, AGoodAnswerIsRight) {
   for (const std::string name : {"standard", "rcme_calibrated"}) {
     std::string entry = "{name: ";
     entry += name + "}";
-    const Verdicts verdicts = VerdictsOf("scene: uniform_volume, num_matches: 100, sigma_px: 0.5", entry, 6);
+    const Verdicts verdicts =
+        CollectVerdicts("scene: uniform_volume, num_matches: 100, sigma_px: 0.5", entry, 6);
     EXPECT_EQ(verdicts.num_right, 6) << name;
   }
 }
 
 // An estimator whose score is not known is judged by another, and so it says.
 TEST(Why, SaysWhoseScoreItIs) {
-  const Verdicts verdicts = VerdictsOf(
+  const Verdicts verdicts = CollectVerdicts(
       kEasy, "{name: lo_ransac, options: {num_iterations: 1, inner_samples: 0, inner_refits: 0}}", 3);
   EXPECT_THAT(verdicts.last_words, testing::HasSubstr("in place of its own score"));
 }

@@ -135,7 +135,7 @@ TEST(FrontEnd, ResidualsGrowAtLeastAsSigmaSays) {
         sigmas.push_back(matches[i].first);
         sizes.push_back(matches[i].second);
       }
-      return std::pair{MedianOf(sigmas), MedianOf(sizes)};
+      return std::pair{ComputeMedian(sigmas), ComputeMedian(sizes)};
     };
     const auto [fine, fine_size] = medians(0);
     const auto [coarse, coarse_size] = medians(matches.size() - matches.size() / 3);

@@ -105,7 +105,7 @@ class PaperTableOfARun : public testing::Test {
     for (std::uint32_t condition = 0; condition < 2; ++condition) {
       for (std::uint32_t trial = 0; trial < 3; ++trial) {
         for (std::uint32_t estimator = 0; estimator < 2; ++estimator)
-          records.push_back(RecordOf(condition, trial, estimator));
+          records.push_back(MakeRecord(condition, trial, estimator));
       }
     }
     AddRecords(store, records);
@@ -113,7 +113,7 @@ class PaperTableOfARun : public testing::Test {
   }
 
   // Of the first scene: pair 0 right, but flagged by the first estimator; 1 wrong, flagged; 2 refused.
-  static TrialRecord RecordOf(std::uint32_t condition, std::uint32_t trial, std::uint32_t estimator) {
+  static TrialRecord MakeRecord(std::uint32_t condition, std::uint32_t trial, std::uint32_t estimator) {
     TrialRecord record;
     record.condition = condition;
     record.trial = trial;

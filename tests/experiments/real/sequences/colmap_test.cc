@@ -108,7 +108,7 @@ class Colmap : public testing::Test {
                                               const std::vector<std::string>& fragments) {
     return ThrowsInputError(
         [&] {
-          const auto pairs = OpenColmap(OptionsOf(path));
+          const auto pairs = OpenColmap(MakeDatasetOptions(path));
           for (size_t i = 0; i < pairs->size(); ++i) pairs->Read(i);
         },
         fragments);
@@ -120,7 +120,7 @@ class Colmap : public testing::Test {
     const std::string model = folder_.Path("sparse/0"), kept = ReadBytes(model + "/" + file);
     Replace(file, from, to)(model);
     const testing::AssertionResult result =
-        ThrowsInputError([&] { OpenColmap(OptionsOf(folder_.path())); }, fragments);
+        ThrowsInputError([&] { OpenColmap(MakeDatasetOptions(folder_.path())); }, fragments);
     Overwrite(model + "/" + file, kept);
     return result;
   }
@@ -130,11 +130,11 @@ class Colmap : public testing::Test {
 };
 
 TEST_F(Colmap, ADatabaseAndItsReconstruction) {
-  DatasetOptions options = OptionsOf(folder_.path());
+  DatasetOptions options = MakeDatasetOptions(folder_.path());
   options.name = "hall";
   const auto pairs = OpenColmap(options);
   ASSERT_EQ(pairs->size(), 3u);
-  EXPECT_EQ(pairs->IdOf(0), "hall_000001_000002");
+  EXPECT_EQ(pairs->PairId(0), "hall_000001_000002");
   EXPECT_NE(pairs->Note().find("3 of 3 images"), std::string::npos) << pairs->Note();
   const std::string out = folder_.Path("out");
   PairsOptions making;
@@ -159,7 +159,7 @@ TEST_F(Colmap, ADatabaseAndItsReconstruction) {
 }
 
 TEST_F(Colmap, WithoutAReconstructionTheCamerasAreThoseOfTheDatabase) {
-  const auto pairs = OpenColmap(OptionsOf(Changed("")));
+  const auto pairs = OpenColmap(MakeDatasetOptions(Changed("")));
   EXPECT_NE(pairs->Note().find("no truth: "), std::string::npos) << pairs->Note();
   const MatchFile file = pairs->Read(0).file;
   EXPECT_EQ(file.camera1.fx, kGuessedFocalLength);
@@ -171,7 +171,7 @@ TEST_F(Colmap, WithoutAReconstructionTheCamerasAreThoseOfTheDatabase) {
 // oldest databases are written ahead (WAL).
 TEST_F(Colmap, DatabasesOfOtherVersionsAreReadTheSame) {
   const auto number_of_matches = [](const std::string& path) {
-    const auto pairs = OpenColmap(OptionsOf(path));
+    const auto pairs = OpenColmap(MakeDatasetOptions(path));
     size_t sum = 0;
     for (size_t i = 0; i < pairs->size(); ++i) sum += pairs->Read(i).file.matches.size();
     return sum;

@@ -18,11 +18,11 @@ class Euroc : public DatasetTest {
 
 TEST_F(Euroc, GivesTheRenderedMotionsAndTheirTruth) {
   const std::string out = folder_.Path("out");
-  const std::vector<PairRow> rows = MakePairsInto(out, ReadEuroc(OptionsOf(Folder())));
+  const std::vector<PairRow> rows = MakePairsInto(out, ReadEuroc(MakeDatasetOptions(Folder())));
   EXPECT_EQ(rows.at(0).scene, "MH_01_easy");
   ExpectTheRenderedMotions(rows, out);
   ExpectTheRenderedTruth(rows, out, 0.05);  // taken between two samples
-  EXPECT_EQ(ReadEuroc(OptionsOf(fs::path(Folder()).parent_path().string())).size(), 1u);
+  EXPECT_EQ(ReadEuroc(MakeDatasetOptions(fs::path(Folder()).parent_path().string())).size(), 1u);
 }
 
 // Files as they are found: edited on Windows, without a newline at the end, with a comma too many,
@@ -30,7 +30,7 @@ TEST_F(Euroc, GivesTheRenderedMotionsAndTheirTruth) {
 TEST_F(Euroc, DialectsOfItsFilesAreReadTheSame) {
   const std::string sensor = "mav0/cam0/sensor.yaml", images = "mav0/cam0/data.csv",
                     truth = "mav0/state_groundtruth_estimate0/data.csv";
-  const std::vector<Sequence> expected = ReadEuroc(OptionsOf(Folder()));
+  const std::vector<Sequence> expected = ReadEuroc(MakeDatasetOptions(Folder()));
   const auto cut_last_byte = [](const std::string& path) {
     return [=](const std::string& folder) {
       fs::resize_file(folder + "/" + path, fs::file_size(folder + "/" + path) - 1);
@@ -56,7 +56,7 @@ TEST_F(Euroc, DialectsOfItsFilesAreReadTheSame) {
     const std::string copy = Copy();
     cases[i].how(copy);
     std::vector<Sequence> read;
-    ASSERT_NO_THROW(read = ReadEuroc(OptionsOf(copy))) << i;
+    ASSERT_NO_THROW(read = ReadEuroc(MakeDatasetOptions(copy))) << i;
     EXPECT_EQ(read[0].lens.k, expected[0].lens.k) << i;
     EXPECT_EQ(read[0].lens.camera.cy, expected[0].lens.camera.cy) << i;
     ASSERT_EQ(read[0].frames.size(), expected[0].frames.size()) << i;
@@ -69,9 +69,9 @@ TEST_F(Euroc, DialectsOfItsFilesAreReadTheSame) {
 
 TEST_F(Euroc, AnEquidistantLensIsAFisheye) {
   const std::string copy = Copy();
-  EXPECT_EQ(ReadEuroc(OptionsOf(copy))[0].lens.model, LensModel::kRadtan);
+  EXPECT_EQ(ReadEuroc(MakeDatasetOptions(copy))[0].lens.model, LensModel::kRadtan);
   Replace("mav0/cam0/sensor.yaml", "radial-tangential", "equidistant")(copy);
-  EXPECT_EQ(ReadEuroc(OptionsOf(copy))[0].lens.model, LensModel::kFisheye);
+  EXPECT_EQ(ReadEuroc(MakeDatasetOptions(copy))[0].lens.model, LensModel::kFisheye);
 }
 
 TEST_F(Euroc, WhatIsBrokenIsNamedByPath) {
@@ -108,11 +108,11 @@ TEST_F(Euroc, WhatIsBrokenIsNamedByPath) {
   for (const Change& change : cases) {
     const std::string copy = Copy();
     change.how(copy);
-    EXPECT_TRUE(ThrowsInputError([&] { ReadEuroc(OptionsOf(copy)); }, change.message));
+    EXPECT_TRUE(ThrowsInputError([&] { ReadEuroc(MakeDatasetOptions(copy)); }, change.message));
   }
   const std::string copy = Copy();
   fs::remove_all(copy + "/mav0/state_groundtruth_estimate0");
-  EXPECT_NE(ReadEuroc(OptionsOf(copy))[0].note.find("no truth: "), std::string::npos);
+  EXPECT_NE(ReadEuroc(MakeDatasetOptions(copy))[0].note.find("no truth: "), std::string::npos);
 }
 
 // Every 16th row of the truth is 80 ms from the one before, every 24th 120 ms: longer than a pose is taken
@@ -127,7 +127,7 @@ TEST_F(Euroc, TakesNoPosesInGapsOfATenthOfASecond) {
     std::string thinned = rows[0];
     for (size_t i = 1; i < rows.size(); i += stride) thinned += rows[i];
     Overwrite(copy + truth, thinned + rows.back());
-    const std::vector<Frame> frames = ReadEuroc(OptionsOf(copy))[0].frames;
+    const std::vector<Frame> frames = ReadEuroc(MakeDatasetOptions(copy))[0].frames;
     ASSERT_EQ(frames.size(), 1u * kNumRenderedFrames);
     for (size_t i = 0; i < 5; ++i) EXPECT_EQ(frames[i].pose_true.has_value(), stride == 16) << i;
     EXPECT_TRUE(frames[5].pose_true.has_value());  // 65 ms between the rows about 250 ms

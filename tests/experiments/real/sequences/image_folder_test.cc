@@ -19,7 +19,7 @@ class ImageFolder : public DatasetTest {
         }) {}
   static DatasetOptions WithCamera(const std::string& folder) {
     const Camera camera = RenderedCamera().camera;
-    DatasetOptions options = OptionsOf(folder, {camera.fx, camera.fy, camera.cx, camera.cy});
+    DatasetOptions options = MakeDatasetOptions(folder, {camera.fx, camera.fy, camera.cx, camera.cy});
     options.lens = LensModel::kFisheye;
     options.distortion = FisheyeCamera().fisheye;
     return options;

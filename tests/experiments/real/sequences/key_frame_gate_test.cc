@@ -94,7 +94,7 @@ MotionProblem SeenFromBothSides(int num_points, int num_behind) {
   return problem;
 }
 
-std::string ReasonOf(const MotionProblem& problem) {
+std::string FindReason(const MotionProblem& problem) {
   KeyFrameGate gate;
   gate.least_matches = 8;
   gate.sigma_px = problem.sigma_px;
@@ -104,11 +104,11 @@ std::string ReasonOf(const MotionProblem& problem) {
 
 // Nine of ten inliers, and fifty, have to lie in front of both cameras.
 TEST(KeyFrameGate, AsksForPointsInFrontOfBothCameras) {
-  EXPECT_EQ(ReasonOf(SeenFromBothSides(200, 0)), kKeptPair);
-  EXPECT_EQ(ReasonOf(SeenFromBothSides(200, 10)), kKeptPair);
-  EXPECT_EQ(ReasonOf(SeenFromBothSides(200, 40)), "too_few_in_front");
-  EXPECT_EQ(ReasonOf(SeenFromBothSides(60, 0)), kKeptPair);
-  EXPECT_EQ(ReasonOf(SeenFromBothSides(45, 0)), "too_few_in_front");
+  EXPECT_EQ(FindReason(SeenFromBothSides(200, 0)), kKeptPair);
+  EXPECT_EQ(FindReason(SeenFromBothSides(200, 10)), kKeptPair);
+  EXPECT_EQ(FindReason(SeenFromBothSides(200, 40)), "too_few_in_front");
+  EXPECT_EQ(FindReason(SeenFromBothSides(60, 0)), kKeptPair);
+  EXPECT_EQ(FindReason(SeenFromBothSides(45, 0)), "too_few_in_front");
 }
 
 // The 50th largest angle of a camera that moves sideways without turning: of points at the same depth Z,

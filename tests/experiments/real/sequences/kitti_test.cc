@@ -15,7 +15,7 @@ class Kitti : public DatasetTest {
 };
 
 TEST_F(Kitti, GivesTheRenderedMotionsAndTheirTruth) {
-  const std::vector<Sequence> read = ReadKitti(OptionsOf(Folder()));
+  const std::vector<Sequence> read = ReadKitti(MakeDatasetOptions(Folder()));
   ASSERT_EQ(read.size(), 1u);
   EXPECT_EQ(read[0].name, "kitti_04");
   EXPECT_EQ(read[0].frames.size(), 1u * kNumRenderedFrames);
@@ -30,9 +30,9 @@ TEST_F(Kitti, GivesTheRenderedMotionsAndTheirTruth) {
   const auto scenes = LoadMatchFolder({out, 0.5});
   ASSERT_EQ(scenes.size(), 1u);
   EXPECT_EQ(scenes[0].first, "kitti_04");
-  EXPECT_EQ(ReadKitti(OptionsOf(fs::path(Folder()).parent_path().string())).size(),
+  EXPECT_EQ(ReadKitti(MakeDatasetOptions(fs::path(Folder()).parent_path().string())).size(),
             1u);  // above it, as unpacked
-  DatasetOptions named = OptionsOf(Folder());
+  DatasetOptions named = MakeDatasetOptions(Folder());
   named.name = "KITTI/";
   named.max_frames = 3;
   EXPECT_EQ(ReadKitti(named)[0].name, "KITTI/04");
@@ -42,7 +42,7 @@ TEST_F(Kitti, GivesTheRenderedMotionsAndTheirTruth) {
 // Files as they are found: edited on Windows, without a newline at the end, without the other cameras.
 TEST_F(Kitti, DialectsOfItsFilesAreReadTheSame) {
   const std::string s = "sequences/04/";
-  const std::vector<Sequence> expected = ReadKitti(OptionsOf(Folder()));
+  const std::vector<Sequence> expected = ReadKitti(MakeDatasetOptions(Folder()));
   for (const auto& how :
        {Replace(s + "calib.txt", "\n", "\r\n", Where::kAll), Replace(s + "calib.txt", "P0:", "\nP0:\t"),
         Replace(s + "times.txt", "\n", " \r\n", Where::kAll),
@@ -52,7 +52,7 @@ TEST_F(Kitti, DialectsOfItsFilesAreReadTheSame) {
     const std::string copy = Copy();
     how(copy);
     std::vector<Sequence> read;
-    ASSERT_NO_THROW(read = ReadKitti(OptionsOf(copy)));
+    ASSERT_NO_THROW(read = ReadKitti(MakeDatasetOptions(copy)));
     EXPECT_EQ(read[0].lens.camera.fx, expected[0].lens.camera.fx);
     ASSERT_EQ(read[0].frames.size(), expected[0].frames.size());
     EXPECT_EQ(read[0].frames[5].time_s, expected[0].frames[5].time_s);
@@ -88,15 +88,15 @@ TEST_F(Kitti, WhatIsBrokenIsNamedByPath) {
     const std::string copy = Copy();
     change.how(copy);
     if (change.message.empty()) {
-      EXPECT_NO_THROW(ReadKitti(OptionsOf(copy)));
+      EXPECT_NO_THROW(ReadKitti(MakeDatasetOptions(copy)));
     } else {
-      EXPECT_TRUE(ThrowsInputError([&] { ReadKitti(OptionsOf(copy)); }, change.message));
+      EXPECT_TRUE(ThrowsInputError([&] { ReadKitti(MakeDatasetOptions(copy)); }, change.message));
     }
   }
   const std::string copy = Copy();
   fs::remove_all(copy + "/poses");
-  EXPECT_NE(ReadKitti(OptionsOf(copy))[0].note.find("poses/04.txt is not there"), std::string::npos);
-  DatasetOptions other = OptionsOf(Folder());
+  EXPECT_NE(ReadKitti(MakeDatasetOptions(copy))[0].note.find("poses/04.txt is not there"), std::string::npos);
+  DatasetOptions other = MakeDatasetOptions(Folder());
   other.only = {"07"};
   EXPECT_TRUE(ThrowsInputError([&] { ReadKitti(other); }, {"--sequence: '07' is not in", "there are 04"}));
 }

@@ -8,7 +8,7 @@
 namespace rcme {
 namespace {
 
-std::vector<std::vector<std::string>> RowsOf(const std::string& text, TableFile::Separator separator) {
+std::vector<std::vector<std::string>> ReadRows(const std::string& text, TableFile::Separator separator) {
   const TempFolder folder;
   std::vector<std::vector<std::string>> rows;
   for (TableFile table(folder.Write("table.txt", text), "", separator); table.Next();)
@@ -19,9 +19,9 @@ std::vector<std::vector<std::string>> RowsOf(const std::string& text, TableFile:
 // Between commas a field may be empty, at the end of the line too; blanks around it do not count.
 TEST(TableFile, SplitsRowsByHand) {
   using Row = std::vector<std::string>;
-  EXPECT_EQ(RowsOf("# head\n1, two ,\n\n,3\n", TableFile::Separator::kComma),
+  EXPECT_EQ(ReadRows("# head\n1, two ,\n\n,3\n", TableFile::Separator::kComma),
             (std::vector<Row>{{"1", "two", ""}, {"", "3"}}));
-  EXPECT_EQ(RowsOf("  1\t two  \n#2\n3\r\n", TableFile::Separator::kSpace),
+  EXPECT_EQ(ReadRows("  1\t two  \n#2\n3\r\n", TableFile::Separator::kSpace),
             (std::vector<Row>{{"1", "two"}, {"3"}}));
 }
 

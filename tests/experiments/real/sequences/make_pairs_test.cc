@@ -25,7 +25,7 @@ TEST_F(MakePairs, NeighboursGiveTriplesAndTheTruthsOwnErrorItsHeader) {
   options.neighbours = 2;
   options.truth_sd = {0.03, 0.012};
   const std::string out = folder_.Path("out");
-  const std::vector<PairRow> rows = MakePairsInto(out, ReadKitti(OptionsOf(Folder())), options);
+  const std::vector<PairRow> rows = MakePairsInto(out, ReadKitti(MakeDatasetOptions(Folder())), options);
   std::set<std::pair<std::string, std::string>> kept;
   for (const PairRow& row : rows) {
     if (row.reason == kKeptPair) kept.emplace(row.image1, row.image2);
@@ -82,7 +82,7 @@ TEST(TruthSdOfPoses, IsThatOfDraws) {
 }
 
 TEST_F(MakePairs, WorkThatWasCutOffGoesOnAndGivesTheSameBytes) {
-  const std::vector<Sequence> read = ReadKitti(OptionsOf(Folder()));
+  const std::vector<Sequence> read = ReadKitti(MakeDatasetOptions(Folder()));
   PairsOptions options;
   options.neighbours = 2;
   options.cache = folder_.Path("cache");
@@ -99,7 +99,7 @@ TEST_F(MakePairs, WorkThatWasCutOffGoesOnAndGivesTheSameBytes) {
   const PairJournal opened(cut, "test");
   EXPECT_EQ(opened.num_before(), 2);
   for (const fs::path& file : MatchFilesIn(cut)) {
-    if (!opened.Find(PairIdOf(file))) fs::remove(file);
+    if (!opened.Find(ExtractPairId(file))) fs::remove(file);
   }
   EXPECT_EQ(MakePairsInto(cut, read, options).size(), num_rows);
   for (const char* name : {"/INDEX.csv", "/pairs.txt", "/pairs.journal"})
@@ -118,7 +118,7 @@ TEST_F(MakePairs, ADamagedImageIsSkippedCountedAndNamed) {
   const std::string image = copy + "/sequences/04/image_0/000002.png";
   fs::resize_file(image, fs::file_size(image) / 2);
   std::ofstream(copy + "/sequences/04/image_0/000003.png", std::ios::binary) << "no image";
-  MakePairsInto(out, ReadKitti(OptionsOf(copy)));
+  MakePairsInto(out, ReadKitti(MakeDatasetOptions(copy)));
   const std::string text = ReadBytes(out + "/pairs.txt");
   for (const char* said : {"000002.png: the image is damaged: it ends early", "000003.png: is not a PNG"}) {
     const std::string line = "skipped: " + copy + "/sequences/04/image_0/";
@@ -140,7 +140,7 @@ TEST_F(MakePairs, TakesEveryNthImage) {
   options.every = 3;
   options.gate.criterion.reset();
   const std::vector<PairRow> rows =
-      MakePairsInto(folder_.Path("out"), ReadKitti(OptionsOf(Folder())), options);
+      MakePairsInto(folder_.Path("out"), ReadKitti(MakeDatasetOptions(Folder())), options);
   ASSERT_EQ(rows.size(), (kNumRenderedFrames + 2u) / 3u - 1u);
   EXPECT_EQ(rows[0].image1, "image_0/000000.png");
   EXPECT_EQ(rows[0].image2, "image_0/000003.png");
@@ -152,7 +152,7 @@ TEST_F(MakePairs, BeginsAnewWhereMatchesAreTooFew) {
   options.neighbours = 3;
   options.gate.least_matches = 1'000'000;
   const std::vector<PairRow> rows =
-      MakePairsInto(folder_.Path("out"), ReadKitti(OptionsOf(Folder())), options);
+      MakePairsInto(folder_.Path("out"), ReadKitti(MakeDatasetOptions(Folder())), options);
   ASSERT_EQ(rows.size(), kNumRenderedFrames - 1u);
   for (size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(rows[i].reason, kTooFewMatches);
@@ -164,7 +164,7 @@ TEST_F(MakePairs, MatchFilesAreJudgedAgain) {
   const std::string first = folder_.Path("first"), again = folder_.Path("again");
   PairsOptions options;
   options.gate.criterion.reset();  // all are kept
-  const size_t num_pairs = MakePairsInto(first, ReadKitti(OptionsOf(Folder())), options).size();
+  const size_t num_pairs = MakePairsInto(first, ReadKitti(MakeDatasetOptions(Folder())), options).size();
   EXPECT_EQ(num_pairs, kNumRenderedFrames - 1u);
   DatasetOptions dataset;
   dataset.folder = first;

@@ -35,7 +35,7 @@ TEST(OpenMatchFiles, KnowsWeakDirections) {
   options.folder = folder.path();
   const auto pairs = OpenMatchFiles(options);
   ASSERT_EQ(pairs->size(), 2u);
-  EXPECT_EQ(pairs->IdOf(1), "pair2");
+  EXPECT_EQ(pairs->PairId(1), "pair2");
   EXPECT_FALSE(pairs->Read(0).is_direction_weak);
   EXPECT_TRUE(pairs->Read(1).is_direction_weak);
 }

@@ -117,7 +117,7 @@ TEST_F(Posebench, PairsAreReadOneAtATime) {
   options.folder = path_;
   const auto pairs = OpenPosebench(options);
   ASSERT_EQ(pairs->size(), 2u);
-  EXPECT_EQ(pairs->IdOf(1), "scannet_sift_000001");
+  EXPECT_EQ(pairs->PairId(1), "scannet_sift_000001");
   for (size_t i = 0; i < 2; ++i) {
     const ListedPair listed = pairs->Read(i);
     const double within = i == 0 ? 1e-9 : 1e-3;  // of numbers of 32 bits

@@ -16,7 +16,7 @@ class Tum : public DatasetTest {
         }) {}
   static DatasetOptions WithCamera(const std::string& folder) {
     const Camera camera = RenderedCamera().camera;
-    DatasetOptions options = OptionsOf(folder, {camera.fx, camera.fy, camera.cx, camera.cy});
+    DatasetOptions options = MakeDatasetOptions(folder, {camera.fx, camera.fy, camera.cx, camera.cy});
     options.lens = LensModel::kRadtan;
     options.distortion = DistortingCamera().radtan;
     return options;
@@ -30,12 +30,14 @@ TEST_F(Tum, GivesTheRenderedMotionsAndTheirTruth) {
   ExpectTheRenderedTruth(rows, out, 0.05);
   // The camera by the folder's name.
   fs::rename(Copy(), folder_.Path("rgbd_dataset_freiburg2_desk"));
-  const std::vector<Sequence> known = ReadTum(OptionsOf(folder_.Path("rgbd_dataset_freiburg2_desk")));
+  const std::vector<Sequence> known =
+      ReadTum(MakeDatasetOptions(folder_.Path("rgbd_dataset_freiburg2_desk")));
   EXPECT_EQ(known[0].lens.camera.fx, 520.9);
   EXPECT_EQ(known[0].lens.k[4], 0.9172);
 }
 
-// As in the data set's own freiburg2_desk: several poses of the same time, of which the first and the last are wrong.
+// As in the data set's own freiburg2_desk: several poses of the same time, of which the first and the last
+// are wrong.
 TEST_F(Tum, OfATimeThatStandsTwiceNoPoseIsUsed) {
   const std::string copy = Copy();
   std::istringstream rows(ReadBytes(copy + "/groundtruth.txt"));
@@ -87,7 +89,7 @@ TEST_F(Tum, WhatIsBrokenIsNamedByPath) {
     change.how(copy);
     EXPECT_TRUE(ThrowsInputError([&] { ReadTum(WithCamera(copy)); }, change.message));
   }
-  EXPECT_TRUE(ThrowsInputError([&] { ReadTum(OptionsOf(Folder())); }, {"give --K"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ReadTum(MakeDatasetOptions(Folder())); }, {"give --K"}));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include "estimator/geometry/sampson.h"
 #include "experiments/real/truth_free/twin.h"
-#include "tests/test_support/fit_of.h"
+#include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -15,7 +15,7 @@ namespace {
 TEST(ScoreCalibration, WeighsInliersByTheirProbability) {
   RelativePose pose;
   const MotionProblem problem = TwoCameraProblem(60, 0.5, 0.0, 1, &pose);
-  MotionEstimate all = FitOf(problem, pose);
+  MotionEstimate all = FitAllMatches(problem, pose);
   all.sigma_estimated_px = 0.5;
   MotionEstimate some = all, by_probability = all;
   some.inliers.resize(40);
@@ -36,7 +36,7 @@ TEST(ScoreCalibration, WeighsInliersByTheirProbability) {
 TEST(ScoreCalibration, WeighsInliersByTheirNoise) {
   RelativePose pose;
   MotionProblem problem = TwoCameraProblem(60, 0.5, 0.0, 1, &pose);
-  MotionEstimate estimate = FitOf(problem, pose);
+  MotionEstimate estimate = FitAllMatches(problem, pose);
   estimate.sigma_estimated_px = 0.5;
   const CalibrationScore once = *ScoreCalibration(problem, estimate);
   estimate.sigma_estimated_px = 1.5;
@@ -54,7 +54,7 @@ TEST(ScoreCalibration, DoesNotGoWithAnErrorOfTheMotion) {
   RelativePose pose;
   MotionProblem problem = TwoCameraProblem(60, 0.0, 0.0, 1, &pose);
   problem.sigma_px = 0.5;
-  MotionEstimate estimate = FitOf(problem, pose);
+  MotionEstimate estimate = FitAllMatches(problem, pose);
   estimate.sigma_estimated_px = 0.5;
   const auto size_at = [&](double error) {
     estimate.cam2_from_cam1 = Retract(pose, Vector5d::Constant(error));
@@ -67,7 +67,7 @@ TEST(ScoreCalibration, DoesNotGoWithAnErrorOfTheMotion) {
 TEST(ScoreCalibration, NeedsTwentyInliers) {
   RelativePose pose;
   const MotionProblem problem = TwoCameraProblem(60, 0.5, 0.0, 1, &pose);
-  MotionEstimate estimate = FitOf(problem, pose);
+  MotionEstimate estimate = FitAllMatches(problem, pose);
   estimate.inliers.resize(20);
   EXPECT_TRUE(ScoreCalibration(problem, estimate).has_value());
   estimate.inliers.resize(19);
@@ -79,7 +79,7 @@ TEST(ScoreCalibration, NeedsTwentyInliers) {
 TEST(ResidualByFaults, IsThatOfTheHeader) {
   RelativePose pose;
   const MotionProblem problem = TwoCameraProblem(6, 1.0, 0.0, 1, &pose);
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
   for (const Correspondence& match : problem.matches) {
     const auto moved_by = [&](const Eigen::Vector4d& x) {
       return Correspondence{match.x1_px + x.head<2>(), match.x2_px + x.tail<2>()};
@@ -90,7 +90,8 @@ TEST(ResidualByFaults, IsThatOfTheHeader) {
     };
     const Eigen::Vector4d u = EvaluateConstraint(F, match).gradient.normalized();
     const auto shifts_at = [&](const Eigen::VectorXd& along) -> Eigen::VectorXd {
-      const ShiftsByFaults shifts = ShiftsOf(problem.camera1, problem.camera2, pose, moved_by(along(0) * u));
+      const ShiftsByFaults shifts =
+          ComputeShifts(problem.camera1, problem.camera2, pose, moved_by(along(0) * u));
       return shifts.transpose() * u;
     };
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(4);
@@ -98,7 +99,7 @@ TEST(ResidualByFaults, IsThatOfTheHeader) {
     const Eigen::MatrixXd r_X = NumericJacobian(residual_at, none, 0.1);
     const Eigen::MatrixXd u_d_X_u = NumericJacobian(shifts_at, Eigen::VectorXd(none.head(1)), 0.1);
     const Eigen::MatrixXd expected =
-        r_X * ShiftsOf(problem.camera1, problem.camera2, pose, match) - r * u_d_X_u.transpose();
+        r_X * ComputeShifts(problem.camera1, problem.camera2, pose, match) - r * u_d_X_u.transpose();
     EXPECT_JACOBIAN_NEAR(ResidualByFaults(F, problem.camera1, problem.camera2, pose, match), expected, 1e-6);
   }
 }

@@ -101,7 +101,7 @@ TEST(ResidualByFaults, DoesNotGoWithTheNoise) {
       sum += product;
       squares += product.cwiseAbs2();
       const double plain =
-          r * c.gradient.dot(ShiftsOf(scene.camera1, scene.camera2, pose, match).col(0)) / norm;
+          r * c.gradient.dot(ComputeShifts(scene.camera1, scene.camera2, pose, match).col(0)) / norm;
       naive += plain;
       naive_squares += plain * plain;
     }
@@ -134,7 +134,7 @@ PairSet MakePairs(const Settings& data, int num_pairs) {
   for (const auto& [key, value] : data) Override(&study, key, value);
   return PairSetsOfStudy(MakePlan(study)).front();
 }
-std::vector<CalibrationReport> ReportsOf(const Settings& data, int num_sets, int num_pairs) {
+std::vector<CalibrationReport> MakeReports(const Settings& data, int num_sets, int num_pairs) {
   const PairSet pairs = MakePairs(data, num_sets * num_pairs);
   std::vector<CalibrationReport> reports;
   for (int set = 0; set < num_sets; ++set)
@@ -160,7 +160,7 @@ TEST(TestCalibration, HoldsItsLevel) {
   for (const Settings& noise :
        {Settings{}, Settings{{"noise", "correlated"}, {"noise_correlation_length_px", "80"}},
         Settings{{"noise", "duplicated"}}}) {
-    const std::vector<CalibrationReport> reports = ReportsOf(noise, 60, 20);
+    const std::vector<CalibrationReport> reports = MakeReports(noise, 60, 20);
     EXPECT_LT(NumWrong(reports), 12) << noise.size();
     int num_found = 0;
     for (size_t j = 0; j < kNumNamedFaults; ++j) num_found += NumFound(reports, kCameraFaults[j]);
@@ -178,7 +178,7 @@ TEST(TestCalibration, FindsFaults) {
       {"distortion_k1", "0.003", CameraFault::kDistortion, 0.003},
       {"rolling_shutter", "0.02", CameraFault::kReadoutTime, 0.02}};
   for (const auto& [key, value, fault, planted] : faults) {
-    const std::vector<CalibrationReport> reports = ReportsOf({{key, value}}, 20, 20);
+    const std::vector<CalibrationReport> reports = MakeReports({{key, value}}, 20, 20);
     EXPECT_GE(NumWrong(reports), 12) << key;
     EXPECT_GE(NumFound(reports, fault), 5) << key;
     double sum = 0.0, squares = 0.0;
@@ -255,7 +255,7 @@ TEST(TestCalibration, PoolsOneCamera) {
 
 // The slope of key-point sizes: pairs whose matches' noise grows as noise_scale to the power `power`, where
 // noise_scale itself is stated.
-SizeReport SizesOf(double power, int num_pairs) {
+SizeReport MeasureSizes(double power, int num_pairs) {
   const auto estimator = MakeEstimator("rcme_calibrated");
   std::vector<PairAnswers> answers;
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(num_pairs); ++i) {
@@ -273,7 +273,7 @@ SizeReport SizesOf(double power, int num_pairs) {
     };
     answers.push_back({answer(pair), {}});
     for (std::uint32_t twin = 1; twin <= 2; ++twin)
-      answers.back().twins.push_back(answer(TwinOf(pair, answers.back().whole.estimate, 1, twin)));
+      answers.back().twins.push_back(answer(MakeTwin(pair, answers.back().whole.estimate, 1, twin)));
   }
   return TestKeyPointSizes(answers);
 }
@@ -281,7 +281,7 @@ SizeReport SizesOf(double power, int num_pairs) {
 // 16 pairs of 300 matches, scales from 1/3 to 3: the slope has a standard deviation of about 0.04. As stated;
 // half as fast; not at all.
 TEST(TestKeyPointSizes, FindsHowNoiseGrows) {
-  const SizeReport stated = SizesOf(1.0, 16), half = SizesOf(0.5, 16), none = SizesOf(0.0, 16);
+  const SizeReport stated = MeasureSizes(1.0, 16), half = MeasureSizes(0.5, 16), none = MeasureSizes(0.0, 16);
   EXPECT_EQ(stated.num_pairs, 16);
   EXPECT_NEAR(stated.slope.value, 1.0, 0.2) << DescribeSizeTest(stated);
   EXPECT_EQ(stated.verdict, TruthFreeVerdict::kHolds) << DescribeSizeTest(stated);

@@ -13,7 +13,7 @@
 
 #include "estimator/robust_covariance/clustered_covariance.h"
 #include "experiments/real/truth_free/loops.h"
-#include "tests/test_support/fit_of.h"
+#include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/numeric_jacobian.h"
 
 namespace rcme {
@@ -142,7 +142,7 @@ Network MakeNetwork(int num_images, double focal_error, std::uint32_t trial) {
     NamedPair pair{"", std::to_string(a), std::to_string(b), {{}, assumed, assumed, 0.3}};
     for (const auto& x : points) pair.problem.matches.push_back({x[a], x[b]});
     const Eigen::Matrix3d R = RotationFromVector(turns[b]) * RotationFromVector(turns[a]).transpose();
-    network.answers.push_back(FitOf(pair.problem, {R, (moves[b] - R * moves[a]).normalized()}));
+    network.answers.push_back(FitAllMatches(pair.problem, {R, (moves[b] - R * moves[a]).normalized()}));
     network.pairs.push_back(std::move(pair));
     network.loop.push_back({&network.pairs.back(), &network.answers.back(), is_forward});
   }
@@ -277,16 +277,17 @@ std::vector<PairAnswers> NetworkAnswers(const Network& network) {
   }
   return answers;
 }
-std::vector<Loop> LoopsOf(const Network& network) {
+std::vector<Loop> MakeLoops(const Network& network) {
   Loop loop;
   for (size_t i = 0; i < network.loop.size(); ++i) loop.push_back({i, network.loop[i].is_forward});
   return {loop};
 }
 
-TEST(ClosuresOf, AreOfTwinsAboutTheirOwnTruth) {
+TEST(ComputeClosures, AreOfTwinsAboutTheirOwnTruth) {
   const Network network = MakeNetwork(3, 0.0, 2);
   for (const LoopErrorOf error_of : {RotationClosure, DirectionClosure}) {
-    const std::vector<UnitValues> closures = ClosuresOf(NetworkAnswers(network), LoopsOf(network), error_of);
+    const std::vector<UnitValues> closures =
+        ComputeClosures(NetworkAnswers(network), MakeLoops(network), error_of);
     ASSERT_EQ(closures.size(), 1u);
     const LoopError none = LoopError::Zero(error_of(network.loop).size());
     ASSERT_EQ(closures[0].observed.size(), 1u);
@@ -296,15 +297,15 @@ TEST(ClosuresOf, AreOfTwinsAboutTheirOwnTruth) {
   }
 }
 
-TEST(ClosuresOf, AreOfLoopsThatAreAnswered) {
+TEST(ComputeClosures, AreOfLoopsThatAreAnswered) {
   const Network three = MakeNetwork(3, 0.0, 2), four = MakeNetwork(4, 0.0, 2);
-  EXPECT_EQ(ClosuresOf(NetworkAnswers(four), LoopsOf(four), RotationClosure).size(), 1u);
-  EXPECT_EQ(ClosuresOf(NetworkAnswers(four), LoopsOf(four), DirectionClosure).size(), 0u);
+  EXPECT_EQ(ComputeClosures(NetworkAnswers(four), MakeLoops(four), RotationClosure).size(), 1u);
+  EXPECT_EQ(ComputeClosures(NetworkAnswers(four), MakeLoops(four), DirectionClosure).size(), 0u);
   std::vector<PairAnswers> answers = NetworkAnswers(three);
   answers[1].twins[0].estimate.status = MotionStatus::kNoCandidate;
-  EXPECT_EQ(ClosuresOf(answers, LoopsOf(three), RotationClosure)[0].null.size(), 1u);
+  EXPECT_EQ(ComputeClosures(answers, MakeLoops(three), RotationClosure)[0].null.size(), 1u);
   answers[1].whole.estimate.status = MotionStatus::kNoCandidate;
-  EXPECT_EQ(ClosuresOf(answers, LoopsOf(three), RotationClosure).size(), 0u);
+  EXPECT_EQ(ComputeClosures(answers, MakeLoops(three), RotationClosure).size(), 0u);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "stats/median_ratio.h"
-#include "tests/test_support/fit_of.h"
+#include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -18,7 +18,7 @@ class FitsHalves : public MotionEstimator {
   explicit FitsHalves(const RelativePose& start) : start_(start) {}
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream&) const override {
     given_.push_back(problem.matches);
-    answers_.push_back(FitOf(problem, start_));
+    answers_.push_back(FitAllMatches(problem, start_));
     return answers_.back();
   }
   const std::vector<std::vector<Correspondence>>& given() const { return given_; }
@@ -67,7 +67,7 @@ TEST(NormalizedDifference, BringsTheTangentsTogether) {
 TEST(DifferenceOfHalves, PartsTheMatches) {
   RelativePose pose;
   const MotionProblem problem = TwoCameraProblem(121, 0.5, 0.0, 1, &pose);
-  const MotionEstimate whole = FitOf(problem, pose);
+  const MotionEstimate whole = FitAllMatches(problem, pose);
   for (const Split split : {Split::kLeftRight, Split::kUpperLower, Split::kRandom, Split::kRandomAgain}) {
     const FitsHalves estimator(pose);
     const std::optional<double> difference = DifferenceOfHalves(problem, whole, split, estimator, kName);
@@ -84,7 +84,7 @@ TEST(DifferenceOfHalves, PartsTheMatches) {
     const Eigen::Index axis = split == Split::kLeftRight ? 0 : 1;
     std::vector<double> places;
     for (const Correspondence& match : problem.matches) places.push_back(match.x1_px(axis));
-    const double border_px = MedianOf(places);
+    const double border_px = ComputeMedian(places);
     for (const Correspondence& match : first) EXPECT_LT(match.x1_px(axis), border_px);
     for (const Correspondence& match : second) EXPECT_GE(match.x1_px(axis), border_px);
   }
@@ -95,7 +95,7 @@ TEST(DifferenceOfHalves, NeedsTwentyMatchesInEach) {
   for (const int n : {39, 40}) {
     const MotionProblem problem = TwoCameraProblem(n, 0.5, 0.0, 1, &pose);
     const bool is_there =
-        DifferenceOfHalves(problem, FitOf(problem, pose), Split::kRandom, FitsHalves(pose), kName)
+        DifferenceOfHalves(problem, FitAllMatches(problem, pose), Split::kRandom, FitsHalves(pose), kName)
             .has_value();
     EXPECT_EQ(is_there, n == 40);
   }
@@ -109,7 +109,7 @@ TEST(DifferenceOfHalves, IsChiSquareOfIndependentErrors) {
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
     RelativePose pose;
     const MotionProblem problem = TwoCameraProblem(200, 0.5, 0.0, trial, &pose);
-    sum += *DifferenceOfHalves(problem, FitOf(problem, pose), Split::kRandom, FitsHalves(pose),
+    sum += *DifferenceOfHalves(problem, FitAllMatches(problem, pose), Split::kRandom, FitsHalves(pose),
                                {1, 2, trial, 0});
   }
   EXPECT_NEAR(sum / 200.0, 5.0, 3.9 * std::sqrt(10.0 / 200.0) + 0.25);

@@ -7,14 +7,14 @@
 namespace rcme {
 namespace {
 
-std::vector<NamedPair> PairsOf(const std::vector<std::pair<std::string, std::string>>& images) {
+std::vector<NamedPair> MakeNamedPairs(const std::vector<std::pair<std::string, std::string>>& images) {
   std::vector<NamedPair> pairs;
   for (const auto& [image1, image2] : images) pairs.push_back({"", image1, image2, {}});
   return pairs;
 }
 
 // Where a step begins and ends.
-std::pair<std::string, std::string> EndsOf(const std::vector<NamedPair>& pairs, const LoopStep& step) {
+std::pair<std::string, std::string> FindStepEnds(const std::vector<NamedPair>& pairs, const LoopStep& step) {
   const NamedPair& pair = pairs[step.pair];
   return step.is_forward ? std::pair{pair.image1, pair.image2} : std::pair{pair.image2, pair.image1};
 }
@@ -22,24 +22,24 @@ std::pair<std::string, std::string> EndsOf(const std::vector<NamedPair>& pairs, 
 // Each step begins where the one before it ends, the last ends where the first begins, and no image is met
 // twice; in a grid of images with pairs in either direction.
 TEST(FindLoops, LeadBackToTheirFirstImage) {
-  const std::vector<NamedPair> pairs = PairsOf({{"a", "b"},
-                                                {"c", "b"},
-                                                {"d", "a"},
-                                                {"e", "b"},
-                                                {"c", "f"},
-                                                {"d", "e"},
-                                                {"f", "e"},
-                                                {"g", "d"},
-                                                {"h", "e"},
-                                                {"g", "h"},
-                                                {"a", "e"}});
+  const std::vector<NamedPair> pairs = MakeNamedPairs({{"a", "b"},
+                                                       {"c", "b"},
+                                                       {"d", "a"},
+                                                       {"e", "b"},
+                                                       {"c", "f"},
+                                                       {"d", "e"},
+                                                       {"f", "e"},
+                                                       {"g", "d"},
+                                                       {"h", "e"},
+                                                       {"g", "h"},
+                                                       {"a", "e"}});
   const std::vector<Loop> loops = FindLoops(pairs, 4);
   ASSERT_EQ(loops.size(), 4u);  // 11 pairs of 8 images: a basis has 4
   for (const Loop& loop : loops) {
     std::map<std::string, int> num_met;
     for (size_t k = 0; k < loop.size(); ++k) {
-      EXPECT_EQ(EndsOf(pairs, loop[k]).second, EndsOf(pairs, loop[(k + 1) % loop.size()]).first);
-      EXPECT_EQ(++num_met[EndsOf(pairs, loop[k]).first], 1);
+      EXPECT_EQ(FindStepEnds(pairs, loop[k]).second, FindStepEnds(pairs, loop[(k + 1) % loop.size()]).first);
+      EXPECT_EQ(++num_met[FindStepEnds(pairs, loop[k]).first], 1);
     }
   }
 }
@@ -48,11 +48,11 @@ TEST(FindLoops, LeadBackToTheirFirstImage) {
 TEST(FindLoops, AreOfAtMostTheLongest) {
   std::vector<std::pair<std::string, std::string>> ring = {
       {"a", "b"}, {"b", "c"}, {"c", "d"}, {"d", "e"}, {"e", "a"}};
-  EXPECT_TRUE(FindLoops(PairsOf(ring), 4).empty());
-  ASSERT_EQ(FindLoops(PairsOf(ring), 5).size(), 1u);
-  EXPECT_EQ(FindLoops(PairsOf(ring), 5)[0].size(), 5u);
+  EXPECT_TRUE(FindLoops(MakeNamedPairs(ring), 4).empty());
+  ASSERT_EQ(FindLoops(MakeNamedPairs(ring), 5).size(), 1u);
+  EXPECT_EQ(FindLoops(MakeNamedPairs(ring), 5)[0].size(), 5u);
   ring.insert(ring.end(), {{"b", "a"}, {"a", "b"}, {"c", "c"}, {"", "a"}, {"a", ""}});
-  EXPECT_EQ(FindLoops(PairsOf(ring), 5).size(), 1u);
+  EXPECT_EQ(FindLoops(MakeNamedPairs(ring), 5).size(), 1u);
 }
 
 }  // namespace

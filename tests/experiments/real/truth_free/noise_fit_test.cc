@@ -60,7 +60,7 @@ std::vector<double> ResidualsPx(const MotionProblem& problem) {
 
 // States twice the noise there is.
 MotionEstimate OverstateNoise(const MotionProblem& problem) {
-  return SidewaysAnswer(problem, 2.0 * MedianOf(ResidualsPx(problem)) / kNormalMedian);
+  return SidewaysAnswer(problem, 2.0 * ComputeMedian(ResidualsPx(problem)) / kNormalMedian);
 }
 
 // Matches along a row of image 1 with these residuals.

@@ -5,7 +5,7 @@
 namespace rcme {
 namespace {
 
-PairAnswers PairOf(const std::string& image1, const std::string& image2) {
+PairAnswers MakeAnsweredPair(const std::string& image1, const std::string& image2) {
   PairAnswers answers;
   answers.whole.pair.image1 = image1;
   answers.whole.pair.image2 = image2;
@@ -13,10 +13,10 @@ PairAnswers PairOf(const std::string& image1, const std::string& image2) {
 }
 
 // Images are numbered as they come; a pair without names has a number that no image and no other pair has.
-TEST(ImageNumbersOf, ByHand) {
+TEST(NumberImages, ByHand) {
   const std::vector<ImageNumbers> numbers =
-      ImageNumbersOf({PairOf("a", "b"), PairOf("", ""), PairOf("b", "c"), PairOf("c", "a"), PairOf("d", ""),
-                      PairOf("e", "e")});
+      NumberImages({MakeAnsweredPair("a", "b"), MakeAnsweredPair("", ""), MakeAnsweredPair("b", "c"),
+                    MakeAnsweredPair("c", "a"), MakeAnsweredPair("d", ""), MakeAnsweredPair("e", "e")});
   const std::vector<std::pair<std::int64_t, std::int64_t>> expected = {{0, 1}, {2, 2}, {1, 3},
                                                                        {3, 0}, {4, 4}, {5, 5}};
   ASSERT_EQ(numbers.size(), expected.size());

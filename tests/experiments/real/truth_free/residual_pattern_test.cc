@@ -21,7 +21,7 @@ Placed PlaceAt(const std::vector<double>& off_px, double sigma_px) {
   RelativePose pose;
   Placed placed;
   placed.problem = TwoCameraProblem(static_cast<int>(off_px.size()), 1e-9, 0.0, 1, &pose);
-  const Eigen::Matrix3d F = FundamentalOf(placed.problem, pose);
+  const Eigen::Matrix3d F = ComputeFundamental(placed.problem, pose);
   for (size_t i = 0; i < off_px.size(); ++i) {
     Correspondence& match = placed.problem.matches[i];
     const Eigen::Vector4d u = EvaluateConstraint(F, match).gradient.normalized();

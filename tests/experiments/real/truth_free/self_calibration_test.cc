@@ -39,7 +39,7 @@ TEST(RemoveFaults, UndoesWhatIsPlanted) {
   EXPECT_GT(most_px, 1.0);
 }
 
-// To first order every fault is removed as ShiftsOf, which scores it, says: differences of a small step.
+// To first order every fault is removed as ComputeShifts, which scores it, says: differences of a small step.
 TEST(RemoveFaults, GoesAsTheShiftsSay) {
   RelativePose pose;
   const MotionProblem problem = TwoCameraProblem(20, 0.5, 0.0, 2, &pose);
@@ -51,8 +51,9 @@ TEST(RemoveFaults, GoesAsTheShiftsSay) {
       const Correspondence &from = problem.matches[i], &to = moved.matches[i];
       Eigen::Vector4d by;
       by << to.x1_px - from.x1_px, to.x2_px - from.x2_px;
-      const Eigen::Vector4d expected = -ShiftsOf(problem.camera1, problem.camera2, pose, from).col(At(fault));
-      EXPECT_LT((by / kStep - expected).norm(), 1e-3 * expected.norm() + 1e-4) << TextOf(fault).name;
+      const Eigen::Vector4d expected =
+          -ComputeShifts(problem.camera1, problem.camera2, pose, from).col(At(fault));
+      EXPECT_LT((by / kStep - expected).norm(), 1e-3 * expected.norm() + 1e-4) << FindFaultText(fault).name;
     }
   }
 }
@@ -125,9 +126,9 @@ TEST(Calibrate, ConvergesToAGreatFault) {
     const CalibrationReport report =
         CalibrateSet(PlantFaultsIn(MakeOwnPairs(), {1.0, 1.0, planted * FaultVector::Unit(At(fault))}));
     const FaultReport& found = *std::ranges::find(report.faults, fault, &FaultReport::fault);
-    EXPECT_TRUE(IsFault(found.verdict)) << TextOf(fault).name << ": " << DescribeCalibration(report);
-    EXPECT_NEAR(found.joint.value, planted, 5.0 * found.joint.standard_error) << TextOf(fault).name;
-    EXPECT_NEAR(found.correction, planted, 5.0 * found.joint.standard_error) << TextOf(fault).name;
+    EXPECT_TRUE(IsFault(found.verdict)) << FindFaultText(fault).name << ": " << DescribeCalibration(report);
+    EXPECT_NEAR(found.joint.value, planted, 5.0 * found.joint.standard_error) << FindFaultText(fault).name;
+    EXPECT_NEAR(found.correction, planted, 5.0 * found.joint.standard_error) << FindFaultText(fault).name;
     EXPECT_GE(report.p_corrected, 0.05);
     EXPECT_LE(report.num_steps, kMostSteps);
     most_steps = std::max(most_steps, report.num_steps);
@@ -145,8 +146,9 @@ TEST(Calibrate, CorrectsWhatIsLeftBesideAGreatFault) {
   const CalibrationReport report = CalibrateSet(PlantFaultsIn(MakeOwnPairs(), {1.0, 1.0, planted}));
   for (const CameraFault fault : {CameraFault::kImage2ShiftX, CameraFault::kDistortion}) {
     const FaultReport& found = *std::ranges::find(report.faults, fault, &FaultReport::fault);
-    EXPECT_TRUE(IsFault(found.verdict)) << TextOf(fault).name << ": " << DescribeCalibration(report);
-    EXPECT_NEAR(found.correction, planted(At(fault)), 5.0 * found.joint.standard_error) << TextOf(fault).name;
+    EXPECT_TRUE(IsFault(found.verdict)) << FindFaultText(fault).name << ": " << DescribeCalibration(report);
+    EXPECT_NEAR(found.correction, planted(At(fault)), 5.0 * found.joint.standard_error)
+        << FindFaultText(fault).name;
   }
   EXPECT_GE(report.p_corrected, 0.05);
 }
@@ -159,16 +161,16 @@ TEST(Calibrate, GivesAFurtherKindOfFaultNoName) {
     for (NamedPair& pair : set.pairs) {
       MotionProblem& problem = pair.problem;
       for (Correspondence& match : problem.matches) {
-        const Eigen::Vector4d shift =
-            ShiftsOf(problem.camera1, problem.camera2, {Eigen::Matrix3d::Identity(), {1.0, 0.0, 0.0}}, match)
-                .col(At(fault));
+        const Eigen::Vector4d shift = ComputeShifts(problem.camera1, problem.camera2,
+                                                    {Eigen::Matrix3d::Identity(), {1.0, 0.0, 0.0}}, match)
+                                          .col(At(fault));
         match.x1_px += 0.02 * shift.head<2>();
         match.x2_px += 0.02 * shift.tail<2>();
       }
     }
     const CalibrationReport report = CalibrateSet(set);
-    EXPECT_LT(report.p_value, 0.05) << TextOf(fault).name;
-    EXPECT_FALSE(NamesFault(report)) << TextOf(fault).name << ": " << DescribeCalibration(report);
+    EXPECT_LT(report.p_value, 0.05) << FindFaultText(fault).name;
+    EXPECT_FALSE(NamesFault(report)) << FindFaultText(fault).name << ": " << DescribeCalibration(report);
     EXPECT_THAT(report.why_unnamed, HasSubstr("something of another kind is left"));
   }
 }

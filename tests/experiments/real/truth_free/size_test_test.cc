@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "estimator/robust_covariance/clustered_covariance.h"
-#include "tests/test_support/fit_of.h"
+#include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -25,7 +25,7 @@ Answered MakePair(double power, double spread, int num_matches, std::uint32_t tr
     problem.noise_scale.push_back(std::exp(rng.Uniform(-spread, spread)));
     AddNoise(0.3 * std::pow(problem.noise_scale.back(), power), rng, &match);
   }
-  answered.estimate = FitOf(problem, pose);
+  answered.estimate = FitAllMatches(problem, pose);
   return answered;
 }
 

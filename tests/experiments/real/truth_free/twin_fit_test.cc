@@ -15,7 +15,7 @@ namespace {
 
 // 101 points on rays over the image at the depths 5, 5.1, ..., 15 baselines seen by a camera that turns by
 // `turn_deg` about y and moves sideways, and wrong matches as given.
-AnsweredTrial TemplateOf(double turn_deg, const std::vector<Correspondence>& wrong) {
+AnsweredTrial MakeTemplate(double turn_deg, const std::vector<Correspondence>& wrong) {
   AnsweredTrial one;
   one.estimate.status = MotionStatus::kNoCandidate;  // nothing says how large the noise is
   TrialData exact;
@@ -45,7 +45,7 @@ TwinFit FitOfTemplates(std::vector<AnsweredTrial> pairs) {
 }
 
 TEST(FitTwin, MeasuresTheLayoutOfATemplate) {
-  const TwinFit fit = FitOfTemplates({TemplateOf(2.0, {})});
+  const TwinFit fit = FitOfTemplates({MakeTemplate(2.0, {})});
   EXPECT_EQ(fit.num_templates, 1);
   EXPECT_EQ(fit.num_matches, 101);
   EXPECT_EQ(fit.camera1.fx, TestCamera1().fx);
@@ -65,16 +65,17 @@ TEST(FitTwin, MeasuresTheLayoutOfATemplate) {
 TEST(FitTwin, CountsWrongMatchesThatMoveAlike) {
   const std::vector<Correspondence> wrong = {
       {{100.0, 100.0}, {300.0, 200.0}}, {{120.0, 100.0}, {325.0, 200.0}}, {{110.0, 110.0}, {500.0, 100.0}}};
-  EXPECT_NEAR(FitOfTemplates({TemplateOf(2.0, wrong)}).wrong_agreeing_share, 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(FitOfTemplates({MakeTemplate(2.0, wrong)}).wrong_agreeing_share, 2.0 / 3.0, 1e-12);
   const std::vector<Correspondence> apart = {{{100.0, 100.0}, {300.0, 200.0}},
                                              {{200.0, 100.0}, {400.0, 200.0}}};
-  EXPECT_EQ(FitOfTemplates({TemplateOf(2.0, apart)}).wrong_agreeing_share, 0.0);
+  EXPECT_EQ(FitOfTemplates({MakeTemplate(2.0, apart)}).wrong_agreeing_share, 0.0);
 }
 
 // The wrong share is a mean over templates, of 3 in 104 and of none in 101.
 TEST(FitTwin, AveragesTheWrongShare) {
   const std::vector<Correspondence> wrong(3, {{100.0, 100.0}, {300.0, 200.0}});
-  const TwinFit fit = FitOfTemplates({TemplateOf(2.0, wrong), TemplateOf(4.0, {}), TemplateOf(9.0, {})});
+  const TwinFit fit =
+      FitOfTemplates({MakeTemplate(2.0, wrong), MakeTemplate(4.0, {}), MakeTemplate(9.0, {})});
   EXPECT_NEAR(fit.wrong_share, 3.0 / 104.0 / 3.0, 1e-12);
   EXPECT_NEAR(fit.rotation_deg, 4.0, 1e-9);
 }

@@ -39,7 +39,7 @@ Case MakeCase(const std::vector<double>& accepted_sigmas, size_t num_near) {
   RelativePose pose;
   MotionProblem& problem = made.trial.problem;
   problem = TwoCameraProblem(50, 1e-9, 0.0, 1, &pose);
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
   for (size_t i = 0; i < 50; ++i) {
     const bool is_accepted = i < accepted_sigmas.size();
     const double off_sigmas = is_accepted                             ? accepted_sigmas[i]
@@ -60,13 +60,15 @@ Case MakeCase(const std::vector<double>& accepted_sigmas, size_t num_near) {
   return made;
 }
 
-Values ValuesOf(const Case& c) { return ValuesOf(c.trial, c.estimate, Fixed(c.estimate), {1, 2, 0, 0}); }
+Values ComputeValues(const Case& c) {
+  return ComputeValues(c.trial, c.estimate, Fixed(c.estimate), {1, 2, 0, 0});
+}
 
-TEST(ValuesOf, CountsMatchesByTheirDistance) {
+TEST(ComputeValues, CountsMatchesByTheirDistance) {
   std::vector<double> sigmas(20, 0.5);
   for (size_t i = 0; i < 3; ++i) sigmas[i] = 1.5;  // within two sigma
   for (size_t i = 3; i < 8; ++i) sigmas[i] = 2.2;  // beyond
-  const Values values = ValuesOf(MakeCase(sigmas, 5));
+  const Values values = ComputeValues(MakeCase(sigmas, 5));
   EXPECT_EQ(values[kRefusal], std::vector<double>{0.0});
   EXPECT_EQ(values[kSigma], std::vector<double>{0.4});
   EXPECT_EQ(values[kStatedFailure], std::vector<double>{0.125});
@@ -77,17 +79,17 @@ TEST(ValuesOf, CountsMatchesByTheirDistance) {
 }
 
 // Logarithms of standard deviations in degrees: roots of the sums of variances.
-TEST(ValuesOf, TakesStandardDeviations) {
-  const Values values = ValuesOf(MakeCase(std::vector<double>(40, 0.5), 0));
+TEST(ComputeValues, TakesStandardDeviations) {
+  const Values values = ComputeValues(MakeCase(std::vector<double>(40, 0.5), 0));
   ASSERT_EQ(values[kRotationSd].size(), 1u);
   EXPECT_NEAR(values[kRotationSd][0], std::log(3e-3 * 180.0 / std::numbers::pi), 1e-9);
   EXPECT_NEAR(values[kDirectionSd][0], std::log(4e-3 * 180.0 / std::numbers::pi), 1e-9);
 }
 
 // Halves that are answered alike lie within each other's region, answers far from each other do not.
-TEST(ValuesOf, ComparesHalves) {
+TEST(ComputeValues, ComparesHalves) {
   const Case c = MakeCase(std::vector<double>(50, 0.5), 0);
-  const Values alike = ValuesOf(c);
+  const Values alike = ComputeValues(c);
   EXPECT_EQ(alike[kSpatialHalves], (std::vector<double>{1.0, 1.0}));
   EXPECT_EQ(alike[kRandomHalves], (std::vector<double>{1.0, 1.0}));
   // Every other call is turned by ten standard deviations.
@@ -105,16 +107,16 @@ TEST(ValuesOf, ComparesHalves) {
     const Case& c_;
     mutable int num_calls_ = 0;
   };
-  const Values apart = ValuesOf(c.trial, c.estimate, Turning(c), {1, 2, 0, 0});
+  const Values apart = ComputeValues(c.trial, c.estimate, Turning(c), {1, 2, 0, 0});
   EXPECT_EQ(apart[kSpatialHalves], (std::vector<double>{0.0, 0.0}));
   EXPECT_EQ(apart[kRandomHalves], (std::vector<double>{0.0, 0.0}));
 }
 
-TEST(ValuesOf, OfARefusalIsTheRefusal) {
+TEST(ComputeValues, OfARefusalIsTheRefusal) {
   Case c = MakeCase(std::vector<double>(40, 0.5), 0);
   c.estimate.status = MotionStatus::kNoCandidate;
   c.trial.truth.cam2_from_cam1_true = c.estimate.cam2_from_cam1;
-  const Values values = ValuesOf(c);
+  const Values values = ComputeValues(c);
   EXPECT_EQ(values[kRefusal], std::vector<double>{1.0});
   EXPECT_EQ(values[kFailure], std::vector<double>{0.0});
   EXPECT_TRUE(values[kSigma].empty());

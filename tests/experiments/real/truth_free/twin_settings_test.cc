@@ -27,7 +27,7 @@ TwinFit SomeFit() {
   return fit;
 }
 
-std::string ValueOf(const TwinFit& fit, const std::string& key) {
+std::string ReadValue(const TwinFit& fit, const std::string& key) {
   const Settings settings = SimulatedTwinData(fit, 0.3, 0.5);
   const auto found = std::ranges::find(settings, key, &Settings::value_type::first);
   return found == settings.end() ? "" : found->second;
@@ -37,56 +37,56 @@ std::string ValueOf(const TwinFit& fit, const std::string& key) {
 // twice the median; one that turns more goes about the scene.
 TEST(SimulatedTwinData, MovesAsTheFit) {
   TwinFit fit = SomeFit();
-  EXPECT_EQ(ValueOf(fit, "motion"), "sideways");
-  EXPECT_EQ(ValueOf(fit, "max_rotation_deg"), "3");
-  EXPECT_EQ(ValueOf(fit, "parallax_deg"), "4");
+  EXPECT_EQ(ReadValue(fit, "motion"), "sideways");
+  EXPECT_EQ(ReadValue(fit, "max_rotation_deg"), "3");
+  EXPECT_EQ(ReadValue(fit, "parallax_deg"), "4");
   fit.rotation_deg = 2.1;
-  EXPECT_EQ(ValueOf(fit, "motion"), "orbit");
-  EXPECT_EQ(ValueOf(fit, "orbit_deg"), "2.1");
+  EXPECT_EQ(ReadValue(fit, "motion"), "orbit");
+  EXPECT_EQ(ReadValue(fit, "orbit_deg"), "2.1");
   fit.forwardness = 0.6;
-  EXPECT_EQ(ValueOf(fit, "motion"), "general");
+  EXPECT_EQ(ReadValue(fit, "motion"), "general");
   fit.forwardness = 0.95;
-  EXPECT_EQ(ValueOf(fit, "motion"), "forward");
+  EXPECT_EQ(ReadValue(fit, "motion"), "forward");
 }
 
 TEST(SimulatedTwinData, HasTheCamerasOfTheFit) {
   const TwinFit fit = SomeFit();
-  EXPECT_EQ(ValueOf(fit, "fx1_px"), "700");
-  EXPECT_EQ(ValueOf(fit, "fy1_px"), "650");
-  EXPECT_EQ(ValueOf(fit, "image1_width"), "640");
-  EXPECT_EQ(ValueOf(fit, "fx2_px"), "820");
-  EXPECT_EQ(ValueOf(fit, "cy2_px"), "310");
-  EXPECT_EQ(ValueOf(fit, "image2_height"), "600");
+  EXPECT_EQ(ReadValue(fit, "fx1_px"), "700");
+  EXPECT_EQ(ReadValue(fit, "fy1_px"), "650");
+  EXPECT_EQ(ReadValue(fit, "image1_width"), "640");
+  EXPECT_EQ(ReadValue(fit, "fx2_px"), "820");
+  EXPECT_EQ(ReadValue(fit, "cy2_px"), "310");
+  EXPECT_EQ(ReadValue(fit, "image2_height"), "600");
 }
 
 // Where a homography explains nearly all: a plane in the middle of the depths, the rest within them.
 TEST(SimulatedTwinData, HasThePointsOfTheFit) {
   TwinFit fit = SomeFit();
-  EXPECT_EQ(ValueOf(fit, "scene"), "image_clusters");
-  EXPECT_EQ(ValueOf(fit, "min_depth_m"), "5");
-  EXPECT_EQ(ValueOf(fit, "max_depth_m"), "15");
-  EXPECT_EQ(ValueOf(fit, "clustered_share"), "0.3");
-  EXPECT_EQ(ValueOf(fit, "num_matches"), "200");
-  EXPECT_EQ(ValueOf(fit, "outlier_ratio"), "0.25");
-  EXPECT_EQ(ValueOf(fit, "outliers"), "uniform");
+  EXPECT_EQ(ReadValue(fit, "scene"), "image_clusters");
+  EXPECT_EQ(ReadValue(fit, "min_depth_m"), "5");
+  EXPECT_EQ(ReadValue(fit, "max_depth_m"), "15");
+  EXPECT_EQ(ReadValue(fit, "clustered_share"), "0.3");
+  EXPECT_EQ(ReadValue(fit, "num_matches"), "200");
+  EXPECT_EQ(ReadValue(fit, "outlier_ratio"), "0.25");
+  EXPECT_EQ(ReadValue(fit, "outliers"), "uniform");
   fit.wrong_agreeing_share = 0.4;
-  EXPECT_EQ(ValueOf(fit, "outliers"), "clustered_both");
+  EXPECT_EQ(ReadValue(fit, "outliers"), "clustered_both");
   fit.homography_share = 0.9;
-  EXPECT_EQ(ValueOf(fit, "scene"), "plane_and_parallax");
-  EXPECT_EQ(ValueOf(fit, "plane_depth_m"), "10");
-  EXPECT_EQ(ValueOf(fit, "off_plane_m"), "5");
-  EXPECT_EQ(ValueOf(fit, "off_plane_share"), "0.1");
+  EXPECT_EQ(ReadValue(fit, "scene"), "plane_and_parallax");
+  EXPECT_EQ(ReadValue(fit, "plane_depth_m"), "10");
+  EXPECT_EQ(ReadValue(fit, "off_plane_m"), "5");
+  EXPECT_EQ(ReadValue(fit, "off_plane_share"), "0.1");
   EXPECT_NO_THROW(MakeSimulatedData(SimulatedTwinData(SomeFit(), 0.3, 0.5)));
 }
 
 // Points at random need no clusters, points far nearer to each other than that need most of all.
-TEST(ClusteredShareOf, FollowsHowNearPointsAre) {
+TEST(FitClusteredShare, FollowsHowNearPointsAre) {
   TwinFit fit = SomeFit();
-  EXPECT_EQ(ClusteredShareOf(fit), 0.0);
+  EXPECT_EQ(FitClusteredShare(fit), 0.0);
   fit.clark_evans = 0.4;
-  EXPECT_GE(ClusteredShareOf(fit), 0.6);
+  EXPECT_GE(FitClusteredShare(fit), 0.6);
   fit.homography_share = 0.9;
-  EXPECT_EQ(ClusteredShareOf(fit), 0.0);
+  EXPECT_EQ(FitClusteredShare(fit), 0.0);
 }
 
 TEST(SemiRealData, IsOfTheTemplatesWithTheNoiseOfTheFit) {

@@ -29,7 +29,7 @@ class GivenPairs : public DataSource {
     TrialData pair;
     pair.problem = TwoCameraProblem(static_cast<int>(given.off_px.size()), 1e-9, 0.0, 1, &pose);
     pair.problem.sigma_px = given.sigma_px;
-    const Eigen::Matrix3d F = FundamentalOf(pair.problem, pose);
+    const Eigen::Matrix3d F = ComputeFundamental(pair.problem, pose);
     for (size_t i = 0; i < given.off_px.size(); ++i) {
       Correspondence& match = pair.problem.matches[i];
       const Eigen::Vector4d u = EvaluateConstraint(F, match).gradient.normalized();
@@ -84,7 +84,7 @@ TEST(AnswerScene, TakesWhatIsWithinFourSigmaAsRight) {
   ASSERT_TRUE(source.pairs[0].exact.has_value());
   const TrialData& exact = *source.pairs[0].exact;
   for (size_t i = 0; i < 40; ++i) EXPECT_EQ(exact.truth.is_inlier_true[i], i < 10 || i >= 20) << i;
-  const Eigen::Matrix3d F = FundamentalOf(exact.problem, SceneMotion());
+  const Eigen::Matrix3d F = ComputeFundamental(exact.problem, SceneMotion());
   for (size_t i = 0; i < 10; ++i) EXPECT_LT(SquaredSampsonDistance(F, exact.problem.matches[i]), 1e-6);
   EXPECT_EQ(exact.problem.matches[12].x1_px, source.pairs[0].pair.problem.matches[12].x1_px);
   EXPECT_TRUE(source.pairs[0].HasAnsweredTemplate());

@@ -12,9 +12,9 @@
 #include "estimator/geometry/sampson.h"
 #include "experiments/data/make_data.h"
 #include "experiments/data/match_folder.h"
-#include "experiments/study/study_file.h"
 #include "experiments/real/truth_free/twin_output.h"
 #include "experiments/real/truth_free/twin_settings.h"
+#include "experiments/study/study_file.h"
 #include "stats/median_ratio.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
@@ -118,7 +118,7 @@ double MedianSquare(double dof, double within_px = 0.0) {
     const Correspondence &was = exact.problem.matches[i], &is = drawn.problem.matches[i];
     sums.push_back((is.x1_px - was.x1_px).squaredNorm() + (is.x2_px - was.x2_px).squaredNorm());
   }
-  return MedianOf(sums);
+  return ComputeMedian(sums);
 }
 TEST(Redraw, StudentsNoiseIsLargeForAllOfAMatch) {
   EXPECT_NEAR(MedianSquare(0.0), 0.839, 0.24);
@@ -134,7 +134,7 @@ TEST(Redraw, KeepsRightMatchesNearAndWrongOnesFar) {
   settings.within_px = 0.6;
   for (const double level : {1.0, 3.0}) {
     const TrialData drawn = Redraw(settings).Draw(exact, Named(0), level);
-    const Eigen::Matrix3d F = FundamentalOf(exact.problem, *exact.truth.cam2_from_cam1_true);
+    const Eigen::Matrix3d F = ComputeFundamental(exact.problem, *exact.truth.cam2_from_cam1_true);
     double greatest = 0.0;
     for (size_t i = 0; i < exact.problem.matches.size(); ++i) {
       const double distance = std::sqrt(SquaredSampsonDistance(F, drawn.problem.matches[i]));
@@ -157,10 +157,10 @@ TEST(Redraw, SaysWhatIsWrong) {
 }
 
 // What is said of the noise, or the median distance over that of a normal number, of matches alike.
-TEST(NoiseOf, IsTheMedianOfTheResiduals) {
+TEST(EstimateNoise, IsTheMedianOfTheResiduals) {
   RelativePose pose;
   MotionProblem problem = TwoCameraProblem(5, 1e-9, 0.0, 1, &pose);
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
   MotionEstimate estimate;
   estimate.cam2_from_cam1 = pose;
   const double off_px[] = {0.1, -0.2, 0.6, 0.4, -0.5};
@@ -172,16 +172,16 @@ TEST(NoiseOf, IsTheMedianOfTheResiduals) {
     match.x2_px += off_px[i] * u.tail<2>();
     estimate.inliers.push_back(static_cast<int>(i));
   }
-  EXPECT_NEAR(NoiseOf(problem, estimate), 0.3 / 0.6744897501960817, 0.005);
+  EXPECT_NEAR(EstimateNoise(problem, estimate), 0.3 / 0.6744897501960817, 0.005);
   estimate.sigma_estimated_px = 0.25;
-  EXPECT_EQ(NoiseOf(problem, estimate), 0.25);
+  EXPECT_EQ(EstimateNoise(problem, estimate), 0.25);
 }
 
 // To second order of the distance: of one pixel a few millionths are left, and the way there is the shortest.
 TEST(Snapped, IsTheNearestExactMatch) {
   RelativePose pose;
   MotionProblem problem = TwoCameraProblem(30, 0.7, 0.0, 1, &pose);
-  const Eigen::Matrix3d F = FundamentalOf(problem, pose);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, pose);
   for (const Correspondence& match : problem.matches) {
     const Correspondence snapped = Snapped(F, match);
     EXPECT_LT(std::sqrt(SquaredSampsonDistance(F, snapped)), 1e-5);
@@ -193,7 +193,7 @@ TEST(Snapped, IsTheNearestExactMatch) {
 
 // Matches that are said to be noisier get as much more noise: of 300 each of scale 1/2 and 3 the mean square
 // of the distance, over that of the noise, is 1 (z-test at 1e-4).
-TEST(TwinOf, DrawsNoiseOfTheMatchsScale) {
+TEST(MakeTwin, DrawsNoiseOfTheMatchsScale) {
   RelativePose pose;
   NamedPair pair{"pair", "", "", TwoCameraProblem(600, 0.5, 0.0, 1, &pose)};
   MotionEstimate estimate;
@@ -204,8 +204,8 @@ TEST(TwinOf, DrawsNoiseOfTheMatchsScale) {
     pair.problem.noise_scale.push_back(i < 300 ? 0.5 : 3.0);
     estimate.inliers.push_back(i);
   }
-  const NamedPair twin = TwinOf(pair, estimate, 1, 1);
-  const Eigen::Matrix3d F = FundamentalOf(pair.problem, pose);
+  const NamedPair twin = MakeTwin(pair, estimate, 1, 1);
+  const Eigen::Matrix3d F = ComputeFundamental(pair.problem, pose);
   double sums[2] = {0.0, 0.0};
   for (size_t i = 0; i < 600; ++i) {
     const double sd_px = 0.2 * pair.problem.noise_scale[i];
@@ -215,7 +215,7 @@ TEST(TwinOf, DrawsNoiseOfTheMatchsScale) {
 }
 
 // Pairs of a simulated study as a source of twins.
-TwinSource SourceOf(const Settings& more, int num_pairs, const MotionEstimator& estimator) {
+TwinSource MakeTwinSource(const Settings& more, int num_pairs, const MotionEstimator& estimator) {
   Settings data = {{"scene", "image_clusters"}, {"num_matches", "300"},  {"outlier_ratio", "0.25"},
                    {"sigma_px", "0.3"},         {"parallax_deg", "4"},   {"motion", "sideways"},
                    {"assumed_sigma_px", "0.5"}, {"severity", "skipped"}, {"clustered_share", "0"}};
@@ -241,7 +241,7 @@ TwinSource SourceOf(const Settings& more, int num_pairs, const MotionEstimator& 
 // Twelve pairs of 225 right matches: sigma is known to 2 %, and to what the estimator's own scale is worth.
 TEST(FitTwin, FindsTheNumbersOfASimulation) {
   const auto estimator = MakeEstimator("rcme_calibrated");
-  const TwinFit fit = FitTwin(SourceOf({}, 12, *estimator), *estimator, 1);
+  const TwinFit fit = FitTwin(MakeTwinSource({}, 12, *estimator), *estimator, 1);
   EXPECT_EQ(fit.num_templates, 12);
   EXPECT_NEAR(fit.noise.noise_px, 0.3, 0.03);
   EXPECT_TRUE(fit.noise.student_dof == 0.0 || fit.noise.student_dof >= 6.0) << fit.noise.student_dof;
@@ -252,7 +252,7 @@ TEST(FitTwin, FindsTheNumbersOfASimulation) {
   EXPECT_NEAR(fit.parallax_deg, 4.0, 0.5);
   EXPECT_LT(fit.forwardness, 0.2);
   EXPECT_NEAR(fit.clark_evans, 1.0, 0.1);
-  const Settings data = SimulatedTwinData(fit, ClusteredShareOf(fit), 0.5);
+  const Settings data = SimulatedTwinData(fit, FitClusteredShare(fit), 0.5);
   EXPECT_THAT(data, testing::Contains(Settings::value_type("scene", "image_clusters")));
   EXPECT_NO_THROW(MakeSimulatedData(data));
 }
@@ -268,7 +268,7 @@ const TwinComparison& Found(const TwinReport& report, const std::string& quantit
 // sigma is that of the precise matches: with 1.5 degrees of freedom a fraction of the root mean square.
 TEST(TwinReport, ResemblesTailsOfRealLength) {
   const auto estimator = MakeEstimator("rcme_calibrated");
-  const TwinSource source = SourceOf(
+  const TwinSource source = MakeTwinSource(
       {{"noise", "correlated"}, {"noise_correlation", "0"}, {"noise_student_dof", "1.5"}, {"sigma_px", "1"}},
       12, *estimator);
   const TwinReport report = MakeTwinReport(source, *estimator, "pairs", 0.5, 1, 2);
@@ -288,7 +288,7 @@ TEST(TwinReport, ResemblesTailsOfRealLength) {
 // halves say so.
 TEST(TwinReport, SaysWhatSimulationExplains) {
   const auto estimator = MakeEstimator("rcme_calibrated");
-  const TwinReport own = MakeTwinReport(SourceOf({}, 12, *estimator), *estimator, "pairs", 0.5, 1, 2);
+  const TwinReport own = MakeTwinReport(MakeTwinSource({}, 12, *estimator), *estimator, "pairs", 0.5, 1, 2);
   EXPECT_EQ(own.why_not_simulated, "");
   EXPECT_GE(own.NumCompared("semi_real", false), 7);
   EXPECT_GE(own.NumCompared("semi_real", true), 4);
@@ -298,8 +298,8 @@ TEST(TwinReport, SaysWhatSimulationExplains) {
   for (const char* twin : {"semi_real", "simulated"})
     EXPECT_GE(own.NumWithin(twin, true), own.NumCompared(twin, true) - 1) << TwinsAsText({own});
 
-  const TwinReport bent =
-      MakeTwinReport(SourceOf({{"distortion_k1", "0.2"}}, 12, *estimator), *estimator, "pairs", 0.5, 1, 2);
+  const TwinReport bent = MakeTwinReport(MakeTwinSource({{"distortion_k1", "0.2"}}, 12, *estimator),
+                                         *estimator, "pairs", 0.5, 1, 2);
   EXPECT_FALSE(Found(bent, "spatial_halves", "semi_real").IsWithin()) << TwinsAsText({bent});
   EXPECT_THAT(TwinsAsText({bent}), testing::HasSubstr("not explained: left/right"));
   EXPECT_THAT(TwinsAsCsv({bent}), testing::HasSubstr("made,12,semi_real,spatial_halves,rate,no,"));
@@ -307,7 +307,7 @@ TEST(TwinReport, SaysWhatSimulationExplains) {
 
 TEST(FitTwin, WithoutAPairToResembleSaysSo) {
   const auto estimator = MakeEstimator("rcme_calibrated");
-  TwinSource source = SourceOf({}, 2, *estimator);
+  TwinSource source = MakeTwinSource({}, 2, *estimator);
   for (AnsweredTrial& one : source.pairs) one.exact.reset();
   EXPECT_TRUE(
       ThrowsInputError([&] { FitTwin(source, *estimator, 1); }, {"scene made", "nothing to resemble"}));

@@ -17,7 +17,7 @@ using testing::Not;
 constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 
-SharedMemberRate CoverageOf(double rate, const Interval& interval) {
+SharedMemberRate MakeCoverage(double rate, const Interval& interval) {
   SharedMemberRate coverage;
   coverage.rate = rate;
   coverage.interval = interval;
@@ -29,15 +29,15 @@ std::vector<TruthFreeTest> TestsByHand() {
   TruthFreeTest simulation, halves, closure;
   simulation.name = kSimulationTest;
   simulation.num_values = 24;
-  simulation.coverage = CoverageOf(0.96, {0.9, 0.99});
-  simulation.twin_coverage = CoverageOf(0.94, {0.8, 0.98});
+  simulation.coverage = MakeCoverage(0.96, {0.9, 0.99});
+  simulation.twin_coverage = MakeCoverage(0.94, {0.8, 0.98});
   simulation.ratio = {1.1, {0.9, 1.2}};
   simulation.verdict = TruthFreeVerdict::kHolds;
   halves.name = "spatial_halves";
   halves.num_units = 8;
   halves.num_values = 16;
-  halves.coverage = CoverageOf(0.75, {0.5, 0.9});
-  halves.twin_coverage = CoverageOf(0.9375, {0.81, 0.99});
+  halves.coverage = MakeCoverage(0.75, {0.5, 0.9});
+  halves.twin_coverage = MakeCoverage(0.9375, {0.81, 0.99});
   halves.ratio = {2.1, {1.8, 2.5}};
   halves.in_simulation = {1.05, {0.85, 1.25}};
   halves.against_twins = {2.0, {1.5, 2.6}};
@@ -46,7 +46,7 @@ std::vector<TruthFreeTest> TestsByHand() {
   halves.units_needed = kNotKnown;
   closure.name = "closure";
   closure.degrees_of_freedom = 3;
-  closure.coverage = closure.twin_coverage = CoverageOf(kNotKnown, {0.0, 1.0});
+  closure.coverage = closure.twin_coverage = MakeCoverage(kNotKnown, {0.0, 1.0});
   closure.ratio = closure.in_simulation = closure.against_twins = {kNotKnown, {0.0, kNoBound}};
   return {simulation, halves, closure};
 }
@@ -105,7 +105,7 @@ nlohmann::json JsonOfSet(const SetReport& report) {
   return nlohmann::json::parse(ValidationAsJson({report})).at("sets").at(0);
 }
 
-std::string WordsOf(const ComparedMedians& ratio, TruthFreeVerdict verdict, FaultCause cause) {
+std::string RenderWords(const ComparedMedians& ratio, TruthFreeVerdict verdict, FaultCause cause) {
   TruthFreeTest test;
   test.ratio = ratio;
   test.verdict = verdict;
@@ -118,14 +118,14 @@ std::string WordsOf(const ComparedMedians& ratio, TruthFreeVerdict verdict, Faul
 // Too large by the inverse, whose ends change places.
 TEST(DescribeVerdict, ByHand) {
   using enum TruthFreeVerdict;
-  EXPECT_EQ(WordsOf({1.1, {0.9, 1.2}}, kHolds, FaultCause::kNone), "holds: 1.1 [0.9, 1.2]");
-  EXPECT_EQ(WordsOf({1.1, {0.9, 1.2}}, kNoData, FaultCause::kNone), "no data");
-  EXPECT_EQ(WordsOf({2.1, {1.8, 2.5}}, kTooSmall, FaultCause::kData),
+  EXPECT_EQ(RenderWords({1.1, {0.9, 1.2}}, kHolds, FaultCause::kNone), "holds: 1.1 [0.9, 1.2]");
+  EXPECT_EQ(RenderWords({1.1, {0.9, 1.2}}, kNoData, FaultCause::kNone), "no data");
+  EXPECT_EQ(RenderWords({2.1, {1.8, 2.5}}, kTooSmall, FaultCause::kData),
             "too small by 2.1 [1.8, 2.5] in variance; the data: in simulation it is not");
-  EXPECT_EQ(WordsOf({2.1, {1.8, 2.5}}, kTooSmall, FaultCause::kBoth),
+  EXPECT_EQ(RenderWords({2.1, {1.8, 2.5}}, kTooSmall, FaultCause::kBoth),
             "too small by 2.1 [1.8, 2.5] in variance; in simulation too, and more so here");
   EXPECT_EQ(
-      WordsOf({0.5, {0.4, 0.625}}, kTooLarge, FaultCause::kEstimator),
+      RenderWords({0.5, {0.4, 0.625}}, kTooLarge, FaultCause::kEstimator),
       "too large by 2 [1.6, 2.5] in variance; the estimator's own covariance is too large, in simulation "
       "too");
 }
@@ -133,7 +133,7 @@ TEST(DescribeVerdict, ByHand) {
 // Of 20 units: 20 would not decide it by their number, 21 would.
 TEST(DescribeVerdict, SaysWhatWouldDecide) {
   const ComparedMedians wide = {1.3, {0.9, 1.9}};
-  EXPECT_EQ(WordsOf(wide, TruthFreeVerdict::kUndecided, FaultCause::kNone),
+  EXPECT_EQ(RenderWords(wide, TruthFreeVerdict::kUndecided, FaultCause::kNone),
             "undecided: 1.3 [0.9, 1.9]; within 1.25 of one it would be by the approximation");
   TruthFreeTest test;
   test.ratio = wide;

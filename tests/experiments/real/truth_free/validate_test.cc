@@ -16,7 +16,7 @@
 #include "experiments/real/truth_free/validate_output.h"
 #include "experiments/study/study_file.h"
 #include "stats/consistency.h"
-#include "tests/test_support/fit_of.h"
+#include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/paths.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -44,15 +44,15 @@ TEST(NormalizedDifference, IsChiSquareOfTwoIndependentMotions) {
 
 // Inliers of the twin lie at the answer's geometry with noise of the stated size; a key point that two of
 // them share has one error; the others are the pair's own.
-TEST(TwinOf, HasTheGeometryOfTheAnswerWithNewNoise) {
+TEST(MakeTwin, HasTheGeometryOfTheAnswerWithNewNoise) {
   RelativePose pose_true;
   NamedPair pair{"a", "", "", TwoCameraProblem(400, 0.5, 0.0, 1, &pose_true)};
   pair.problem.matches[7] = pair.problem.matches[3];
-  MotionEstimate estimate = FitOf(pair.problem, pose_true);
+  MotionEstimate estimate = FitAllMatches(pair.problem, pose_true);
   estimate.sigma_estimated_px = 0.25;
   estimate.inliers.erase(estimate.inliers.begin());
-  const NamedPair twin = TwinOf(pair, estimate, 1, 1), again = TwinOf(pair, estimate, 1, 1),
-                  other = TwinOf(pair, estimate, 1, 2);
+  const NamedPair twin = MakeTwin(pair, estimate, 1, 1), again = MakeTwin(pair, estimate, 1, 1),
+                  other = MakeTwin(pair, estimate, 1, 2);
   EXPECT_EQ(twin.problem.matches[0].x1_px, pair.problem.matches[0].x1_px);
   EXPECT_EQ(twin.problem.matches[5].x2_px, again.problem.matches[5].x2_px);
   EXPECT_NE(twin.problem.matches[5].x2_px, other.problem.matches[5].x2_px);
@@ -62,22 +62,22 @@ TEST(TwinOf, HasTheGeometryOfTheAnswerWithNewNoise) {
   double sum = 0.0;
   for (size_t i = 10; i < 400; ++i) sum += SquaredSampsonDistance(F, twin.problem.matches[i]) / (0.25 * 0.25);
   EXPECT_NEAR(sum / 390, 1.0, 3.89 * std::sqrt(2.0 / 390));
-  EXPECT_EQ(NoiseOf(pair.problem, estimate), 0.25);
+  EXPECT_EQ(EstimateNoise(pair.problem, estimate), 0.25);
   estimate.sigma_estimated_px = std::nan("");
-  EXPECT_NEAR(NoiseOf(pair.problem, estimate), 0.5, 0.1);
+  EXPECT_NEAR(EstimateNoise(pair.problem, estimate), 0.5, 0.1);
 }
 
 // Two matches at each place, whose residuals are the same, 20 px from the next place: correlation 1 below 1
 // px.
-TEST(ProductsOf, ComparesResidualsAtTheirDistance) {
+TEST(SumProducts, ComparesResidualsAtTheirDistance) {
   RelativePose pose_true;
   MotionProblem problem = TwoCameraProblem(100, 0.5, 0.0, 1, &pose_true);
-  MotionEstimate estimate = FitOf(problem, pose_true);
+  MotionEstimate estimate = FitAllMatches(problem, pose_true);
   for (const Correspondence& match : std::vector<Correspondence>(problem.matches)) {
     estimate.inliers.push_back(static_cast<int>(problem.matches.size()));
     problem.matches.push_back(match);
   }
-  const ResidualProducts products = ProductsOf(problem, estimate);
+  const ResidualProducts products = SumProducts(problem, estimate);
   EXPECT_GE(products.counts[0], 100.0);
   EXPECT_NEAR(products.Correlation(0), 1.0, 0.05);
   EXPECT_LT(std::abs(products.Correlation(3)), 0.2);

@@ -5,13 +5,13 @@
 #include <filesystem>
 #include <limits>
 
+#include "experiments/data/match_file.h"
+#include "experiments/run/run_study.h"
+#include "experiments/run/store/new_trials.h"
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/report_data.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/statistics/trial_table.h"
-#include "experiments/data/match_file.h"
-#include "experiments/run/store/new_trials.h"
-#include "experiments/run/run_study.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -19,7 +19,7 @@
 namespace rcme {
 namespace {
 
-std::string TextOf(const RunDescription& run) {
+std::string FormatDescription(const RunDescription& run) {
   std::string text =
       fmt::format("{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}|{}\n", run.study, run.description, run.ademp,
                   run.seed, run.trials, run.repeats_per_scene, run.failure.max_rotation_error_deg,
@@ -58,7 +58,7 @@ TEST_F(Description, ComesBackAsItWasWritten) {
   run.lock = "sha256: 1\ntext: |2\n  name: small\n";
   run.despite_lock = "one reason\nanother";
   NewTrials(path_, run).Finish(run);
-  EXPECT_EQ(TextOf(ResultStore::OpenForReading(path_).Description()), TextOf(run));
+  EXPECT_EQ(FormatDescription(ResultStore::OpenForReading(path_).Description()), FormatDescription(run));
   EXPECT_TRUE(ThrowsInputError([&] { NewTrials(path_, run); }, {path_, "exists already"}));
 }
 

@@ -111,10 +111,10 @@ TEST_F(ResultStoreTest, KeepsEveryFieldOfEveryRecord) {
   const ResultStore store = ResultStore::OpenForReading(path_);
   EXPECT_EQ(Text(store), expected);
   EXPECT_EQ(store.Plan().study_yaml, plan_.study_yaml);
-  ASSERT_EQ(store.RecordsOf(0, 4).size(), 2u);
-  EXPECT_EQ(RecordText(store.RecordsOf(0, 4)[1]), RecordText(RecordsOfTrial(0, 4)[1]));
-  EXPECT_EQ(store.RecordsOf(0, 4)[1].seconds, RecordsOfTrial(0, 4)[1].seconds);
-  EXPECT_TRUE(store.RecordsOf(0, 5).empty());
+  ASSERT_EQ(store.ReadTrialRecords(0, 4).size(), 2u);
+  EXPECT_EQ(RecordText(store.ReadTrialRecords(0, 4)[1]), RecordText(RecordsOfTrial(0, 4)[1]));
+  EXPECT_EQ(store.ReadTrialRecords(0, 4)[1].seconds, RecordsOfTrial(0, 4)[1].seconds);
+  EXPECT_TRUE(store.ReadTrialRecords(0, 5).empty());
 }
 
 TEST_F(ResultStoreTest, TablesAreReadableWithoutUs) {
@@ -152,7 +152,7 @@ TEST_F(ResultStoreTest, UnknownNumbersAreNull) {
   EXPECT_EQ(Query(path_, "SELECT rotation_error_deg FROM trials"), "NULL");
   EXPECT_EQ(Query(path_, "SELECT count(*) FROM trials WHERE direction_error_deg IS NULL"), "0");
   const ResultStore store = ResultStore::OpenForReading(path_);
-  const TrialRecord again = store.RecordsOf(0, 0).at(0);
+  const TrialRecord again = store.ReadTrialRecords(0, 0).at(0);
   EXPECT_TRUE(std::isnan(again.rotation_error_deg));
   EXPECT_EQ(again.direction_error_deg, 0.0);
   EXPECT_EQ(again.nees, std::numeric_limits<double>::infinity());
@@ -168,7 +168,8 @@ TEST_F(ResultStoreTest, EveryStatusComesBack) {
     AddRecords(store, Twice(record));
   }
   trial = 0;
-  for (const MotionStatus status : AllStatuses()) EXPECT_EQ(store.RecordsOf(0, trial++).at(0).status, status);
+  for (const MotionStatus status : AllStatuses())
+    EXPECT_EQ(store.ReadTrialRecords(0, trial++).at(0).status, status);
 }
 
 TEST_F(ResultStoreTest, MissingTrials) {
@@ -348,7 +349,7 @@ TEST_F(ResultStoreTest, NamesThatSqliteReadsOtherwiseAreFiles) {
       AddRecords(store, RecordsOfTrial(0, 0));
     }
     EXPECT_TRUE(std::filesystem::is_regular_file(folder_.Path(name))) << name;
-    EXPECT_EQ(ResultStore::OpenForReading(name).RecordsOf(0, 0).size(), 2u) << name;
+    EXPECT_EQ(ResultStore::OpenForReading(name).ReadTrialRecords(0, 0).size(), 2u) << name;
   }
   std::filesystem::current_path(before);
 }

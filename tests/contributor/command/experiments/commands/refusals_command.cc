@@ -98,7 +98,7 @@ void AddRefusalsCommand(CLI::App& app) {
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_option("--by", arguments->by, "a factor of the study: its levels apart");
   command->add_option("--format", arguments->format, "table (for people) or csv (for programs)")
-      ->check(IsOneOf({"table", "csv"}))
+      ->check(MakeChoiceValidator({"table", "csv"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {

@@ -6,7 +6,7 @@
 namespace rcme {
 
 // The fit to all matches of a problem without wrong ones.
-inline MotionEstimate FitOf(const MotionProblem& problem, const RelativePose& start) {
+inline MotionEstimate FitAllMatches(const MotionProblem& problem, const RelativePose& start) {
   const RefinedMotion motion = RefineAllBySampson(problem, start);
   MotionEstimate estimate;
   estimate.status = MotionStatus::kOk;
