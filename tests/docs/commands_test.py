@@ -25,6 +25,7 @@ ELSEWHERE = {
     r"scripts/demo$": "its commands are those of the first study; a build from nothing is no test",
     r"scripts/slurm/submit ": "scripts/test-slurm",
     r"scripts/api-docs$": "test docs.api",
+    r"scripts/site$|python3 -m http.server ": "test docs.site",
     r"cmake ": "tests install.consumer and install.own_estimator",
     r"pip ": "test python.pip",
     r"PYTHONPATH=": "tests python.*",
