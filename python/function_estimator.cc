@@ -29,7 +29,7 @@ struct LetGo {
 using SharedFunction = std::shared_ptr<py::function>;
 
 // Never destroyed: at the end of a program the interpreter may be gone before.
-std::map<std::string, SharedFunction>& Functions() {
+std::map<std::string, SharedFunction>& RunningFunctions() {
   static auto& functions = *new std::map<std::string, SharedFunction>();
   return functions;
 }
@@ -96,8 +96,8 @@ class FunctionModel : public EstimatorModel {
             Parameter::Text("code", &code_, "a hash", "of the function's source")};
   }
   std::unique_ptr<MotionEstimator> Make() const override {
-    const auto found = Functions().find(function_);
-    if (found == Functions().end()) {
+    const auto found = RunningFunctions().find(function_);
+    if (found == RunningFunctions().end()) {
       throw InputError(
           fmt::format("estimator python: function {} is not there; functions are given to rcme.run, "
                       "estimators={{{}: ...}}",
@@ -119,10 +119,10 @@ void AddPythonEstimator() {
 
 FunctionsOfRun::FunctionsOfRun(const std::map<std::string, PythonFunction>& functions) {
   for (const auto& [name, function] : functions)
-    Functions()[name] = SharedFunction(new py::function(function.call), LetGo());
+    RunningFunctions()[name] = SharedFunction(new py::function(function.call), LetGo());
 }
 
-FunctionsOfRun::~FunctionsOfRun() { Functions().clear(); }
+FunctionsOfRun::~FunctionsOfRun() { RunningFunctions().clear(); }
 
 EstimatorSpec SpecOfFunction(const std::string& name, const std::string& code) {
   EstimatorSpec spec{name, "python", {}, {}};
