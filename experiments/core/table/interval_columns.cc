@@ -14,7 +14,7 @@ Table WithIntervalColumns(const Table& table) {
                             .type = ColumnType::kInterval,
                             .json_name = name + "_interval"});
     for (size_t r = 0; r < table.rows.size(); ++r)
-      wide.rows[r].push_back(std::get<Estimate>(table.rows[r][c]).interval);
+      wide.rows[r].emplace_back(std::get<Estimate>(table.rows[r][c]).interval);
   }
   return wide;
 }
