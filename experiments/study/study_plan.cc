@@ -143,8 +143,8 @@ std::int64_t StudyPlan::NumTrials() const {
   return sum;
 }
 
-const std::vector<std::shared_ptr<const MotionEstimator>>& ResolveEstimators(const StudyPlan& plan,
-                                                                             const Condition& condition) {
+const std::vector<std::shared_ptr<const MotionEstimator>>& FindEstimators(const StudyPlan& plan,
+                                                                          const Condition& condition) {
   return condition.estimators.empty() ? plan.estimators : condition.estimators;
 }
 
