@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
@@ -15,7 +17,7 @@ namespace {
 // The parts of the answer: what a line is about, and what it says.
 using Lines = std::vector<std::pair<std::string, std::string>>;
 
-Lines DescribeAnswer(const Answer& a, const std::string& folder) {
+Lines DescribeAnswer(const Answer& a) {
   const auto percent = [](const Estimate& estimate) { return FormatEstimate(estimate, kPercent); };
   Lines lines = {{"Estimator", fmt::format("{}: success {}", a.best.label, percent(a.best.success))}};
   if (a.next) lines.emplace_back("Next best", fmt::format("{}: {}", a.next->label, percent(a.next->success)));
@@ -54,13 +56,6 @@ Lines DescribeAnswer(const Answer& a, const std::string& folder) {
                                                ? "these two are as good as alike"
                                                : fmt::format("about {} tell the first two apart",
                                                              a.difference->trials_to_tell)));
-  lines.emplace_back("Study, report",
-                     fmt::format("{0}/study.yaml; rcme report {0}/run.sqlite --out {0}/report.html", folder));
-  lines.emplace_back(
-      "Next question",
-      fmt::format("up to which share of wrong matches does this hold? rcme solve {}/study.yaml "
-                  "--over outlier_ratio --from 0.05 --to 0.9 --at {:g}",
-                  folder, a.at_most));
   return lines;
 }
 
@@ -73,14 +68,17 @@ nlohmann::ordered_json EstimatorAsJson(const AskedEstimator& estimator) {
 
 std::string AnswerAsText(const Answer& answer, const std::string& question, const std::string& folder) {
   Table table{{Column::Key("part"), Column::Text("answer")}};
-  for (const auto& [part, words] : DescribeAnswer(answer, folder)) table.rows.push_back({part, words});
+  for (const auto& [part, words] : DescribeAnswer(answer)) table.rows.push_back({part, words});
   return question + "\n\n" + RenderText(table) +
          fmt::format(
-             "\nIntervals hold with 95 % for the estimator that leads, although the same trials chose it "
-             "among\n"
-             "{}. The threshold keeps failures below {:g} % of the accepted answers, except with\n"
-             "probability 0.05, that choice included.\n",
-             answer.num_estimators, 100.0 * answer.at_most);
+             "\nIntervals hold with 95 % for the estimator that leads, although the same trials\n"
+             "chose it among {}. The threshold keeps failures below {:g} % of the accepted answers,\n"
+             "except with probability 0.05, that choice included.\n\n"
+             "The study is {}/study.yaml. Next, all of it on one page, and up to which share of\n"
+             "wrong matches it holds:\n"
+             "  rcme report {}/run.sqlite --out {}/report.html\n"
+             "  rcme solve {}/study.yaml --over outlier_ratio --from 0.05 --to 0.9 --at {:g}\n",
+             answer.num_estimators, 100.0 * answer.at_most, folder, folder, folder, folder, answer.at_most);
 }
 
 std::string AnswerAsJson(const Answer& a, const std::string& question) {
@@ -93,7 +91,9 @@ std::string AnswerAsJson(const Answer& a, const std::string& question) {
   if (a.difference) {
     json["difference"] = RenderJson(a.difference->difference);
     json["difference"]["p_value"] = a.difference->p_value;
-    json["difference"]["trials_to_tell"] = a.difference->trials_to_tell;
+    const std::int64_t to_tell = a.difference->trials_to_tell;
+    const bool is_known = to_tell < std::numeric_limits<std::int64_t>::max();
+    json["difference"]["trials_to_tell"] = is_known ? nlohmann::ordered_json(to_tell) : nullptr;
   }
   if (a.rule) {
     json["accept"] = {{"max_failure_probability", a.rule->greatest_probability},

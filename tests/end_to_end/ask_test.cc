@@ -34,8 +34,8 @@ TEST_F(AskProgram, AnswersWithStudyAndResultFile) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const std::string part :
        {"640 x 480 px, f 500 px, noise 0.5 px; corridor; 20 % wrong (uniform) of 80 matches", "Estimator",
-        "Next best", "Difference", "Threshold", "Covariance", "Time", "Trials", "Study, report",
-        "Next question"})
+        "Next best", "Difference", "Threshold", "Covariance", "Time", "Trials", "rcme report ",
+        "rcme solve "})
     EXPECT_THAT(result.out, HasSubstr(part));
   EXPECT_TRUE(std::filesystem::exists(folder_.Path("asked/study.yaml")));
   const ProgramResult again = RunRcme({"run", folder_.Path("asked/study.yaml"), "--trials", "12", "--threads",

@@ -98,14 +98,17 @@ size_t FindWidth(const Cells& cells, size_t c) {
   return std::ranges::max_element(cells, {}, [c](const auto& row) { return row[c].size(); })->at(c).size();
 }
 
-// What a cell of each column may take: a text half of `width`, and not more than the keys leave of it.
+// What a cell of each column may take: a text half of `width`, and not more than the keys leave of it; the
+// only column beside the keys all that they leave.
 std::vector<size_t> FindMostWidths(const Table& table, const Cells& cells, size_t width) {
   const size_t half = width / 2;
-  size_t keys_width = 0;
+  size_t keys_width = 0, num_others = 0;
   for (size_t c = 0; c < table.columns.size(); ++c) {
+    num_others += !table.columns[c].is_key;
     if (table.columns[c].is_key) keys_width += std::min(FindWidth(cells, c), half) + kGap;
   }
-  const size_t rest = std::clamp(width - std::min(keys_width, width), half / 2, half);
+  const size_t rest =
+      std::clamp(width - std::min(keys_width, width), half / 2, num_others == 1 ? width : half);
   std::vector<size_t> most;
   for (const Column& column : table.columns)
     most.push_back(column.type != ColumnType::kText ? std::string::npos : column.is_key ? half : rest);

@@ -9,11 +9,12 @@
 
 namespace rcme {
 
-// For a terminal: text to the left, counts to the right; a text of more than half of `width`, or of more than
-// the keys leave of it, goes on in the next line. Columns that do not fit follow in further blocks, each
-// after the key columns and without the rows that have nothing there; a block without any row is left out.
-// Only a column that does not fit beside the keys is wider than `width`. Line ends within a cell become
-// spaces. "12.34 % [10.10, 14.80] (n 12): a note", "1.23 +- 0.04"; "-": not known.
+// For a terminal: text to the left, counts to the right; a text of more than half of `width` (of the
+// only column beside the keys: all), or of more than the keys leave of it, goes on in the next line. Columns
+// that do not fit follow in further blocks, each after the key columns and without the rows that have nothing
+// there; a block without any row is left out. Only a column that does not fit beside the keys is wider than
+// `width`. Line ends within a cell become spaces. "12.34 % [10.10, 14.80] (n 12): a note", "1.23 +- 0.04";
+// "-": not known.
 std::string RenderText(const Table& table, size_t width = kTextWidth);
 
 // A cell of RenderText.
