@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 #include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/eigen_solvers.h"
-#include "stats/shared_members.h"
 
 namespace rcme {
 namespace {
@@ -36,45 +38,88 @@ std::optional<Eigen::MatrixXd> Invert(const Eigen::MatrixXd& information, const 
                     eigen.eigenvectors().transpose());
 }
 
-// What the units' scatter says of one parameter.
-struct Jackknife {
-  double variance = 0.0, variance_if_apart = 0.0;
-  std::int64_t num_members = 0;
-};
-Jackknife ComputeJackknife(const std::vector<PairValue>& moves) {
-  const SharedMemberMean mean = MeasureSharedMemberMean(moves);
-  const double n = static_cast<double>(moves.size());
+// How far one parameter moves where a part of the units is left out: sum of squares about the mean.
+double SumSquares(const std::vector<double>& moves) {
+  const double mean = std::accumulate(moves.begin(), moves.end(), 0.0) / static_cast<double>(moves.size());
   double squares = 0.0;
-  for (const PairValue& move : moves) squares += (move.value - mean.value) * (move.value - mean.value);
-  return {n * n * mean.standard_error * mean.standard_error, n / (n - 1.0) * squares, mean.num_members};
+  for (const double move : moves) squares += (move - mean) * (move - mean);
+  return squares;
 }
 
-// How units differ from what all say together.
-struct Scatter {
-  std::vector<std::vector<PairValue>> moves;   // d_u of each parameter
-  double squares = 0.0, squared_shares = 0.0;  // sum e_u' A^-1 e_u; S
-  Eigen::VectorXd squared_shares_of_each;      // sum h_u^2
+// The units that have a member.
+struct MemberSum {
+  Eigen::VectorXd rest;         // sum s_u - A_u theta
+  Eigen::MatrixXd information;  // sum A_u
 };
-// Nothing where a unit alone tells a parameter.
+using MemberSums = std::map<std::int64_t, MemberSum>;
+
+void AddToMember(std::int64_t member, const Eigen::VectorXd& rest, const Eigen::MatrixXd& information,
+                 MemberSums* sums) {
+  MemberSum& sum = sums->try_emplace(member, Eigen::VectorXd::Zero(rest.size()),
+                                     Eigen::MatrixXd::Zero(rest.size(), rest.size()))
+                       .first->second;
+  sum.rest += rest;
+  sum.information += information;
+}
+
+// How units, and the units of a member, differ from what all say together.
+struct Scatter {
+  std::vector<std::vector<double>> of_units, of_members;  // d_u and d_i of each parameter
+  std::vector<bool> has_two_members;                      // a unit
+  double squares = 0.0, squared_shares = 0.0;             // sum e_u' A^-1 e_u; S
+  Eigen::VectorXd squared_shares_of_each;                 // sum h_u^2
+};
+
+// Adds (A - left_out)^-1 rest; false where what is left does not tell a parameter.
+bool AddMove(const Eigen::MatrixXd& A, const Eigen::MatrixXd& left_out, const Eigen::VectorXd& rest,
+             const Scaling& scaling, std::vector<std::vector<double>>* moves) {
+  const std::optional<Eigen::MatrixXd> others = Invert(A - left_out, scaling);
+  if (!others) return false;
+  const Eigen::VectorXd move = *others * rest;
+  for (Eigen::Index j = 0; j < rest.size(); ++j) (*moves)[static_cast<size_t>(j)].push_back(move(j));
+  return true;
+}
+
+// Nothing where a unit or a member alone tells a parameter.
 std::optional<Scatter> ComputeScatter(std::span<const UnitScore> units, const Eigen::MatrixXd& A,
                                       const Eigen::MatrixXd& inverse, const Eigen::VectorXd& theta,
                                       const Scaling& scaling) {
-  Scatter scatter{std::vector<std::vector<PairValue>>(static_cast<size_t>(theta.size())), 0.0, 0.0,
-                  Eigen::VectorXd::Zero(theta.size())};
+  const auto k = static_cast<size_t>(theta.size());
+  Scatter scatter;
+  scatter.of_units.resize(k);
+  scatter.of_members.resize(k);
+  scatter.squared_shares_of_each = Eigen::VectorXd::Zero(theta.size());
+  MemberSums members;
   for (const UnitScore& unit : units) {
     const Eigen::MatrixXd share = inverse * unit.information;
     scatter.squared_shares_of_each += share.diagonal().cwiseAbs2();
     scatter.squared_shares += (share * share).trace();
     const Eigen::VectorXd rest = unit.score - unit.information * theta;
     scatter.squares += rest.dot(inverse * rest);
-    const std::optional<Eigen::MatrixXd> others = Invert(A - unit.information, scaling);
-    if (!others) return std::nullopt;
-    const Eigen::VectorXd move = *others * rest;
-    for (Eigen::Index j = 0; j < theta.size(); ++j)
-      scatter.moves[static_cast<size_t>(j)].push_back({unit.member1, unit.member2, move(j)});
+    if (!AddMove(A, unit.information, rest, scaling, &scatter.of_units)) return std::nullopt;
+    scatter.has_two_members.push_back(unit.member1 != unit.member2);
+    AddToMember(unit.member1, rest, unit.information, &members);
+    if (unit.member1 != unit.member2) AddToMember(unit.member2, rest, unit.information, &members);
   }
+  for (const auto& [member, sum] : members)
+    if (!AddMove(A, sum.information, sum.rest, scaling, &scatter.of_members)) return std::nullopt;
   if (!(scatter.squared_shares < static_cast<double>(theta.size()))) return std::nullopt;
   return scatter;
+}
+
+// What the scatter says of one parameter.
+struct Jackknife {
+  double variance = 0.0, variance_if_apart = 0.0;
+};
+Jackknife ComputeJackknife(const Scatter& scatter, size_t j) {
+  const std::vector<double>&of_units = scatter.of_units[j], &of_members = scatter.of_members[j];
+  std::vector<double> twice;  // of the units that are in two sums of members
+  for (size_t u = 0; u < of_units.size(); ++u)
+    if (scatter.has_two_members[u]) twice.push_back(of_units[u]);
+  const auto n = static_cast<double>(of_units.size()), num_members = static_cast<double>(of_members.size());
+  const double apart = n / (n - 1.0) * SumSquares(of_units);
+  const double shared = SumSquares(of_members) - (twice.empty() ? 0.0 : SumSquares(twice));
+  return {std::max(apart, num_members / (num_members - 1.0) * shared), apart};
 }
 
 double RatioOrOne(double x, double y) { return y > 0.0 ? x / y : 1.0; }
@@ -107,17 +152,18 @@ PooledScores PoolScores(std::span<const UnitScore> units, double confidence) {
   pooled.dispersion = scatter->squares / (parameters - of_shares);
   std::vector<Jackknife> jackknives;
   double sharing = 0.0;  // c
-  for (const auto& of_parameter : scatter->moves) {
-    jackknives.push_back(ComputeJackknife(of_parameter));
+  for (size_t j = 0; j < pooled.parameters.size(); ++j) {
+    jackknives.push_back(ComputeJackknife(*scatter, j));
     sharing += RatioOrOne(jackknives.back().variance, jackknives.back().variance_if_apart) / parameters;
   }
   const double n = static_cast<double>(units.size());
+  const auto num_members = static_cast<double>(scatter->of_members.front().size());
   const double common = std::min(kCommonDegreesOfFreedom, n - 1.0);
   for (Eigen::Index j = 0; j < k; ++j) {
     PooledParameter& parameter = pooled.parameters[static_cast<size_t>(j)];
     const Jackknife& own = jackknives[static_cast<size_t>(j)];
     parameter.effective_n = 1.0 / scatter->squared_shares_of_each(j);
-    const double fewest = std::min({n, static_cast<double>(own.num_members), parameter.effective_n});
+    const double fewest = std::min({n, num_members, parameter.effective_n});
     const double of_own = std::max(1.0, fewest - 1.0);
     const double moderated =
         (common * pooled.dispersion * sharing * (*inverse)(j, j) + of_own * own.variance) / (common + of_own);

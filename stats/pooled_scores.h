@@ -21,7 +21,7 @@ struct UnitScore {
 struct PooledParameter {
   double value = 0.0;           // NaN: the units cannot tell it
   double standard_error = 0.0;  // NaN where there is no interval
-  Interval interval;            // unbounded where one unit alone, or none, tells the parameter
+  Interval interval;            // unbounded where one unit or member alone, or none, tells the parameter
   double effective_n = 0.0;     // units of equal weight that would tell as much
 };
 
@@ -35,14 +35,18 @@ struct PooledScores {
 // theta = A^-1 sum s_u, A = sum A_u. How sure that is the units say by their scatter, since errors that are
 // correlated within a unit make its own A too great. Two estimates of the variance of theta_j:
 //
-//   V_j   a jackknife (CR3, Bell and McCaffrey 2002): sum over (u, v) that share a member of d_uj d_vj (as in
-//         shared_members.h), d_u = (A - A_u)^-1 (s_u - A_u theta): what is right for this parameter, of few
-//         degrees of freedom nu_j where few units tell it: one less than the units, the members or the
-//         effective units 1 / sum h_u^2, h_u = (A^-1 A_u)_jj, whichever are fewest;
+//   V_j   a jackknife (CR3, Bell and McCaffrey 2002) over members: m / (m - 1) (sum over members d_ij^2 - sum
+//         over units of two members d_uj^2), d_i = (A - A_i)^-1 sum (s_u - A_u theta) over the units that
+//         have member i, A_i their information, d_u the same of one unit, d about their means: the sum over
+//         (u, v) that share a member of d_uj d_vj (shared_members.h), but that leaving out a member moves
+//         theta as far as its whole share. At least V'_j = n / (n - 1) sum over units d_uj^2, which has all
+//         of it where no two units share a member. What is right for this parameter, of few degrees of
+//         freedom nu_j where few units tell it: one less than the units, the members or the effective units 1
+//         / sum h_u^2, h_u = (A^-1 A_u)_jj, whichever are fewest;
 //   W_j = phi c (A^-1)_jj, phi = sum e_u' A^-1 e_u / (k - S), e_u = s_u - A_u theta, S = sum tr (A^-1 A_u)^2:
 //         the dispersion of all parameters together, each direction weighted as theta weighs it (where scores
 //         have the variance phi A_u the expectation of the sum is phi (k - S)), and c >= 1 the mean over the
-//         parameters of V_j over what it were if no two units shared a member.
+//         parameters of V_j / V'_j.
 //
 // One has little to go by, the other takes all parameters alike: as for variances of many genes (Smyth 2004)
 // the moderated one is (nu_0 W_j + nu_j V_j) / (nu_0 + nu_j), with Student's law of nu_0 + nu_j degrees of
