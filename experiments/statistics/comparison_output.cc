@@ -75,7 +75,7 @@ std::string RenderComparedTable(const Compared& compared, const Comparison& comp
   columns.push_back({{.name = "estimator", .is_key = true}, [](R r) { return r.estimator; }});
   columns.push_back({{"n", ColumnType::kCount}, [](R r) { return r.n; }});
   for (const auto& [heading, count] : ListPairedCounts(compared.kind, comparison.reference))
-    columns.push_back({{heading, ColumnType::kCount}, [count](R r) { return r.counts.*count; }});
+    columns.push_back({{heading, ColumnType::kCount}, [count = count](R r) { return r.counts.*count; }});
   columns.push_back({{is_error ? "median difference (deg)" : "difference (% points)", ColumnType::kEstimate,
                       DifferenceFormat(compared.kind)},
                      [](R r) {
