@@ -55,9 +55,9 @@ using MemberSums = std::map<std::int64_t, MemberSum>;
 
 void AddToMember(std::int64_t member, const Eigen::VectorXd& rest, const Eigen::MatrixXd& information,
                  MemberSums* sums) {
-  MemberSum& sum = sums->try_emplace(member, Eigen::VectorXd::Zero(rest.size()),
-                                     Eigen::MatrixXd::Zero(rest.size(), rest.size()))
-                       .first->second;
+  const MemberSum nothing = {Eigen::VectorXd::Zero(rest.size()),
+                             Eigen::MatrixXd::Zero(rest.size(), rest.size())};
+  MemberSum& sum = sums->try_emplace(member, nothing).first->second;
   sum.rest += rest;
   sum.information += information;
 }
