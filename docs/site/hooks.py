@@ -1,6 +1,5 @@
 """A page's links to files that are no pages, such as sources, become their text: the site holds pages and pictures."""
 
-import pathlib
 import posixpath
 import re
 

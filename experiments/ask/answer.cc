@@ -23,12 +23,14 @@ Estimate FindEstimate(const Summary& summary, const std::string& label, const st
   return {};
 }
 
-// A share of n, with the exact interval that holds together with those of all estimators (Bonferroni).
+// A share of n, with the exact interval that holds together with those of all estimators (Bonferroni); a
+// verdict by a narrower one is left out.
 Estimate WidenForChoice(Estimate share, int num_estimators) {
   const std::int64_t n = share.n.value_or(0);
   if (n == 0 || std::isnan(share.value)) return share;
   share.interval = ExactBinomialInterval(std::llround(share.value * static_cast<double>(n)), n,
                                          1.0 - 0.05 / num_estimators);
+  share.note.clear();
   return share;
 }
 

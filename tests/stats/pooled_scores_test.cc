@@ -136,10 +136,10 @@ std::vector<UnitScore> DrawSequence(int num_images, int num_neighbours, std::uin
   return units;
 }
 
-// Errors of images that all of their pairs have. Of 1,000 sets each p is below 0.05 in at most 0.09 (more
-// would be seen from 0.12 on with probability 0.998), and intervals of 95 % hold zero in 0.93 at least; the
-// variance of errors that units share was too small when it was summed over units alone: p was below 0.05 in
-// 0.21 to 0.30 of such sets.
+// Errors of images that all of their pairs have. Of 1,000 sets each p is below 0.05 in at most 0.05, bounds
+// of 3.6 standard errors, and intervals of 95 % hold zero in 0.94 at least. Summed over units alone, as it
+// was before, the variance that units share was too small: p was below 0.05 in 0.123, 0.302, 0.166 and 0.105
+// of these sets. A rate of 0.105 passes with probability 0.001.
 TEST(PoolScores, HoldsWhereManyUnitsShareAMember) {
   constexpr int kSets = 1000;
   for (const auto& [num_images, num_neighbours] :
@@ -150,9 +150,9 @@ TEST(PoolScores, HoldsWhereManyUnitsShareAMember) {
       num_found += pooled.p_value < 0.05;
       for (const PooledParameter& theta : pooled.parameters) num_held += theta.interval.Contains(0.0) / 7.0;
     }
-    EXPECT_LT(num_found / kSets, 0.09 + 0.02) << num_images << " " << num_neighbours;
+    EXPECT_LT(num_found / kSets, 0.05 + 0.025) << num_images << " " << num_neighbours;
     EXPECT_GT(num_found / kSets, 0.01) << "so cautious that it finds nothing";
-    EXPECT_GT(num_held / kSets, 0.93) << num_images << " " << num_neighbours;
+    EXPECT_GT(num_held / kSets, 0.94) << num_images << " " << num_neighbours;
   }
 }
 
