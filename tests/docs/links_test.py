@@ -43,11 +43,23 @@ def pages():
     return [page for page in sorted(ROOT.rglob("*.md")) if not LEFT_OUT & set(page.relative_to(ROOT).parts)]
 
 
+def pages_of_the_site():
+    """The pages that the site's menu leads to, as paths from the root."""
+    return set(re.findall(r"^ +- [^\n]*: ([\w/]+\.md)$", (ROOT / "docs/site/mkdocs.yml").read_text(encoding="utf-8"), re.MULTILINE))
+
+
 class Links(unittest.TestCase):
     def test_every_link_leads_somewhere(self):
         self.assertGreater(len(pages()), 40)
         broken = [f"{page.relative_to(ROOT)}: {link}: {why}" for page in pages() for link, why in broken_links(page)]
         self.assertEqual(broken, [])
+
+    def test_every_document_has_a_place_in_the_list_and_in_the_menu_of_the_site(self):
+        documents = {f"docs/{page.name}" for page in (ROOT / "docs").glob("*.md")} - {"docs/README.md"}
+        listed = {f"docs/{link}" for link in LINK.findall((ROOT / "docs/README.md").read_text(encoding="utf-8"))}
+        self.assertGreater(len(documents), 20)
+        self.assertEqual(documents - listed, set())
+        self.assertEqual(documents - pages_of_the_site(), set())
 
     def test_a_broken_link_is_seen(self):
         with tempfile.TemporaryDirectory() as folder:
