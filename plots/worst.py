@@ -13,6 +13,7 @@ from common.whole_file import write_text
 try:
     from worst_search.progress import Progress
     from worst_search.report import write_report
+    from worst_search.run_rcme import end_with_parent
     from worst_search.run_trials import CLAIMS, QUANTITIES, TrialsOfRun
     from worst_search.search import Plan, find_worst
     from worst_search.space import Space
@@ -97,4 +98,5 @@ def main(arguments=None):
 
 
 if __name__ == "__main__":
+    end_with_parent()
     sys.exit(main())

@@ -4,13 +4,13 @@ import csv
 import io
 import json
 import os
-import subprocess
 
 import numpy as np
 
 from common.command_line import PlotError
 from common.whole_file import write_text
 from worst_search.intervals import clopper_pearson
+from worst_search.run_rcme import run_rcme
 from worst_search.run_trials import QUANTITIES, number_text, study_text
 
 
@@ -82,7 +82,7 @@ def show(objective, number, study, answer):
     out = os.path.join(objective.folder, f"region_{number}")
     command = [objective.rcme, "show", study, "--condition", str(event[0]), "--trial", str(event[1]), "--estimators",
                ",".join(objective.labels), "--out", out, *objective.more]
-    shown = subprocess.run(command, capture_output=True, text=True, check=False)
+    shown = run_rcme(command)
     if shown.returncode != 0:
         raise PlotError(f"the picture of region {number} was not drawn: {shown.stderr.strip()}")
     write_text(out + ".txt", shown.stdout)

@@ -6,7 +6,6 @@ import io
 import json
 import math
 import os
-import subprocess
 import time
 import zlib
 
@@ -16,6 +15,7 @@ import yaml
 from common.command_line import PlotError
 from common.whole_file import write_text
 from worst_search.objective import Objective, Tried
+from worst_search.run_rcme import run_rcme
 from worst_search.space import ABSENT, is_number
 
 SURE_BELOW, SURE_OF_COVERAGE = 0.1, 0.01  # stated probabilities of failure, as in `rcme marginals`
@@ -212,14 +212,14 @@ class TrialsOfRun(Objective):
         start = time.monotonic()
         command = [self.rcme, "run", self.path(name, ".yaml"), "--out", self.path(name, ".sqlite"), "--threads",
                    str(self.threads), *self.more]
-        end = subprocess.run(command, capture_output=True, text=True, check=False)
+        end = run_rcme(command)
         if end.returncode != 0:
             raise PlotError(f"trials of {name} stopped: {end.stderr.strip().splitlines()[-1:]}; the same command goes on.")
         self.last_seconds = time.monotonic() - start
 
     def read(self, name, first):
         command = [self.rcme, "summarize", self.path(name, ".sqlite"), "--raw", "csv"]
-        table = subprocess.run(command, capture_output=True, text=True, check=False)
+        table = run_rcme(command)
         if table.returncode != 0:
             raise PlotError(f"{name}: {table.stderr.strip()}")
         rows = csv.DictReader(io.StringIO(table.stdout))

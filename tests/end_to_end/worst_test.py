@@ -28,6 +28,18 @@ ARGUMENTS = ["--estimator", "standard", "--trials", "1000", "--regions", "1", "-
 FILES = ["worst.csv", "worst.txt", "worst.json", "region_1.yaml", "region_1.txt"]
 
 
+def is_there(group):
+    """Whether a process group has a process that runs."""
+    for stat in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, its_group = stat.read_text(errors="replace").rsplit(")", 1)[1].split()[:3]
+        except OSError:  # it has just ended
+            continue
+        if int(its_group) == group and state != "Z":
+            return True
+    return False
+
+
 class WorstTest(unittest.TestCase):
     def setUp(self):
         scratch = tempfile.TemporaryDirectory()
@@ -43,13 +55,28 @@ class WorstTest(unittest.TestCase):
         self.assertEqual(end.returncode, 0, end.stderr)
         return {name: (self.folder / out / name).read_bytes() for name in FILES}, end
 
-    def kill_after_some_trials(self, out):
+    def start_some_trials(self, out):
         work = subprocess.Popen(self.command(out), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         trials = self.folder / out / "trials"
         while work.poll() is None and len(list(trials.glob("*.json"))) < 5:
             time.sleep(0.01)
+        return work
+
+    def kill_after_some_trials(self, out):
+        work = self.start_some_trials(out)
         os.killpg(work.pid, signal.SIGKILL)
         work.wait()
+
+    def test_nothing_of_a_search_outlives_the_program(self):
+        for number in (signal.SIGTERM, signal.SIGKILL):
+            work = self.start_some_trials(f"ended_{number}")
+            self.addCleanup(lambda group=work.pid: is_there(group) and os.killpg(group, signal.SIGKILL))
+            os.kill(work.pid, number)  # the program alone, not its group
+            work.wait()
+            end = time.monotonic() + 10
+            while is_there(work.pid) and time.monotonic() < end:
+                time.sleep(0.02)
+            self.assertFalse(is_there(work.pid))
 
     def test_a_killed_search_ends_as_an_undisturbed_one(self):
         whole, end = self.finish("whole")
