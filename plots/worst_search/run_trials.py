@@ -20,6 +20,7 @@ from worst_search.space import ABSENT, is_number
 
 SURE_BELOW, SURE_OF_COVERAGE = 0.1, 0.01  # stated probabilities of failure, as in `rcme marginals`
 COVERED_BELOW = 11.0705  # the 95 % point of chi square with five degrees of freedom
+MOST_DRAWS = 10_000  # in the study of one request: a study file has a limit to its values
 NOT_THERE = -1  # an event that a trial does not have: it does not count
 
 QUANTITIES = {"failure": "share of the trials that failed",
@@ -171,6 +172,13 @@ class TrialsOfRun(Objective):
         return os.path.join(self.folder, "trials", name + suffix)
 
     def try_draws(self, name, numbers, trials, first=0):
+        numbers = np.asarray(numbers)
+        parts = [self.try_some_draws(f"{name}_{begin}" if begin else name, numbers[begin:begin + MOST_DRAWS], trials, first)
+                 for begin in range(0, len(numbers), MOST_DRAWS)]
+        counts = {key: np.concatenate([getattr(part, key) for part in parts]) for key in ("events", "trials", "reverse")}
+        return Tried(self.space.pool.take(numbers), **counts)
+
+    def try_some_draws(self, name, numbers, trials, first):
         draws = [int(self.numbers[i]) for i in numbers]
         conditions = {key: value for key, value in self.study["conditions"].items() if key != "draws"}
         conditions["draws"] = draws
@@ -179,7 +187,7 @@ class TrialsOfRun(Objective):
         there = [place.get(draw) for draw in draws]
         column = {key: np.array([0 if i is None else answer[key][i] for i in there])
                   for key in ("events", "trials", "reverse")}
-        return Tried(self.space.pool.take(np.asarray(numbers)), **column)
+        return Tried(self.space.pool.take(numbers), **column)
 
     def study_of_box(self, name, box, number, design="sobol"):
         seed = int(self.study["seed"]) + 1 + zlib.crc32(name.encode())

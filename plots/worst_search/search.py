@@ -78,7 +78,7 @@ def spent_by(objective, plan):
     """(trials for exploration, for boxes and races, fresh ones)."""
     fresh = plan.num_regions * plan.num_fresh
     growing = (plan.num_regions + 1) * region_cost(objective, plan) + plan.num_raced * 5
-    exploring = max(plan.budget - fresh - growing, plan.budget // 4)
+    exploring = min(max(plan.budget - fresh - growing, plan.budget // 4), objective.space.pool.size)
     return exploring, max(0, plan.budget - fresh - exploring), fresh
 
 
@@ -89,6 +89,8 @@ def explore(objective, plan, evidence, number, cycle):
     size = -(-number // plan.num_batches)
     following = 0
     for batch in range(plan.num_batches):
+        if evidence.tried.all():
+            return
         is_first = cycle == 0 and batch == 0
         guided = 0 if is_first or plan.method != "search" else int(plan.share_guided * size)
         chosen = []

@@ -55,27 +55,28 @@ class WorstTest(unittest.TestCase):
         self.assertEqual(end.returncode, 0, end.stderr)
         return {name: (self.folder / out / name).read_bytes() for name in FILES}, end
 
-    def start_some_trials(self, command, out):
+    def start(self, command, out, num_requests):
+        """The process, when some of its requests are answered (0: when the first is under way)."""
         work = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         trials = self.folder / out / "trials"
-        while work.poll() is None and len(list(trials.glob("*.json"))) < 5:
+        while work.poll() is None and (len(list(trials.glob("*.json"))) < num_requests or not list(trials.glob("*.sqlite"))):
             time.sleep(0.01)
         return work
 
     def kill_after_some_trials(self, out):
-        work = self.start_some_trials(self.command(out), out)
+        work = self.start(self.command(out), out, 5)
         os.killpg(work.pid, signal.SIGKILL)
         work.wait()
 
     def test_nothing_of_a_search_outlives_the_program(self):
         for number in (signal.SIGTERM, signal.SIGKILL):
             out = f"ended_{number}"
-            command = ["200000" if word == "1000" else word for word in self.command(out)]  # takes many minutes
-            work = self.start_some_trials(command, out)
+            command = ["30000" if word == "1000" else word for word in self.command(out)]  # takes half a minute
+            work = self.start(command, out, 0)
             self.addCleanup(lambda group=work.pid: is_there(group) and os.killpg(group, signal.SIGKILL))
             os.kill(work.pid, number)  # the program alone, not its group
             work.wait()
-            end = time.monotonic() + 30
+            end = time.monotonic() + 5
             while is_there(work.pid) and time.monotonic() < end:
                 time.sleep(0.02)
             self.assertFalse(is_there(work.pid))

@@ -63,6 +63,13 @@ class KnownFunctions(unittest.TestCase):
             find_worst(objective, Plan(budget=1500, num_fresh=50))
         self.assertEqual(list(ends[0].requests), list(ends[1].requests))
 
+    def test_a_budget_beyond_the_population_tries_every_draw_once(self):
+        objective = Recorder([WORDS_BOX], seed=4, pool_size=400)
+        regions = find_worst(objective, Plan(budget=20_000, num_regions=1, num_fresh=50, num_raced=40))
+        explored = [request.table.size for name, request in objective.requests.items() if name.startswith("explore")]
+        self.assertEqual(sum(explored), 400)
+        self.assertEqual([r.fresh.trials for r in regions], [50] * len(regions))
+
     def test_nothing_is_claimed_where_every_draw_is_alike(self):
         # The claim is the rate itself. A search has a false find with probability .025 at most; of 20, four or more with .002.
         finds = 0
