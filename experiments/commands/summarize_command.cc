@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/number_option.h"
@@ -59,7 +60,7 @@ void WarnOfRefusals(const Summary& summary) {
   }
 }
 
-std::string RenderSummary(const Summary& summary, const Arguments& arguments) {
+std::string RenderSummary(Summary summary, const Arguments& arguments) {
   const std::vector<std::string>& quantities = arguments.quantities;
   if (arguments.format == "latex") {
     return SummaryAsLatex(summary, quantities.empty() ? DefaultLatexQuantities() : quantities,
@@ -67,9 +68,8 @@ std::string RenderSummary(const Summary& summary, const Arguments& arguments) {
   }
   if (arguments.format == "table")
     return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
-  Summary shown = summary;
-  if (!quantities.empty()) KeepQuantities(quantities, &shown);
-  return arguments.format == "csv" ? SummaryAsCsv(shown) : SummaryAsJson(shown);
+  if (!quantities.empty()) KeepQuantities(quantities, &summary);
+  return arguments.format == "csv" ? SummaryAsCsv(summary) : SummaryAsJson(summary);
 }
 
 }  // namespace
@@ -147,7 +147,7 @@ Examples:
       Summary summary = SummarizeCounts(counts, arguments->with_times, pooling);
       summary.preregistration = DescribePreregistered(counts.run, arguments->run);
       WarnOfRefusals(summary);
-      return PrintOrWrite(arguments->out, RenderSummary(summary, *arguments));
+      return PrintOrWrite(arguments->out, RenderSummary(std::move(summary), *arguments));
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
@@ -158,7 +158,7 @@ Examples:
     WarnOfRefusals(summary);
     PrintOrWrite(arguments->out, arguments->format == "table" && arguments->quantities.empty()
                                      ? Tables(store, summary)
-                                     : RenderSummary(summary, *arguments));
+                                     : RenderSummary(std::move(summary), *arguments));
   });
 }
 

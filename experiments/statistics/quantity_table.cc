@@ -20,12 +20,15 @@ struct EstimatorRow {
   std::map<std::string, const SummaryRow*> quantities;
 };
 
-std::vector<EstimatorRow> GroupRows(const std::vector<SummaryRow>& rows) {
+bool IsOfProblems(const SummaryRow& row) { return row.estimator == kSceneLabel; }
+
+std::vector<EstimatorRow> GroupRows(const Summary& summary, bool is_of_problems) {
   std::vector<EstimatorRow> groups;
   const SummaryRow* last = nullptr;
-  for (const SummaryRow& row : rows) {
+  for (const SummaryRow& row : summary.rows) {
+    if (IsOfProblems(row) != is_of_problems) continue;
     if (!last || row.condition != last->condition || row.estimator != last->estimator)
-      groups.push_back({row.levels, row.estimator, 0, {}});
+      groups.push_back({summary.levels.at(row.condition), row.estimator, 0, {}});
     groups.back().num_trials = std::max(groups.back().num_trials, row.n);
     groups.back().quantities[row.quantity] = &row;
     last = &row;
@@ -38,33 +41,28 @@ NumberFormat ChooseNumberFormat(SummaryRow::Kind kind) {
   return is_number ? kSignificant : kPercent;
 }
 
-// `repeats_per_scene` above 1: n counts scenes.
-Table MakeSummaryRowTable(const std::vector<SummaryRow>& rows, int repeats_per_scene,
+// Behind these columns.
+Table MakeSummaryRowTable(const Summary& summary, bool is_of_problems,
                           std::vector<ColumnOf<EstimatorRow>> columns,
                           const std::vector<std::string>& quantities) {
   using R = const EstimatorRow&;
-  columns.push_back({{.name = repeats_per_scene > 1 ? "scenes" : "n",
+  columns.push_back({{.name = summary.repeats_per_scene > 1 ? "scenes" : "n",
                       .type = ColumnType::kCount,
                       .is_key = true,
-                      .is_symbol = repeats_per_scene == 1},
+                      .is_symbol = summary.repeats_per_scene == 1},
                      [](R r) { return r.num_trials; }});
   for (const std::string& quantity : quantities) {
-    const auto row = std::ranges::find(rows, quantity, &SummaryRow::quantity);
-    if (row == rows.end()) continue;
+    const auto row = std::ranges::find_if(summary.rows, [&](const SummaryRow& r) {
+      return r.quantity == quantity && IsOfProblems(r) == is_of_problems;
+    });
+    if (row == summary.rows.end()) continue;
     columns.push_back({{quantity, ColumnType::kEstimate, ChooseNumberFormat(row->kind)}, [quantity](R r) {
                          const auto found = r.quantities.find(quantity);
                          return found == r.quantities.end() ? Value(Estimate())
                                                             : MakeEstimate(*found->second, r.num_trials);
                        }});
   }
-  return MakeTable(columns, GroupRows(rows));
-}
-
-std::vector<SummaryRow> SelectRows(const Summary& summary, bool is_of_problems) {
-  std::vector<SummaryRow> rows = summary.rows;
-  std::erase_if(rows,
-                [&](const SummaryRow& row) { return (row.estimator == kSceneLabel) != is_of_problems; });
-  return rows;
+  return MakeTable(columns, GroupRows(summary, is_of_problems));
 }
 
 }  // namespace
@@ -104,12 +102,11 @@ Table MakeQuantityTable(const Summary& summary, const std::vector<std::string>& 
   std::vector<ColumnOf<EstimatorRow>> columns = LevelColumns<EstimatorRow>(summary.factor_names);
   columns.push_back(
       {{.name = "estimator", .is_key = true}, [](const EstimatorRow& row) { return row.estimator; }});
-  return MakeSummaryRowTable(SelectRows(summary, /*is_of_problems=*/false), summary.repeats_per_scene,
-                             std::move(columns), quantities);
+  return MakeSummaryRowTable(summary, /*is_of_problems=*/false, std::move(columns), quantities);
 }
 
 Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& quantities) {
-  return MakeSummaryRowTable(SelectRows(summary, /*is_of_problems=*/true), summary.repeats_per_scene,
+  return MakeSummaryRowTable(summary, /*is_of_problems=*/true,
                              LevelColumns<EstimatorRow>(summary.factor_names), quantities);
 }
 

@@ -33,15 +33,16 @@ std::string PercentWithInterval(double value, const Interval& interval) {
 }
 
 // " at outlier_ratio 0.4, sigma_px 1"; of a population " over the population"; nothing without factors.
-template <typename Row>
-std::string FormatPlace(const Row& row, const std::vector<std::string>& factor_names) {
-  std::vector<std::string> levels;
-  for (size_t f = 0; f < row.levels.size(); ++f) levels.push_back(factor_names[f] + " " + row.levels[f]);
-  return levels.empty() ? "" : fmt::format(" at {}", fmt::join(levels, ", "));
+std::string FormatPlace(const std::vector<std::string>& levels,
+                        const std::vector<std::string>& factor_names) {
+  std::vector<std::string> words;
+  for (size_t f = 0; f < levels.size(); ++f) words.push_back(factor_names[f] + " " + levels[f]);
+  return words.empty() ? "" : fmt::format(" at {}", fmt::join(words, ", "));
 }
 
-std::string RateAt(const SummaryRow& row, const std::vector<std::string>& factor_names) {
-  return PercentWithInterval(row.value, row.interval) + FormatPlace(row, factor_names);
+std::string RateAt(const Summary& summary, const SummaryRow& row) {
+  return PercentWithInterval(row.value, row.interval) +
+         FormatPlace(summary.levels.at(row.condition), summary.factor_names);
 }
 
 // How far an interval lies outside of a range; 0 within or across its end.
@@ -79,7 +80,7 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
         {farthest,
          fmt::format(
              "Coverage: the 95 % regions that {} states hold the truth in {}{}: they are too {}{}.", label,
-             RateAt(*worst, summary.factor_names), summary.is_of_population ? " over the population" : "",
+             RateAt(summary, *worst), summary.is_of_population ? " over the population" : "",
              worst->value < kStatedCoverage ? "small" : "large",
              num_known > 1 ? fmt::format(", and far off in {} of {} conditions", num_off, num_known) : "")});
   }
@@ -122,7 +123,7 @@ void AddRefusals(const Summary& summary, std::vector<std::string>* sentences) {
     if (!most || most->interval.lower < kManyRefusals) continue;
     findings.push_back({most->value, fmt::format("Refusals: {} refuses {}{} ({}).", label,
                                                  summary.is_of_population ? "" : "up to ",
-                                                 RateAt(*most, summary.factor_names), most->quantity)});
+                                                 RateAt(summary, *most), most->quantity)});
   }
   AddByWeight(std::move(findings), sentences);
 }
@@ -140,8 +141,7 @@ void AddRangesOfFailure(const Summary& summary, std::vector<std::string>* senten
         least->value == most->value
             ? fmt::format("{} {}", PercentWithInterval(least->value, least->interval),
                           summary.is_of_population ? "over the population" : "throughout")
-            : fmt::format("from {} to {}", RateAt(*least, summary.factor_names),
-                          RateAt(*most, summary.factor_names));
+            : fmt::format("from {} to {}", RateAt(summary, *least), RateAt(summary, *most));
     sentences->push_back(fmt::format("Failure rate of {}: {}.", label, range));
   }
 }
@@ -177,7 +177,7 @@ std::string DescribeTally(const Tally& tally, const std::string& verb, const Com
     const std::string farthest =
         has_farthest ? fmt::format(" (by {:+.2f} points [{:+.2f}, {:+.2f}]{})", 100.0 * row.difference,
                                    100.0 * row.interval.lower, 100.0 * row.interval.upper,
-                                   FormatPlace(row, comparison.factor_names))
+                                   FormatPlace(row.levels, comparison.factor_names))
                      : "";
     parts.push_back(fmt::format("{} often in {}{}", is_less ? "less" : "more", count, farthest));
   }

@@ -91,19 +91,28 @@ std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {
 
 Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups) {
   const RunDescription run = store.Description();
-  std::vector<SummaryCell> cells(groups.levels.size(),
-                                 SummaryCell(run.estimators.size(), run.repeats_per_scene));
+  const SummaryCell empty(run.estimators.size(), run.repeats_per_scene);
+  SummaryOfGroups summary(run, groups);
+  std::map<size_t, SummaryCell> cells;  // of groups that have trials and may get more
+  size_t num_finished = 0;
+  const auto finish_before = [&](size_t group) {
+    for (; num_finished < group; ++num_finished) {
+      const auto cell = cells.extract(num_finished);
+      summary.Append(cell ? cell.mapped() : empty);
+    }
+  };
   SummaryCell* of_scene = nullptr;
   ForEachTrialByScene(
       ReadRun(store),
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
-        of_scene = &cells[groups.group_of(problem)];
+        const size_t group = groups.group_of(problem);
+        if (groups.is_in_order) finish_before(group);
+        of_scene = &cells.try_emplace(group, empty).first->second;
         of_scene->Add(problem, records, run.failure, is_first);
       },
       [&](std::uint32_t) { of_scene->EndScene(); });
-  std::vector<const SummaryCell*> of_groups;
-  for (const SummaryCell& cell : cells) of_groups.push_back(&cell);
-  return SummarizeCells(run, groups, of_groups, with_times);
+  finish_before(groups.levels.size());
+  return summary.Finish(with_times);
 }
 
 }  // namespace rcme

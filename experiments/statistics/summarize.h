@@ -35,8 +35,7 @@ struct SummaryRow {
   };
 
   std::uint32_t condition = 0;
-  std::vector<std::string> levels;  // one per factor
-  std::string estimator;            // label; kSceneLabel: of the problem, whoever solves it
+  std::string estimator;  // label; kSceneLabel: of the problem, whoever solves it
   std::string quantity;
   Kind kind = Kind::kRate;
   double value = 0.0;  // NaN where n is 0
@@ -60,6 +59,7 @@ inline constexpr const char* kSceneLabel = "scene";
 struct Summary {
   std::string study;
   std::vector<std::string> factor_names;
+  std::vector<std::vector<std::string>> levels;  // of every condition, one per factor
   Settings efforts;  // of each estimator, by label: what limits the work of a call; empty: unknown
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;

@@ -321,32 +321,37 @@ SummaryCell SummaryCell::FromTexts(const std::vector<CountedQuantity>& texts, si
   return cell;
 }
 
+SummaryOfGroups::SummaryOfGroups(const RunDescription& run, const TrialGroups& groups) : run_(run) {
+  summary_.study = run.study;
+  summary_.factor_names = groups.factor_names;
+  summary_.levels = groups.levels;
+  summary_.num_trials_planned = run.NumTrials();
+  summary_.repeats_per_scene = run.repeats_per_scene;
+  summary_.truth_quality = DescribeTruthQuality(run.identity);
+  summary_.population = DescribePopulation(run.identity);
+  summary_.num_retried = run.retried_trials;
+  for (const DescribedEstimator& estimator : run.estimators)
+    summary_.efforts.emplace_back(estimator.label, estimator.effort);
+}
+
+void SummaryOfGroups::Append(const SummaryCell& cell) {
+  summary_.num_trials_done += cell.num_trials();
+  SummaryRow row;
+  row.condition = num_groups_++;
+  if (!run_.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
+  cell.AppendRows(run_, row, &summary_.rows);
+}
+
+Summary SummaryOfGroups::Finish(bool with_times) {
+  LeaveOutRows(with_times, &summary_);
+  return std::move(summary_);
+}
+
 Summary SummarizeCells(const RunDescription& run, const TrialGroups& groups,
                        const std::vector<const SummaryCell*>& cells, bool with_times) {
-  Summary summary{run.study,
-                  groups.factor_names,
-                  {},
-                  {},
-                  0,
-                  run.NumTrials(),
-                  run.repeats_per_scene,
-                  DescribeTruthQuality(run.identity),
-                  /*is_of_population=*/false,
-                  DescribePopulation(run.identity),
-                  run.retried_trials,
-                  std::nullopt};
-  for (const DescribedEstimator& estimator : run.estimators)
-    summary.efforts.emplace_back(estimator.label, estimator.effort);
-  for (std::uint32_t c = 0; c < cells.size(); ++c) {
-    summary.num_trials_done += cells[c]->num_trials();
-    SummaryRow row;
-    row.condition = c;
-    row.levels = groups.levels[c];
-    if (!run.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
-    cells[c]->AppendRows(run, row, &summary.rows);
-  }
-  LeaveOutRows(with_times, &summary);
-  return summary;
+  SummaryOfGroups summary(run, groups);
+  for (const SummaryCell* cell : cells) summary.Append(*cell);
+  return summary.Finish(with_times);
 }
 
 }  // namespace rcme

@@ -81,7 +81,20 @@ class SummaryCell {
   std::vector<SceneSplit> splits_;  // by estimator; none without repeats
 };
 
-// The summary of a run of which these cells are the groups.
+// The summary of a run, of one group after the other.
+class SummaryOfGroups {
+ public:
+  SummaryOfGroups(const RunDescription& run, const TrialGroups& groups);
+
+  void Append(const SummaryCell& cell);  // of the next group
+  Summary Finish(bool with_times);
+
+ private:
+  const RunDescription& run_;
+  Summary summary_;
+  std::uint32_t num_groups_ = 0;
+};
+
 Summary SummarizeCells(const RunDescription& run, const TrialGroups& groups,
                        const std::vector<const SummaryCell*>& cells, bool with_times);
 

@@ -79,13 +79,14 @@ double TrialsToDecide(const CoverageVerdict& verdict) {
   return is_known ? verdict.trials_to_decide : std::nan("");
 }
 
-// Every quantity in a row of its own.
-Table MakeRowTable(const Summary& summary) {
+// Of every quantity in a row of its own. The summary outlives them.
+std::vector<ColumnOf<SummaryRow>> RowColumns(const Summary& summary) {
   using R = const SummaryRow&;
   std::vector<ColumnOf<SummaryRow>> columns = {
       {{.name = "study", .json_name = kNotInJson}, [&](R) { return summary.study; }},
       {{"condition", ColumnType::kCount}, [](R r) { return std::int64_t{r.condition}; }}};
-  for (const ColumnOf<SummaryRow>& level : LevelColumns<SummaryRow>(summary.factor_names))
+  const auto levels_of = [&](R r) -> const auto& { return summary.levels.at(r.condition); };
+  for (const ColumnOf<SummaryRow>& level : LevelColumns<SummaryRow>(summary.factor_names, levels_of))
     columns.push_back(level);
   const std::vector<ColumnOf<SummaryRow>> others = {
       {{"estimator"}, [](R r) { return r.estimator; }},
@@ -114,7 +115,7 @@ Table MakeRowTable(const Summary& summary) {
           .json_name = "interval_of_these_conditions"},
          [](R r) { return r.kind == SummaryRow::Kind::kMean ? Value() : Value(r.of_these_conditions); }});
   }
-  return MakeTable(columns, summary.rows);
+  return columns;
 }
 
 // One line per estimator whose effort is known.
@@ -151,8 +152,8 @@ std::string DescribeFlips(const Summary& summary) {
   std::string text;
   for (const SummaryRow* row : most) {
     std::vector<std::string> place;
-    for (size_t f = 0; f < row->levels.size(); ++f)
-      place.push_back(summary.factor_names[f] + " " + row->levels[f]);
+    for (size_t f = 0; f < summary.factor_names.size(); ++f)
+      place.push_back(summary.factor_names[f] + " " + summary.levels.at(row->condition).at(f));
     text += fmt::format(
         "  {}: {}{}\n", row->estimator,
         row->value == 0.0 ? "no scene"
@@ -263,7 +264,7 @@ std::string SummaryAsTable(const Summary& summary) {
   return text + DescribeEfforts(summary);
 }
 
-std::string SummaryAsCsv(const Summary& summary) { return RenderCsv(MakeRowTable(summary)); }
+std::string SummaryAsCsv(const Summary& summary) { return RenderCsv(RowColumns(summary), summary.rows); }
 
 std::string SummaryAsJson(const Summary& summary) {
   nlohmann::ordered_json json = {{"study", summary.study},
@@ -271,7 +272,7 @@ std::string SummaryAsJson(const Summary& summary) {
                                  {"trials_planned", summary.num_trials_planned},
                                  {"repeats_per_scene", summary.repeats_per_scene},
                                  {"efforts", nlohmann::ordered_json::object()},
-                                 {"rows", RenderJson(MakeRowTable(summary))}};
+                                 {"rows", RenderJson(MakeTable(RowColumns(summary), summary.rows))}};
   for (const auto& [label, effort] : summary.efforts) json["efforts"][label] = effort;
   if (!summary.truth_quality.empty()) json["truth"] = summary.truth_quality;
   if (!summary.population.empty()) json["population"] = summary.population;

@@ -40,7 +40,10 @@ std::vector<double> Bounds(std::vector<double> values) {
 }  // namespace
 
 TrialGroups GroupByCondition(const RunDescription& run) {
-  TrialGroups groups{run.factors, {}, [](const ProblemRecord& problem) { return size_t{problem.condition}; }};
+  TrialGroups groups{.factor_names = run.factors,
+                     .levels = {},
+                     .group_of = [](const ProblemRecord& problem) { return size_t{problem.condition}; },
+                     .is_in_order = true};
   for (const auto& condition : run.conditions) groups.levels.push_back(condition.levels);
   return groups;
 }

@@ -13,6 +13,7 @@ struct TrialGroups {
   std::vector<std::string> factor_names;
   std::vector<std::vector<std::string>> levels;  // of every group, one per factor
   std::function<size_t(const ProblemRecord&)> group_of;
+  bool is_in_order = false;  // the trials of a run, by condition and trial, come group after group
 };
 
 enum class Pooling { kPerCondition, kPooled };

@@ -195,6 +195,19 @@ std::string RenderCsvValue(const Value& value, const Column& column) {
       value);
 }
 
+// `render_field` gives that of a column by its number.
+template <typename RenderField>
+void AppendCsvLine(const std::vector<Column>& columns, RenderField render_field, std::string* text) {
+  bool is_first = true;
+  for (size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].name.empty()) continue;
+    if (!is_first) *text += ',';
+    is_first = false;
+    *text += render_field(c);
+  }
+  *text += '\n';
+}
+
 Json RenderJsonValue(const Value& value) {
   return std::visit(
       Overloaded{[](std::monostate) { return Json(); }, [](const std::string& text) { return Json(text); },
@@ -258,22 +271,26 @@ std::string RenderText(const Table& table, size_t width) {
   return text;
 }
 
-std::string RenderCsv(const Table& table) {
-  const auto render_line = [&](const auto& render_field) {
-    std::vector<std::string> fields;
-    for (size_t c = 0; c < table.columns.size(); ++c) {
-      if (!table.columns[c].name.empty()) fields.push_back(render_field(c));
-    }
-    return fmt::format("{}\n", fmt::join(fields, ","));
-  };
-  std::string text = render_line([&](size_t c) {
+std::string RenderCsvHeading(const Table& table) {
+  std::string text;
+  const auto render_field = [&](size_t c) {
     const Column& column = table.columns[c];
     return column.type == ColumnType::kInterval ? column.name : CsvField(column.name);
-  });
-  for (const std::vector<Value>& row : table.rows)
-    text += render_line([&](size_t c) { return RenderCsvValue(row[c], table.columns[c]); });
+  };
+  AppendCsvLine(table.columns, render_field, &text);
   return text;
 }
+
+std::string RenderCsvRows(const Table& table) {
+  std::string text;
+  for (const std::vector<Value>& row : table.rows) {
+    const auto render_field = [&](size_t c) { return RenderCsvValue(row[c], table.columns[c]); };
+    AppendCsvLine(table.columns, render_field, &text);
+  }
+  return text;
+}
+
+std::string RenderCsv(const Table& table) { return RenderCsvHeading(table) + RenderCsvRows(table); }
 
 Json RenderJson(const Table& table) {
   Json rows = Json::array();

@@ -1,7 +1,9 @@
 // Renders a Table as text, with one function per format.
 #pragma once
 
+#include <algorithm>
 #include <nlohmann/json_fwd.hpp>
+#include <span>
 #include <string>
 
 #include "experiments/core/table/table.h"
@@ -23,6 +25,21 @@ std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format)
 // RFC 4180 but for line ends, which are "\n". Texts are fields of field_text.h; what
 // is not known is empty, as are infinite ends of an interval. An estimate is its value alone.
 std::string RenderCsv(const Table& table);
+// Its parts: that of all rows is the heading and the rows of any division of them.
+std::string RenderCsvHeading(const Table& table);
+std::string RenderCsvRows(const Table& table);
+// RenderCsv(MakeTable(columns, items)) without a table of all items: its values take ten times as much memory
+// as their text.
+template <typename Item>
+std::string RenderCsv(const std::vector<ColumnOf<Item>>& columns, const std::vector<Item>& items) {
+  constexpr size_t kNumTogether = 1000;
+  std::string text = RenderCsvHeading(MakeTable(columns, std::vector<Item>()));
+  for (size_t begin = 0; begin < items.size(); begin += kNumTogether) {
+    const size_t size = std::min(kNumTogether, items.size() - begin);
+    text += RenderCsvRows(MakeTable(columns, std::span(items).subspan(begin, size)));
+  }
+  return text;
+}
 
 // An array with an object per row. Numbers have all digits; null: not known, or infinite. An interval is a
 // list of its ends.

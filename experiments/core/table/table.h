@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <utility>
 #include <variant>
@@ -83,8 +84,8 @@ struct ColumnOf {
   std::function<Value(const Item&)> value;
 };
 
-template <typename Item>
-Table MakeTable(const std::vector<ColumnOf<Item>>& columns, const std::vector<Item>& items) {
+template <typename Item, std::ranges::input_range Items>
+Table MakeTable(const std::vector<ColumnOf<Item>>& columns, const Items& items) {
   Table table;
   for (const ColumnOf<Item>& column : columns) table.columns.push_back(column.column);
   for (const Item& item : items) {
@@ -94,15 +95,21 @@ Table MakeTable(const std::vector<ColumnOf<Item>>& columns, const std::vector<It
   return table;
 }
 
-// A column per factor: its level, in JSON within the object `levels`. `Item` has the member `levels`.
-template <typename Item>
-std::vector<ColumnOf<Item>> LevelColumns(const std::vector<std::string>& factors) {
+// A column per factor: its level, in JSON within the object `levels`. levels_of(item): a level per factor.
+template <typename Item, typename LevelsOf>
+std::vector<ColumnOf<Item>> LevelColumns(const std::vector<std::string>& factors, LevelsOf levels_of) {
   std::vector<ColumnOf<Item>> columns;
   for (size_t f = 0; f < factors.size(); ++f) {
     columns.push_back({{.name = factors[f], .group = "levels", .is_key = true},
-                       [f](const Item& item) { return item.levels.at(f); }});
+                       [f, levels_of](const Item& item) { return levels_of(item).at(f); }});
   }
   return columns;
+}
+// Of items that have the member `levels`.
+template <typename Item>
+std::vector<ColumnOf<Item>> LevelColumns(const std::vector<std::string>& factors) {
+  return LevelColumns<Item>(
+      factors, [](const Item& item) -> const auto& { return item.levels; });
 }
 
 }  // namespace rcme

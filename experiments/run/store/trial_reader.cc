@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "experiments/core/files/database.h"
+#include "experiments/core/work/read_ahead.h"
 #include "experiments/run/store/record_table.h"
 #include "experiments/run/store/trial_checksum.h"
 
@@ -87,7 +88,12 @@ void ForEachStoredTrial(const SQLite::Database& database, const TrialFrame& fram
                         std::optional<std::uint32_t> condition,
                         const std::function<void(const StoredTrial&)>& visit) {
   TrialRows rows(database, frame, condition ? fmt::format(" WHERE condition = {}", *condition) : "");
-  while (rows.Next()) visit(rows.trial());
+  const auto read = [&](StoredTrial* trial) {
+    if (!rows.Next()) return false;
+    *trial = rows.trial();
+    return true;
+  };
+  ReadAhead<StoredTrial>(read, visit);
 }
 
 std::optional<StoredTrial> ReadStoredTrial(const SQLite::Database& database, const TrialFrame& frame,

@@ -8,11 +8,18 @@ namespace {
 
 using testing::HasSubstr;
 
-SummaryRow Failure(std::uint32_t condition, const std::string& level, const std::string& label,
-                   double value) {
+// Of the first condition with 0.1, of the second with 0.4.
+Summary MakeSummary(const std::vector<SummaryRow>& rows) {
+  Summary summary;
+  summary.factor_names = {"outlier_ratio"};
+  summary.levels = {{"0.1"}, {"0.4"}};
+  summary.rows = rows;
+  return summary;
+}
+
+SummaryRow Failure(std::uint32_t condition, const std::string& label, double value) {
   SummaryRow row;
   row.condition = condition;
-  row.levels = {level};
   row.estimator = label;
   row.quantity = "failure";
   row.value = value;
@@ -31,19 +38,17 @@ ComparisonRow Difference(std::uint32_t condition, const std::string& event, doub
   return row;
 }
 
-SummaryRow Rate(const std::string& quantity, const std::string& label, const std::string& level, double value,
+SummaryRow Rate(const std::string& quantity, const std::string& label, std::uint32_t condition, double value,
                 double half_width) {
-  SummaryRow row = Failure(0, level, label, value);
+  SummaryRow row = Failure(condition, label, value);
   row.quantity = quantity;
   row.interval = {value - half_width, value + half_width};
   return row;
 }
 
 TEST(ListFindings, NamesTheEndsOfEveryRangeAndWhatTheTestsTell) {
-  Summary summary;
-  summary.factor_names = {"outlier_ratio"};
-  summary.rows = {Failure(0, "0.1", "standard", 0.02), Failure(0, "0.1", "ours", 0.05),
-                  Failure(1, "0.4", "standard", 0.3), Failure(1, "0.4", "ours", 0.05)};
+  const Summary summary = MakeSummary({Failure(0, "standard", 0.02), Failure(0, "ours", 0.05),
+                                       Failure(1, "standard", 0.3), Failure(1, "ours", 0.05)});
   Comparison comparison;
   comparison.reference = "standard";
   comparison.factor_names = summary.factor_names;
@@ -65,13 +70,11 @@ TEST(ListFindings, NamesTheEndsOfEveryRangeAndWhatTheTestsTell) {
 }
 
 TEST(ListFindings, WhatMattersMostComesFirst) {
-  Summary summary;
-  summary.factor_names = {"outlier_ratio"};
-  summary.rows = {
-      Rate("failure", "a", "0.1", 0.05, 0.01),       Rate("no_candidate", "a", "0.1", 0.5, 0.05),
-      Rate("nees_coverage", "a", "0.1", 0.8, 0.05),  Rate("nees_coverage", "b", "0.1", 0.05, 0.02),
-      Rate("nees_coverage", "c", "0.1", 0.93, 0.01), Rate("other_refusal", "b", "0.1", 0.05, 0.01),
-      Rate("nees_coverage", "b", "0.4", 0.95, 0.02)};
+  const Summary summary =
+      MakeSummary({Rate("failure", "a", 0, 0.05, 0.01), Rate("no_candidate", "a", 0, 0.5, 0.05),
+                   Rate("nees_coverage", "a", 0, 0.8, 0.05), Rate("nees_coverage", "b", 0, 0.05, 0.02),
+                   Rate("nees_coverage", "c", 0, 0.93, 0.01), Rate("other_refusal", "b", 0, 0.05, 0.01),
+                   Rate("nees_coverage", "b", 1, 0.95, 0.02)});
   Comparison comparison;
   comparison.reference = "c";
   comparison.rows = {Difference(0, "failure", 0.03, 0.2)};
@@ -110,9 +113,7 @@ TEST(ListFindings, TheOneAheadComesBeforeTheOneBehind) {
 }
 
 TEST(ListFindings, RightProbabilitiesAndSmallSamplesAreNoFinding) {
-  Summary summary;
-  summary.rows = {Rate("nees_coverage", "a", "", 0.8, 0.15)};
-  summary.rows[0].levels = {};
+  const Summary summary = MakeSummary({Rate("nees_coverage", "a", 0, 0.8, 0.15)});
   ForecastMeasures forecast;
   forecast.n = 100;
   forecast.mean_probability = 0.2;

@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/work/stop_request.h"
 #include "experiments/run/run_study.h"
 #include "experiments/statistics/count_study.h"
 #include "experiments/statistics/merge_counts.h"
 #include "experiments/statistics/summarize_counts.h"
 #include "experiments/statistics/summary_output.h"
-#include "experiments/core/work/stop_request.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/shard_files.h"
 
@@ -61,6 +61,7 @@ TEST_F(RunCountsTest, SumUpToWhatTheTrialsDo) {
     const Summary of_trials = Summarize(ResultStore::OpenForReading(trials), false, pooling);
     EXPECT_EQ(of_counts.num_trials_done, of_trials.num_trials_done);
     EXPECT_EQ(of_counts.num_trials_planned, of_trials.num_trials_planned);
+    EXPECT_EQ(of_counts.levels, of_trials.levels);
     ASSERT_EQ(of_counts.rows.size(), of_trials.rows.size());
     std::set<SummaryRow::Kind> kinds;
     for (size_t i = 0; i < of_counts.rows.size(); ++i) {
@@ -68,7 +69,7 @@ TEST_F(RunCountsTest, SumUpToWhatTheTrialsDo) {
       SCOPED_TRACE(a.estimator + " " + a.quantity);
       kinds.insert(a.kind);
       EXPECT_EQ(a.quantity, b.quantity);
-      EXPECT_EQ(a.levels, b.levels);
+      EXPECT_EQ(a.condition, b.condition);
       EXPECT_EQ(a.n, b.n);
       const auto near = [](double x, double y, double tolerance) {
         return (std::isnan(x) && std::isnan(y)) || x == y || std::abs(x - y) <= tolerance * std::abs(y);

@@ -51,9 +51,10 @@ TEST_F(SummarizeTest, PooledConditionsAreOne) {
   Write("both", records);
   const Summary pooled = Summarize(ResultStore::OpenForReading(folder_.Path("both")), true, Pooling::kPooled);
   EXPECT_TRUE(pooled.factor_names.empty());
+  EXPECT_EQ(pooled.levels, std::vector<std::vector<std::string>>(1));
   int num_checked = 0;
   for (const SummaryRow& row : pooled.rows) {
-    EXPECT_TRUE(row.levels.empty() && row.condition == 0);
+    EXPECT_EQ(row.condition, 0u);
     if (row.quantity != "success") continue;
     ++num_checked;
     EXPECT_EQ(row.n, 16);
@@ -291,8 +292,7 @@ TEST_F(SummarizeTest, RowsAreComplete) {
   EXPECT_EQ(summary.rows.size(),
             2 * SummaryQuantities().size() -
                 2 * static_cast<size_t>(std::ranges::count_if(SummaryQuantities(), is_left_out)));
-  EXPECT_EQ(Row("success", 0).levels, std::vector<std::string>{"0"});
-  EXPECT_EQ(Row("success", 1).levels, std::vector<std::string>{"0.3"});
+  EXPECT_EQ(summary.levels, (std::vector<std::vector<std::string>>{{"0"}, {"0.3"}}));
   for (const SummaryRow& row : SummarizeRun("run").rows)
     EXPECT_EQ(row.quantity.find("time_ms"), std::string::npos) << "times were not asked for";
 }
@@ -403,7 +403,8 @@ TEST_F(SummarizeTest, FifthsOfANumberOfTheProblem) {
   for (const SummaryRow& row : summary.rows) {
     if (row.quantity != "failure") continue;
     EXPECT_EQ(row.n, 2) << row.condition;
-    EXPECT_EQ(row.levels, (std::vector<std::string>{fifths.at(row.condition), levels.at(row.condition)}));
+    EXPECT_EQ(summary.levels.at(row.condition),
+              (std::vector<std::string>{fifths.at(row.condition), levels.at(row.condition)}));
     failed.push_back(row.value);
   }
   EXPECT_EQ(failed, (std::vector<double>{0, 0, 0, 0, 1, 0}));

@@ -88,7 +88,7 @@ TEST_F(SummaryOutputTest, JsonHoldsTheSameRows) {
     const SummaryRow& row = summary.rows[i];
     const nlohmann::json& entry = json["rows"][i];
     EXPECT_EQ(entry["condition"], row.condition);
-    EXPECT_EQ(entry["levels"]["outlier_ratio"], row.levels[0]);
+    EXPECT_EQ(entry["levels"]["outlier_ratio"], summary.levels[row.condition][0]);
     EXPECT_EQ(entry["estimator"], row.estimator);
     EXPECT_EQ(entry["quantity"], row.quantity);
     EXPECT_EQ(entry["n"], row.n);
