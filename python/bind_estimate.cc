@@ -3,20 +3,24 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "estimator/protection_level.h"
+#include "experiments/core/work/for_each_index.h"
 #include "experiments/real/answer/probabilities_for_bounds.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/trial/answer_check.h"
 #include "peers/outside_answer.h"
 #include "python/function_estimator.h"
+#include "python/stoppable.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -88,31 +92,139 @@ Camera MakeCamera(const std::array<double, 4>& k, int width, int height) {
   return {k[0], k[1], k[2], k[3], width, height};
 }
 
-py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
-                  double sigma_px, std::vector<double> noise_scale, const std::string& name,
-                  const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process,
-                  const std::vector<std::pair<double, double>>& bounds, double integrity_risk) {
+struct ChosenEstimator {
+  EstimatorSpec spec;
+  std::unique_ptr<MotionEstimator> estimator;
+};
+
+// `file`: empty, or a path in place of the name.
+ChosenEstimator MakeChosen(const std::string& name, const std::string& file, const Settings& options,
+                           bool allow_process) {
   std::vector<EstimatorSpec> specs = {file.empty() ? DefaultEstimator(name) : LoadEstimatorFile(file)};
-  EstimatorSpec& spec = specs.front();
-  SetOwnOptions(&spec, options);
+  SetOwnOptions(&specs.front(), options);
   if (allow_process) AllowCommands(&specs);
-  const std::unique_ptr<MotionEstimator> estimator = Make(spec);
+  return {specs.front(), Make(specs.front())};
+}
+
+MotionProblem MakeProblem(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
+                          double sigma_px, std::vector<double> noise_scale) {
   MotionProblem problem{{}, camera1, camera2, sigma_px, std::move(noise_scale)};
   for (py::ssize_t i = 0; i < x1.shape(0); ++i)
     problem.matches.push_back({{x1.at(i, 0), x1.at(i, 1)}, {x2.at(i, 0), x2.at(i, 1)}});
-  std::vector<FailureBounds> failure_bounds;
-  for (const auto& [rotation, direction] : bounds) failure_bounds.push_back({rotation, direction});
+  return problem;
+}
+
+// Pairs (rotation, direction), deg.
+using AnglePairs = std::vector<std::pair<double, double>>;
+
+std::vector<FailureBounds> MakeBounds(const AnglePairs& pairs) {
+  std::vector<FailureBounds> bounds;
+  for (const auto& [rotation, direction] : pairs) bounds.push_back({rotation, direction});
+  return bounds;
+}
+
+EstimateForBounds EstimateOne(const MotionEstimator& estimator, const MotionProblem& problem,
+                              const std::vector<FailureBounds>& bounds, std::uint64_t seed) {
+  RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
+  EstimateForBounds found = EstimateWithBounds(estimator, problem, bounds, rng);
+  found.estimate = Judged(std::move(found.estimate), problem.matches.size());
+  return found;
+}
+
+py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
+                  double sigma_px, std::vector<double> noise_scale, const std::string& name,
+                  const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process,
+                  const AnglePairs& bounds, double integrity_risk) {
+  const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
+  const MotionProblem problem = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
+  const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
   EstimateForBounds found;
   {
     const py::gil_scoped_release unlocked;
-    RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
-    found = EstimateWithBounds(*estimator, problem, failure_bounds, rng);
+    found = EstimateOne(*chosen.estimator, problem, failure_bounds, seed);
   }
-  const MotionEstimate judged = Judged(std::move(found.estimate), problem.matches.size());
-  py::dict dict = MakeDict(judged);
-  dict["protection_levels"] = LevelsAt(judged, integrity_risk);
+  py::dict dict = MakeDict(found.estimate);
+  dict["protection_levels"] = LevelsAt(found.estimate, integrity_risk);
   dict["p_failure_for_bounds"] = MakeProbabilityList(found.probabilities);
-  dict["estimator"] = spec.label;
+  dict["estimator"] = chosen.spec.label;
+  return dict;
+}
+
+// Row i of an array is of pair i; NaN where nothing is known.
+class AnswerArrays {
+ public:
+  AnswerArrays(size_t num_pairs, size_t num_bounds)
+      : R_({num_pairs, size_t{3}, size_t{3}}),
+        t_({num_pairs, size_t{3}}),
+        pose_cov_({num_pairs, size_t{6}, size_t{6}}),
+        p_failure_(num_pairs),
+        p_for_bounds_({num_pairs, num_bounds}),
+        sigma_(num_pairs),
+        sigma_sd_(num_pairs) {
+    for (Array* array : {&R_, &t_, &pose_cov_, &p_failure_, &p_for_bounds_, &sigma_, &sigma_sd_})
+      std::fill_n(array->mutable_data(), array->size(), kNaN);
+  }
+
+  void Set(py::ssize_t i, const EstimateForBounds& found) {
+    const MotionEstimate& estimate = found.estimate;
+    const bool has_motion = estimate.status == MotionStatus::kOk;
+    if (has_motion || estimate.status == MotionStatus::kDirectionNotObservable) {
+      const Eigen::Vector3d t = has_motion ? estimate.cam2_from_cam1.t : Eigen::Vector3d::Constant(kNaN);
+      Matrix6d cov = Matrix6d::Constant(kNaN);
+      cov.topLeftCorner<3, 3>() = estimate.pose_cov.topLeftCorner<3, 3>();
+      if (has_motion) cov = CovarianceWithTranslation(estimate.pose_cov, t);
+      for (int row = 0; row < 6; ++row) {
+        if (row < 3) t_.mutable_at(i, row) = t(row);
+        for (int column = 0; column < 6; ++column) {
+          if (row < 3 && column < 3) R_.mutable_at(i, row, column) = estimate.cam2_from_cam1.R(row, column);
+          pose_cov_.mutable_at(i, row, column) = cov(row, column);
+        }
+      }
+    }
+    p_failure_.mutable_at(i) = estimate.failure_probability;
+    for (size_t k = 0; k < found.probabilities.size(); ++k)
+      p_for_bounds_.mutable_at(i, static_cast<py::ssize_t>(k)) = found.probabilities[k].failure_probability;
+    sigma_.mutable_at(i) = estimate.sigma_estimated_px;
+    sigma_sd_.mutable_at(i) = estimate.sigma_estimated_sd_px;
+    status_.append(StatusName(estimate.status));
+    domain_.append(Name(estimate.probability_domain));
+    inliers_.append(estimate.inliers);
+  }
+
+  py::dict Dict() const {
+    return py::dict("status"_a = status_, "R"_a = R_, "t"_a = t_, "pose_cov"_a = pose_cov_,
+                    "p_failure"_a = p_failure_, "p_failure_domain"_a = domain_,
+                    "p_failure_for_bounds"_a = p_for_bounds_, "sigma"_a = sigma_, "sigma_sd"_a = sigma_sd_,
+                    "inliers"_a = inliers_);
+  }
+
+ private:
+  Array R_, t_, pose_cov_, p_failure_, p_for_bounds_, sigma_, sigma_sd_;
+  py::list status_, domain_, inliers_;
+};
+
+// x1, x2, camera1, camera2, noise_scale.
+using GivenPair = std::tuple<Array, Array, Camera, Camera, std::vector<double>>;
+
+py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, const std::string& name,
+                      const std::string& file, const Settings& options, std::uint64_t seed,
+                      bool allow_process, const AnglePairs& bounds, int threads) {
+  const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
+  std::vector<MotionProblem> problems;
+  for (const auto& [x1, x2, camera1, camera2, noise_scale] : pairs)
+    problems.push_back(MakeProblem(x1, x2, camera1, camera2, sigma_px, noise_scale));
+  const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
+  std::vector<EstimateForBounds> found(problems.size());
+  RunStoppable([&] {
+    ForEachIndex(std::ssize(problems), threads, [&](std::int64_t i) {
+      const auto place = static_cast<size_t>(i);
+      found[place] = EstimateOne(*chosen.estimator, problems[place], failure_bounds, seed);
+    });
+  });
+  AnswerArrays arrays(found.size(), bounds.size());
+  for (size_t i = 0; i < found.size(); ++i) arrays.Set(static_cast<py::ssize_t>(i), found[i]);
+  py::dict dict = arrays.Dict();
+  dict["estimator"] = chosen.spec.label;
   return dict;
 }
 
@@ -121,6 +233,7 @@ py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const
 void BindEstimate(py::module_& module) {
   py::class_<Camera>(module, "Camera").def(py::init(&MakeCamera));
   module.def("estimate", &Estimate);
+  module.def("estimate_many", &EstimateMany);
 }
 
 }  // namespace rcme

@@ -13,6 +13,7 @@
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/work/make_in_order.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/match_file.h"
@@ -35,6 +36,7 @@ struct EstimateArguments {
   double sigma_px = 0.5;
   std::int64_t seed = 1;
   std::vector<std::string> bounds;
+  int threads = 0;  // 0: one per core
   bool as_json = false;
 };
 
@@ -232,53 +234,86 @@ std::string JsonLine(const std::string& path, nlohmann::ordered_json object) {
   return line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+// What becomes of one of many files.
+struct FileAnswer {
+  std::string path, error;  // error: why it could not be read; else empty
+  std::vector<CameraDoubt> doubts;
+  PairAnswer answer;
+};
+
+FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
+  FileAnswer file{.path = path, .error = {}, .doubts = {}, .answer = {}};
+  try {
+    file.answer = answerer.Answer(answerer.Read(path, &file.doubts));
+  } catch (const InputError& error) {
+    file.error = error.what();
+  }
+  return file;
+}
+
+// What is printed of many files.
+class AnswerReport {
+ public:
+  AnswerReport(const Answerer& answerer, bool as_json)
+      : answerer_(answerer), as_json_(as_json), table_(answerer.bounds()) {}
+
+  void Add(const FileAnswer& file) {
+    warnings_.Add(file.doubts);
+    if (!file.error.empty()) {
+      is_any_bad_ = true;
+      table_.AddUnreadable();
+      PrintMessage("rcme: {}\n", Printable(file.error));
+      if (as_json_)
+        PrintLine(file.path, {{"status", StatusName(MotionStatus::kInvalidInput)}, {"message", file.error}});
+      return;
+    }
+    is_any_bad_ |= IsBadInput(file.answer.estimate.status);
+    if (as_json_) {
+      PrintLine(file.path, MakeJson(file.answer, answerer_.spec(), file.doubts));
+    } else {
+      table_.Add(file.path, file.answer);
+    }
+  }
+  void Finish() const {
+    if (!as_json_) fmt::print("{}", table_.Text());
+    warnings_.Print();
+  }
+  bool is_any_bad() const { return is_any_bad_; }
+
+ private:
+  // Whoever reads along gets each when it is there.
+  static void PrintLine(const std::string& path, const nlohmann::ordered_json& object) {
+    fmt::print("{}", JsonLine(path, object));
+    std::fflush(stdout);
+  }
+
+  const Answerer& answerer_;
+  bool as_json_, is_any_bad_ = false;
+  AnswerTable table_;
+  CameraWarnings warnings_;
+};
+
 // Every file is answered, whatever becomes of the others; in the end the program fails if one could not be.
 void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
                 const std::vector<std::string>& files) {
   const StopOnSignals stop;
-  AnswerTable table(answerer.bounds());
-  CameraWarnings warnings;
-  bool is_any_bad = false;
-  const auto answer_file = [&](const std::string& path) {
-    try {
-      std::vector<CameraDoubt> doubts;
-      const TrialData data = answerer.Read(path, &doubts);
-      warnings.Add(doubts);
-      const PairAnswer answer = answerer.Answer(data);
-      if (arguments.as_json) {
-        fmt::print("{}", JsonLine(path, MakeJson(answer, answerer.spec(), doubts)));
-        std::fflush(stdout);  // whoever reads along gets each when it is there
-      } else {
-        table.Add(path, answer);
-      }
-      is_any_bad |= IsBadInput(answer.estimate.status);
-    } catch (const InputError& error) {
-      is_any_bad = true;
-      table.AddUnreadable();
-      PrintMessage("rcme: {}\n", Printable(error.what()));
-      if (arguments.as_json)
-        fmt::print("{}", JsonLine(path, {{"status", StatusName(MotionStatus::kInvalidInput)},
-                                         {"message", error.what()}}));
-    }
-  };
+  AnswerReport report(answerer, arguments.as_json);
   std::int64_t num_done = 0;
-  {
+  try {
     Progress progress("pairs", std::ssize(files), 0);
-    for (const std::string& path : files) {
-      if (IsStopRequested()) break;
-      try {
-        answer_file(path);
-      } catch (const Stopped&) {
-        break;  // while an estimator outside the program was waited for
-      }
-      progress.Advance(1);
-      ++num_done;
-    }
+    MakeInOrder(
+        std::ssize(files), arguments.threads,
+        [&](std::int64_t i) { return AnswerFile(answerer, files[static_cast<size_t>(i)]); },
+        [&](const FileAnswer& file) {
+          report.Add(file);
+          progress.Advance(1);
+          ++num_done;
+        });
+  } catch (const Stopped&) {  // also while an estimator outside the program was waited for
   }
-  if (!arguments.as_json) fmt::print("{}", table.Text());
-  warnings.Print();
+  report.Finish();
   if (IsStopRequested()) throw Stopped(fmt::format("stopped after {} of {} pairs", num_done, files.size()));
-  if (is_any_bad) throw EndWith{2};
+  if (report.is_any_bad()) throw EndWith{2};
 }
 
 void RunEstimate(const EstimateArguments& arguments) {
@@ -300,7 +335,7 @@ share of matches that could lie on one plane. If there is no motion, it says why
 what to try.
 
 For several files, or a folder, it prints a table with a line per file, or with --json a
-line of JSON per file. '-' reads standard input. A file may have just four columns
+line of JSON per file; several are answered at a time (--threads). '-' reads standard input. A file may have just four columns
 x1 y1 x2 y2, separated by commas or blanks; give the intrinsics with --K, once for both
 images or once for each. A K that does not fit the size of the images or the positions
 of the key points gives a warning; an impossible K is refused.
@@ -351,6 +386,11 @@ matches, all matches on a line).)");
                    "direction by more than D deg, from the same fit; may be given several times; only "
                    "rcme_calibrated")
       ->allow_extra_args(false);
+  command
+      ->add_option("--threads", arguments->threads,
+                   "of many files; 0: one per core. Answers and their order do not depend on it")
+      ->transform(WholeNumberIn(0, 1024))
+      ->capture_default_str();
   command->add_flag("--json", arguments->as_json,
                     "one JSON object per file: R (9) and pose_cov (36, of [w, dt]), row-major; "
                     "without a direction (direction_not_observable) only R and rotation_cov (9)");

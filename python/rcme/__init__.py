@@ -2,7 +2,7 @@
 
     pose, info = rcme.estimate_relative_pose(x1, x2, camera1, camera2, {"sigma_px": 0.7})
 
-estimates one motion; `simulate` gives the matches of a simulated trial with their truth; `run` tries estimators on a study,
+estimates one motion, `estimate_relative_poses` those of many pairs; `simulate` gives the matches of a simulated trial with their truth; `run` tries estimators on a study,
 functions of Python among them; `summarize`, `compare`, `reliability` and `audit` say what came of it, as data frames;
 `plot` draws them on axes of yours. docs/python.md begins at the beginning.
 
@@ -22,13 +22,13 @@ Conventions, everywhere:
 import pathlib
 
 from rcme import _rcme, plot
-from rcme._estimate import Pose, estimate_relative_pose, estimators
+from rcme._estimate import Pose, Poses, estimate_relative_pose, estimate_relative_poses, estimators
 from rcme._rcme import __version__
 from rcme._study import conditions, conform, run, simulate, tune
 from rcme._tables import audit, compare, reliability, summarize
 
-__all__ = ["Pose", "audit", "compare", "conditions", "conform", "estimate_relative_pose", "estimators", "plot", "reliability", "run",
-           "simulate", "summarize", "tune", "__version__"]
+__all__ = ["Pose", "Poses", "audit", "compare", "conditions", "conform", "estimate_relative_pose", "estimate_relative_poses",
+           "estimators", "plot", "reliability", "run", "simulate", "summarize", "tune", "__version__"]
 
 # The studies and estimator files that come with the package, by name.
 _rcme.use_share(str(pathlib.Path(__file__).resolve().parent / "share"))

@@ -1,4 +1,4 @@
-"""One motion from one pair of images."""
+"""Motions from pairs of images: one, or many at a time."""
 
 from __future__ import annotations
 
@@ -10,11 +10,30 @@ import numpy as np
 from rcme import _check, _rcme
 
 
+MAX_PAIRS = 1_000_000
+
+
 class Pose(NamedTuple):
     """A motion: X2 = R X1 + t."""
 
     R: np.ndarray  # 3 x 3
     t: np.ndarray  # 3, |t| = 1; NaN where the direction cannot be observed
+
+
+class Poses(NamedTuple):
+    """The motions of n pairs; row i of each is of pair i. NaN where there is no motion, or nothing is stated."""
+
+    status: np.ndarray  # n texts: "ok", or why there is no motion
+    R: np.ndarray  # n x 3 x 3
+    t: np.ndarray  # n x 3
+    pose_cov: np.ndarray  # n x 6 x 6, of [w, dt]
+    p_failure: np.ndarray  # n
+    p_failure_domain: np.ndarray  # n texts: "verified", "extrapolated", "not_stated"
+    p_failure_for_bounds: np.ndarray  # n x number of `bounds`
+    sigma: np.ndarray  # n, px
+    sigma_sd: np.ndarray  # n, px
+    num_inliers: np.ndarray  # n
+    inliers: list  # n arrays of bool, one for each match
 
 
 def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
@@ -62,11 +81,7 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         An argument of a wrong shape, type or value, an unknown estimator or option. Matches that determine no motion are no
         error: they are a status.
     """
-    x1 = _check.points("x1", x1)
-    x2 = _check.points("x2", x2)
-    if len(x1) != len(x2):
-        raise ValueError(f"x2: its shape is {x2.shape}; expected that of x1, {x1.shape}: row i of both is one match")
-    cameras = _check.camera("camera1", camera1), _check.camera("camera2", camera2)
+    x1, x2, *cameras = _pair("", x1, x2, camera1, camera2)
     chosen = _options(options, len(x1))
     pairs = _bounds(bounds)
     try:
@@ -76,6 +91,56 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     except ValueError as error:
         raise ValueError(f"options: {error}") from None
     return _pose_and_info(answer, len(x1))
+
+
+def estimate_relative_poses(pairs: Iterable[tuple[Any, ...]], options: Optional[Mapping[str, Any]] = None,
+                            bounds: Iterable[tuple[float, float]] = (), threads: int = 0) -> Poses:
+    """Estimates the motions of many pairs of images on several threads.
+
+    Parameters
+    ----------
+    pairs : iterable of (x1, x2, camera1, camera2) or (x1, x2, camera1, camera2, noise_scale)
+        Each as `estimate_relative_pose` takes them; noise_scale as its option.
+    options, bounds
+        As there, but for the options noise_scale and integrity_risk.
+    threads : int
+        0 (default): one per core. The result does not depend on it: each pair has the answer of a call of its own.
+
+    Returns
+    -------
+    Poses
+        Arrays with a row for each pair. `info` of `estimate_relative_pose` has more of a single one.
+
+    Raises
+    ------
+    ValueError
+        As there; the message begins with the pair's number: "pairs[3].x1".
+    """
+    try:
+        given = list(pairs)
+    except TypeError:
+        raise ValueError(f"pairs: {_check.words(pairs)} is not allowed; expected tuples (x1, x2, camera1, camera2)") from None
+    if len(given) > MAX_PAIRS:
+        raise ValueError(f"pairs: there are {len(given)}; expected at most {MAX_PAIRS}")
+    problems = [_numbered_pair(place, pair) for place, pair in enumerate(given)]
+    for key in ("noise_scale", "integrity_risk"):
+        if isinstance(options, Mapping) and key in options:
+            raise ValueError(f"options: {key} is not allowed here; noise_scale is the fifth element of a pair")
+    chosen = _options(options, 0)
+    limits = _bounds(bounds)
+    threads = _check.whole("threads", threads, 0, 1024)
+    try:
+        answer = _rcme.estimate_many(problems, chosen["sigma_px"], chosen["estimator"], chosen["estimator_file"],
+                                     chosen["options"], chosen["seed"], chosen["allow_process"], limits, threads)
+    except ValueError as error:
+        raise ValueError(f"options: {error}") from None
+    inliers = [np.zeros(len(problem[0]), dtype=bool) for problem in problems]
+    for mask, numbers in zip(inliers, answer["inliers"]):
+        mask[numbers] = True
+    return Poses(np.array(answer["status"], dtype=str), *(answer[key] for key in ("R", "t", "pose_cov", "p_failure")),
+                 np.array(answer["p_failure_domain"], dtype=str),
+                 *(answer[key] for key in ("p_failure_for_bounds", "sigma", "sigma_sd")),
+                 np.array([mask.sum() for mask in inliers], dtype=int), inliers)
 
 
 def estimators() -> dict[str, dict[str, Any]]:
@@ -103,6 +168,21 @@ def _options(options: Optional[Mapping[str, Any]], num_matches: int) -> dict[str
             "estimator_file": "" if file is None else _check.existing("options['estimator_file']", file, "an estimator file"),
             "allow_process": _check.yes_or_no("options['allow_process']", rest.pop("allow_process", False)),
             "options": _check.settings("options", rest)}
+
+
+def _pair(place: str, x1: Any, x2: Any, camera1: Any, camera2: Any) -> tuple[Any, ...]:
+    """The checked parts of a pair; `place` stands before their names in messages."""
+    x1, x2 = _check.points(f"{place}x1", x1), _check.points(f"{place}x2", x2)
+    if len(x1) != len(x2):
+        raise ValueError(f"{place}x2: its shape is {x2.shape}; expected that of x1, {x1.shape}: row i of both is one match")
+    return x1, x2, _check.camera(f"{place}camera1", camera1), _check.camera(f"{place}camera2", camera2)
+
+
+def _numbered_pair(place: int, pair: Any) -> tuple[Any, ...]:
+    if not isinstance(pair, (tuple, list)) or len(pair) not in (4, 5):
+        raise ValueError(f"pairs[{place}]: {_check.words(pair)} is not allowed; expected (x1, x2, camera1, camera2)")
+    checked = _pair(f"pairs[{place}].", *pair[:4])
+    return *checked, _check.scales(f"pairs[{place}].noise_scale", pair[4] if len(pair) == 5 else None, len(checked[0]))
 
 
 def _bounds(bounds: Any) -> list[tuple[float, float]]:

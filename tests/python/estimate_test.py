@@ -99,6 +99,35 @@ class Estimate(unittest.TestCase):
         for here, there in zip(info["other_motions"], said["other_modes"]):
             np.testing.assert_array_equal(here["pose_cov"].ravel(), there["pose_cov"])
 
+    def test_many_pairs_have_the_answers_of_single_calls(self):
+        trials = [rcme.simulate(STUDY, condition=1, trial=number) for number in range(7)]
+        pairs = [tuple(trial[key] for key in ("x1", "x2", "camera1", "camera2")) for trial in trials]
+        pairs[2] = tuple(part[:3] for part in pairs[2][:2]) + pairs[2][2:]  # too few matches
+        pairs[4] += (np.linspace(0.5, 2.0, len(pairs[4][0])),)
+        options, bounds = {"sigma_px": 0.7, "seed": 5}, [(1, 5), (10, 40)]
+        found = rcme.estimate_relative_poses(pairs, options, bounds, threads=2)
+        self.assertEqual(found.R.shape, (7, 3, 3))
+        self.assertEqual(found.status[2], "too_few_matches")
+        self.assertTrue(np.isnan(found.R[2]).all() and np.isnan(found.pose_cov[2]).all() and np.isnan(found.p_failure[2]))
+        for i, pair in enumerate(pairs):
+            scales = {"noise_scale": pair[4]} if len(pair) == 5 else {}
+            pose, info = rcme.estimate_relative_pose(*pair[:4], {**options, **scales}, bounds)
+            self.assertEqual(found.status[i], info["status"])
+            np.testing.assert_array_equal(found.inliers[i], info["inliers"])
+            self.assertEqual(found.num_inliers[i], info["num_inliers"])
+            self.assertEqual(found.p_failure_domain[i], info["p_failure_domain"])
+            if pose is None:
+                continue
+            for here, there in ((found.R[i], pose.R), (found.t[i], pose.t), (found.pose_cov[i], info["pose_cov"]),
+                                (found.p_failure[i], info["p_failure"]), (found.sigma[i], info["sigma"]),
+                                (found.p_failure_for_bounds[i], [p["p_failure"] for p in info["p_failure_for_bounds"]])):
+                np.testing.assert_array_equal(here, there)
+        for threads in (1, 8):
+            again = rcme.estimate_relative_poses(pairs, options, bounds, threads)
+            for here, there in zip(found[:-1], again[:-1]):
+                np.testing.assert_array_equal(here, there)
+        self.assertEqual(rcme.estimate_relative_poses([]).R.shape, (0, 3, 3))
+
     def test_cameras_in_every_form(self):
         fx, fy, cx, cy = self.trial["camera1"]["params"]
         K = np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])

@@ -1,0 +1,46 @@
+#include "experiments/core/work/make_in_order.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <numeric>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace rcme {
+namespace {
+
+class MakeInOrderTest : public testing::TestWithParam<int> {};
+
+TEST_P(MakeInOrderTest, TakesEveryValueInItsOrderHoweverLongItTook) {
+  std::vector<std::int64_t> taken, expected(300);
+  std::iota(expected.begin(), expected.end(), 0);
+  const auto make = [](std::int64_t i) {
+    if (i % 7 == 0) std::this_thread::sleep_for(std::chrono::microseconds(300));
+    return i;
+  };
+  MakeInOrder(300, GetParam(), make, [&](std::int64_t i) { taken.push_back(i); });
+  EXPECT_EQ(taken, expected);
+}
+
+TEST_P(MakeInOrderTest, AnErrorEndsItAfterTheValuesBefore) {
+  std::vector<int> taken;
+  const auto make = [](std::int64_t i) {
+    if (i == 20) throw std::runtime_error("no such file");
+    return static_cast<int>(i);
+  };
+  EXPECT_THROW(MakeInOrder(1000, GetParam(), make, [&](int i) { taken.push_back(i); }), std::runtime_error);
+  ASSERT_LE(taken.size(), 20u);
+  for (size_t i = 0; i < taken.size(); ++i) EXPECT_EQ(taken[i], static_cast<int>(i));
+}
+
+INSTANTIATE_TEST_SUITE_P(Threads, MakeInOrderTest, testing::Values(1, 2, 8));
+
+TEST(MakeInOrder, NothingIsMadeOfNothing) {
+  MakeInOrder(
+      0, 2, [](std::int64_t i) { return i; }, [](std::int64_t) { FAIL(); });
+}
+
+}  // namespace
+}  // namespace rcme
