@@ -340,6 +340,7 @@ void SummaryOfGroups::Append(const SummaryCell& cell) {
   row.condition = num_groups_++;
   if (!run_.stopping_rule.empty()) row.interval_kind = IntervalKind::kAnytimeValid;
   cell.AppendRows(run_, row, &summary_.rows);
+  if (num_groups_ == 1) summary_.rows.reserve(summary_.rows.size() * summary_.levels.size());
 }
 
 Summary SummaryOfGroups::Finish(bool with_times) {
