@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "stats/area_under_curve.h"
 #include "stats/calibration_error.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
@@ -362,6 +363,43 @@ void MeasureCalibrationErrors(int repetitions, Tables* tables) {
   }
 }
 
+// ---- area under the curve of failures against successes, by stated probability
+
+std::vector<ScoreCluster> ClusterByCondition(const std::vector<Forecast>& forecasts, int num_conditions) {
+  std::vector<ScoreCluster> clusters(static_cast<size_t>(num_conditions));
+  for (const Forecast& forecast : forecasts) {
+    ScoreCluster& cluster = clusters[static_cast<size_t>(forecast.cluster)];
+    (forecast.happened ? cluster.positives : cluster.negatives).push_back(forecast.probability);
+  }
+  return clusters;
+}
+
+void MeasureAreas(int repetitions, Tables* tables) {
+  constexpr int kManyConditions = 400'000;
+  std::uint32_t number = 0;
+  for (const ForecastLaw& law : kForecastLaws) {
+    RandomStream truth_rng = MakeStream(number, 167);
+    const double truth =
+        MeasureClusteredAreaUnderCurve(
+            ClusterByCondition(DrawForecasts(law, kManyConditions, 5, truth_rng), kManyConditions))
+            .value;
+    for (const int m : {6, 30, 200}) {
+      RandomStream rng = MakeStream(number++, 168);
+      Coverage coverage;
+      coverage.has_pooled = false;
+      for (int repetition = 0; repetition < repetitions; ++repetition) {
+        const std::vector<Forecast> forecasts = DrawForecasts(law, m, 60, rng);
+        const auto num_failed = std::ranges::count(forecasts, true, &Forecast::happened);
+        const bool has_both = num_failed > 0 && num_failed < std::ssize(forecasts);
+        coverage.Add(has_both ? MeasureClusteredAreaUnderCurve(ClusterByCondition(forecasts, m)).interval
+                              : Interval{0.0, 1.0},
+                     truth, {});
+      }
+      tables->Add({"area_under_curve", "asked", "common", law.name, "60", m, kNaN, truth}, coverage);
+    }
+  }
+}
+
 bool Write(const std::string& path, const std::string& text) {
   std::FILE* file = std::fopen(path.c_str(), "w");
   if (file == nullptr) return false;
@@ -380,6 +418,7 @@ bool Measure(const std::string& folder, int repetitions) {
   MeasureMedians("asked", {6, 30, 200}, repetitions, 0, &tables);
   MeasureMedians("other", {12, 100}, repetitions, 1000, &tables);
   MeasureCalibrationErrors(std::max(1, repetitions / 4), &tables);
+  MeasureAreas(std::max(1, repetitions / 4), &tables);
   return Write(folder + "/population_coverage.csv", tables.Cells()) &&
          Write(folder + "/population_summary.csv", tables.Summary());
 }
