@@ -30,6 +30,7 @@ bool CandidateSet::MeetsSizeCondition(const Candidate& candidate) const {
   return candidate.score.num_inliers >= bound * (1.0 - 1e-12);  // n_j / n * n may round to more than n_j
 }
 
+// |C|: of the hypotheses that passed the quality test, those that are large enough (eq::candidate-set).
 int CandidateSet::CountMembers() const {
   return static_cast<int>(std::count_if(passed_.begin(), passed_.end(), [this](const Candidate& candidate) {
     return MeetsSizeCondition(candidate);

@@ -14,6 +14,7 @@ SampleRays<Solver>::SampleRays(const MotionProblem& problem, const Sample& sampl
   }
 }
 
+// p_j of f_j (eq::motion_estimate).
 template <typename Solver>
 std::optional<Hypothesis<Solver>> HypothesisFromModel(const MotionProblem& problem, const HypothesisId& id,
                                                       const typename Solver::Model& model) {
@@ -28,6 +29,7 @@ std::optional<Hypothesis<Solver>> HypothesisFromModel(const MotionProblem& probl
   return hypothesis;
 }
 
+// Every f_j of S_j (eq::model_instantiate), by the minimal solver.
 template <typename Solver>
 ModelList<Hypothesis<Solver>, Solver::kMaxModels> InstantiateModels(const MotionProblem& problem,
                                                                     const Sample& sample) {
@@ -47,6 +49,7 @@ std::optional<Hypothesis<Solver>> InstantiateModel(const MotionProblem& problem,
   return hypotheses.models[static_cast<size_t>(id.model)];
 }
 
+// Sigma_p = J_p Sigma_f J_p' (eq::cov_p). Of at most five matches it is L L' with L = J_p G D^(1/2).
 template <typename Solver>
 void PropagateCovariance(const MotionProblem& problem, Hypothesis<Solver>* hypothesis) {
   constexpr int m = Solver::kSampleSize;

@@ -10,6 +10,7 @@ DecidingScore FindDecidingScore(Selection selection) {
   return selection == Selection::kMeanEntropy ? DecidingScore::kMeanEntropy : DecidingScore::kCost;
 }
 
+// By mean entropy, the smaller is better (eq::model_select_entropy).
 bool IsBetter(const InlierScore& a, const InlierScore& b, DecidingScore decides) {
   switch (decides) {
     case DecidingScore::kNumInliers:

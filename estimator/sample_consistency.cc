@@ -5,6 +5,7 @@
 
 namespace rcme {
 
+// The statistic of the joint test of a sample (eq::sample-p-test).
 template <int dof>
 double MisfitStatistic(const EssentialProjection& projection, const Vector9d& f, const Matrix9d& f_cov) {
   // The motions and the scale move U [e12 - e21, e31, e32, e13, e23, e11 + e22] V'.

@@ -8,6 +8,7 @@
 
 namespace rcme {
 
+// The bounds of the point test (eq::find-inlier), of the sample test (eq. 12) and of Z_j (eq. 19).
 Thresholds Thresholds::For(const MotionProblem& problem, const RansacOptions& options, int point_dof,
                            int sample_dof) {
   const double confidence = 1.0 - options.significance_level;

@@ -47,6 +47,7 @@ class RcmeDecision {
       : quality_test_(options.quality_test),
         deciding_score_(FindDecidingScore(options.selection)),
         normal_quantile_(thresholds.normal) {}
+  // Z_j passes (eq::inlier-quality-test): one of the two conditions of C (eq::candidate-set).
   bool AcceptsInlierSet(double z) const { return PassesQualityTest(z, normal_quantile_, quality_test_); }
   DecidingScore deciding_score() const { return deciding_score_; }
 

@@ -25,11 +25,13 @@ double SquaredSampsonDistance(const Eigen::Matrix3d& F, const Correspondence& ma
   return constraint.g * constraint.g / constraint.squared_gradient();
 }
 
+// delta (eq::sampson_error_vec).
 Eigen::Vector4d SampsonVector(const Eigen::Matrix3d& F, const Correspondence& match) {
   const EpipolarConstraint constraint = EvaluateConstraint(F, match);
   return -constraint.g / constraint.squared_gradient() * constraint.gradient;
 }
 
+// J_X of Sigma_delta (eq::cov_sampson_error_vec).
 Eigen::Matrix4d SampsonVectorPointJacobian(const Eigen::Matrix3d& F, const Correspondence& match) {
   const EpipolarConstraint c = EvaluateConstraint(F, match);
   const double n2 = c.squared_gradient();
@@ -38,6 +40,7 @@ Eigen::Matrix4d SampsonVectorPointJacobian(const Eigen::Matrix3d& F, const Corre
   return -(c.gradient * J + c.g * H - (2.0 * c.g / n2) * c.gradient * (J * H)) / n2;
 }
 
+// J_p of Sigma_delta (eq::cov_sampson_error_vec).
 Eigen::Matrix<double, 4, 5> SampsonVectorPoseJacobian(const Eigen::Matrix3d& F,
                                                       const std::array<Eigen::Matrix3d, 5>& dF_dp,
                                                       const Correspondence& match) {

@@ -73,7 +73,8 @@ HWY_INLINE void Solve(Equations& e) {
   }
 }
 
-// dF of some lanes; returns where they are finite and the motion is an isolated solution.
+// dF of some lanes, along the columns of L, whose L L' is Sigma_p (eq::cov_p) in the basis T; returns where
+// they are finite and the motion is an isolated solution.
 HWY_INLINE Mask FillDerivatives(const SampleLanes<5>& sample, const EssentialBasis& basis, const Vec* f,
                                 const Whitening& whitening, int lane, HypothesisBlock* block) {
   Equations equations = MakeEquations(sample, whitening, basis, f);
@@ -89,7 +90,7 @@ HWY_INLINE Mask FillDerivatives(const SampleLanes<5>& sample, const EssentialBas
   return hn::And(hn::IsFinite(sum), equations.smallest_pivot > Set(1e-9) * equations.largest_pivot);
 }
 
-// Lanes [lane, lane + kLanes) of the block.
+// Lanes [lane, lane + kLanes) of the block: the motion of f (eq::motion_estimate), and its spread.
 template <bool has_spread>
 HWY_INLINE Mask FillLanes(const EssentialBlock& essentials, const Whitening& whitening, int lane,
                           HypothesisBlock* block) {

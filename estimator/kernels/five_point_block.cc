@@ -60,6 +60,7 @@ void WriteModels(const RecoveredRoots& roots, const Brackets& brackets, FivePoin
   }
 }
 
+// Every f of eight samples, as E (eq::model_instantiate).
 void FindModels(const FivePointSamples& samples, FivePointModels* models) {
   BlockPolynomials polynomials;
   Brackets brackets;

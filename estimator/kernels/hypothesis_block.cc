@@ -107,6 +107,7 @@ HWY_INLINE Mask FillDerivatives(const ConstraintFactors& factors, const Essentia
   return hn::IsFinite(trace);
 }
 
+// The statistic of the joint test of a sample (eq::sample-p-test).
 HWY_INLINE void FillSampleStatistic(const ConstraintFactors& factors, const EssentialBasis& basis,
                                     const Vec* D, int lane, HypothesisBlock* block) {
   Vec N[3][9], cov[3][3];
@@ -115,7 +116,8 @@ HWY_INLINE void FillSampleStatistic(const ConstraintFactors& factors, const Esse
   Store(SquaredMahalanobis(basis.misfit, cov), block->sample_statistic + lane);
 }
 
-// Lanes [lane, lane + kLanes) of the block.
+// Lanes [lane, lane + kLanes) of the block: f (eq::model_instantiate), its motion (eq::motion_estimate), and
+// what else `outputs` asks for.
 template <RequestedOutputs outputs>
 HWY_INLINE Mask FillLanes(const Whitening& whitening, int lane, HypothesisBlock* block) {
   const SampleLanes<8> sample(*block, lane);

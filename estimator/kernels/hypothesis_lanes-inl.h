@@ -28,7 +28,8 @@ struct SampleLanes {
   }
 };
 
-// Matrices in rays to whitened coordinates: entry (i, j) times second[i] first[j].
+// Matrices in rays to whitened coordinates, entry (i, j) times second[i] first[j]
+// (eq::model_motion_relation).
 struct Whitening {
   Vec first[3], second[3];
   explicit Whitening(const RayScale& s)

@@ -69,7 +69,7 @@ HWY_INLINE void Factor(ConstraintFactors& factors) {
   (std::make_integer_sequence<int, 8>());
 }
 
-// The last column of Q.
+// f, the last column of Q (eq::model_instantiate).
 HWY_INLINE void NullVector(const ConstraintFactors& factors, Vec* f) {
   for (int i = 0; i < 8; ++i) f[i] = Set(0.0);
   f[8] = Set(1.0);
@@ -80,7 +80,8 @@ HWY_INLINE void NullVector(const ConstraintFactors& factors, Vec* f) {
 }
 
 // G'b, 8 numbers each, for m 9-vectors b, which are overwritten: the solution y of R1 y = (Q'b)_top, G = A
-// R1^-T. Side by side, because each alone is one long chain of dependent operations.
+// R1^-T, Sigma_f = G D G' (eq. 6). Side by side, because each alone is one long chain of dependent
+// operations.
 template <int m>
 HWY_INLINE void ApplyGainTransposed(const ConstraintFactors& factors, Vec (&b)[m][9], Vec (*y)[8]) {
   [&]<int... k>(std::integer_sequence<int, k...>) {

@@ -111,6 +111,7 @@ HWY_INLINE PrintedDistance EvaluatePrinted(const Model& model, const Matches& ma
   return distance;
 }
 
+// d2 <= threshold, of a match (eq::find-inlier) or of a sample's own (eq. 12).
 HWY_INLINE Mask IsWithin(const PrintedDistance& distance, Vec threshold) {
   return hn::And(distance.numerator <= threshold * distance.denominator, distance.is_regular);
 }

@@ -17,8 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Calls visit(matches, are_matches) for every vector of matches, and keeps what it returns: the inliers and
-// their spreads.
+// Calls visit(matches, are_matches) for every vector of matches, and keeps what it returns: the inliers
+// (eq::find-inlier) and their spreads.
 struct Visited {
   Mask is_inlier;
   Vec spread;
@@ -152,8 +152,8 @@ double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const
   });
 }
 
-// Entropies (eq. 15), their mean and the sum of squares about it (eq. 16). Two passes: the sum loses no
-// digits. `spreads` may be read beyond count, up to a block.
+// The entropies of the inliers (eq::score-inliers, eq. 15), their mean and the sum of squares about it
+// (eq. 16). Two passes: the sum loses no digits. `spreads` may be read beyond count, up to a block.
 void SumEntropies(const double* spreads, int count, double offset, double* mean, double* sum_squares) {
   const Vec half = Set(0.5), shift = Set(offset);
   const auto entropy = [&](int i) {
@@ -190,6 +190,7 @@ struct ModelPerLane {
   HWY_INLINE Rows dF(int k) const { return {block.dF[k], lane}; }
 };
 
+// Whether every match of a sample agrees with its own motion (eq::sample-p-test, eq. 12).
 unsigned TestSamples(const HypothesisBlock& block, double threshold) {
   const Vec limit = Set(threshold);
   unsigned bits = 0;

@@ -5,6 +5,7 @@
 
 namespace rcme {
 
+// f of eight matches (eq::model_instantiate), and the gain G of its covariance G D G' (eq. 6).
 std::optional<LinearModel> EightPoint::Solve(const Rays& rays1, const Rays& rays2) {
   using Matrix8d = Eigen::Matrix<double, 8, 8>;
   Eigen::Matrix<double, 9, 8> M_transposed;

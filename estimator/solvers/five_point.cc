@@ -131,6 +131,7 @@ std::optional<FivePoint::Model> ComputeModel(const Eigen::Matrix3d& E, const Eig
 
 }  // namespace
 
+// Every f of five matches, as E (eq::model_instantiate).
 FivePoint::Solutions FivePoint::Solve(const Rays& rays1, const Rays& rays2) {
   Solutions solutions;
   Rays unit_rays1, unit_rays2;

@@ -64,7 +64,7 @@ Eigen::Matrix<double, static_cast<int>(m), 9> ConstraintRows(const std::array<Ei
 
 // G of a model that m equations C f = 0 determine on an m-dimensional manifold, by implicit differentiation:
 // along the manifold delta f = T y, T (9 x m) its tangent at f, and C (f + T y) + n = 0, so y = -(C T)^-1 n
-// and G = T (C T)^-1. In the coordinates y this is the paper's exact case: Sigma_y = (C T)^-1 D (C T)^-T.
+// and G = T (C T)^-1. In the coordinates y it gives the exact case (eq. 5): Sigma_y = (C T)^-1 D (C T)^-T.
 // Nothing if C T is singular (smallest pivot below 1e-9 of the largest): the solution is not isolated.
 template <int m>
 std::optional<Eigen::Matrix<double, 9, m>> ImplicitGain(const Eigen::Matrix<double, m, 9>& C,

@@ -13,6 +13,7 @@ Eigen::Matrix3d MakeEssential(double cos_h, double sin_h) {
 
 }  // namespace
 
+// f of one match (eq::model_instantiate).
 ModelList<OnePoint::Model, OnePoint::kMaxModels> OnePoint::FindModels(const Rays& rays1, const Rays& rays2) {
   ModelList<Model, kMaxModels> models;
   const Eigen::Vector3d &a = rays1[0], &b = rays2[0];

@@ -63,6 +63,7 @@ std::optional<SevenPoint::Model> ModelFrom(const Eigen::Matrix3d& F, const Eigen
 
 }  // namespace
 
+// Every f of seven matches (eq::model_instantiate).
 ModelList<SevenPoint::Model, SevenPoint::kMaxModels> SevenPoint::FindModels(const Rays& rays1,
                                                                             const Rays& rays2) {
   ModelList<Model, kMaxModels> models;

@@ -21,6 +21,7 @@ Matrix9d SampleInformation(const Vector9d& f, const Camera& camera1, const Camer
   return information;
 }
 
+// Sigma_f as printed (eq. 6).
 Matrix9d OverdeterminedCovariance(const Matrix9d& information, const Eigen::Matrix<double, 9, 8>& A) {
   const Eigen::Matrix<double, 8, 8> reduced = A.transpose() * information * A;
   return A * reduced.fullPivLu().inverse() * A.transpose();
@@ -33,6 +34,7 @@ Eigen::Matrix<double, 9, 8> HouseholderColumns(const Vector9d& f, int onto) {
   return reflection.leftCols<8>();
 }
 
+// The statistic (eq::mahalanobis_dist_F) with the pseudo-inverse in the place of the inverse.
 double RankOneDistance(const Eigen::Vector4d& delta, const Eigen::Matrix4d& delta_cov) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(delta_cov);
   const double along = eigen.eigenvectors().col(3).dot(delta);

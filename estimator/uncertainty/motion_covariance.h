@@ -17,9 +17,10 @@ namespace rcme {
 // Variance of the constraint g = x2' F x1 of a match: sigma^2 |J|^2, F in pixels.
 double ConstraintVariance(const Eigen::Matrix3d& F, const Correspondence& match, double sigma_px);
 
-// Sigma_f = G D G' (9x9) of a model with gain G (9 x m), in rays, and constraint variances D (m). Of eight
-// points (rank 8, null direction f) it equals the paper's overdetermined case A (A' J_Omega' Sigma_X^-1
-// J_Omega A)^-1 A' (eq. 6) with dOmega/df the minimum-norm implicit derivative.
+// Sigma_f = G D G' (9x9) of a model with gain G (9 x m), in rays, and constraint variances D (m). With the G
+// of ImplicitGain it is the exact case (eq. 5), T Sigma_y T'. Of eight points (rank 8, null direction f) it
+// equals the paper's overdetermined case A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' (eq. 6) with dOmega/df
+// the minimum-norm implicit derivative.
 template <int m>
 Matrix9d CovarianceOfF(const Eigen::Matrix<double, 9, m>& G,
                        const Eigen::Matrix<double, m, 1>& constraint_variances) {

@@ -2,6 +2,7 @@
 
 namespace rcme {
 
+// Sigma_delta (eq::cov_sampson_error_vec).
 Eigen::Matrix4d CovarianceOfSampsonVector(const Eigen::Matrix3d& F,
                                           const std::array<Eigen::Matrix3d, 5>& dF_dp,
                                           const Matrix5d& pose_cov, double sigma_px,

@@ -2,6 +2,8 @@
 
 namespace rcme {
 
+// The J_p of Sigma_p (eq::cov_p).
+//
 // F = U S V' with rotations U, V and S = diag(s1, s2, s3), s3 of either sign. With the skew matrices Omega_U
 // = U' dU, Omega_V = V' dV and Q = U' dF V,
 //

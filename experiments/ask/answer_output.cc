@@ -44,7 +44,7 @@ Lines DescribeAnswer(const Answer& a) {
     lines.emplace_back("Trust in P", fmt::format("states {:.2f} % on average; fail: {}",
                                                  100.0 * a.stated.value, percent(a.failed)));
   }
-  lines.emplace_back("Covariance", "95 % region holds the truth in " + percent(a.coverage));
+  lines.emplace_back("Covariance", "95 % region contains the truth in " + percent(a.coverage));
   lines.emplace_back(
       "Time",
       fmt::format("{:.3g} ms a call{}", a.best.time_ms,

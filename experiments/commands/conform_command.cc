@@ -140,7 +140,7 @@ void AddConformCommand(CLI::App& app) {
   command->footer(R"(Runs one estimator on the problems of a study (simulated ones, your own pairs with their
 truth, or a twin of your pairs) and writes a file with what they teach:
 
-  region       factors that make its covariance hold the truth as often as promised, also
+  region       factors that make its covariance contain the truth as often as promised, also
                among the answers that look hardest (split conformal prediction)
   probability  that an answer is wrong, from what can be seen of it
   accept rule  which answers to refuse so that few are wrong and accepted (learn then test)
@@ -177,7 +177,7 @@ Examples:
           "a file of `rcme conform`, of simulated problems for example, whose models of difficulty and "
           "failure are taken: then all answers set promises and none trains models")
       ->excludes("--check");
-  command->add_option("--level", arguments->promise.level, "probability that a region holds the truth")
+  command->add_option("--level", arguments->promise.level, "probability that a region contains the truth")
       ->transform(NumberIn({0.51, 0.999}))
       ->capture_default_str();
   command

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "estimator/loop_inspection.h"
 #include "experiments/commands/commands.h"
@@ -36,7 +37,8 @@ struct EstimateArguments {
   double sigma_px = 0.5;
   std::int64_t seed = 1;
   std::vector<std::string> bounds;
-  int threads = 0;  // 0: one per core
+  std::optional<double> integrity_risk;  // nothing: no protection levels are asked for
+  int threads = 0;                       // 0: one per core
   bool as_json = false;
 };
 
@@ -138,8 +140,10 @@ class Answerer {
     answer.for_bounds = std::move(found.probabilities);
     answer.record = Score(answer.estimate, data, 0.0);
     answer.has_truth_sd = data.truth.sd.has_value();
-    if (answer.estimate.status == MotionStatus::kOk)
-      answer.evidence = ComputeEvidence(data.problem, answer.estimate);
+    if (answer.estimate.status != MotionStatus::kOk) return answer;
+    answer.evidence = ComputeEvidence(data.problem, answer.estimate);
+    if (const std::optional<double> risk = arguments_.integrity_risk)
+      answer.protection = {*risk, ComputeProtectionLevels(answer.estimate, *risk)};
     return answer;
   }
 
@@ -386,6 +390,11 @@ matches, all matches on a line).)");
                    "direction by more than D deg, from the same fit; may be given several times; only "
                    "rcme_calibrated")
       ->allow_extra_args(false);
+  command
+      ->add_option("--integrity-risk", arguments->integrity_risk,
+                   "also state the angles that the errors of rotation and direction exceed with at most this "
+                   "probability each")
+      ->transform(NumberIn({1e-12, 0.999}));
   command
       ->add_option("--threads", arguments->threads,
                    "of many files; 0: one per core. Answers and their order do not depend on it")

@@ -234,7 +234,8 @@ std::vector<std::string> DescribePromises(const ConformRule& rule) {
   std::vector<std::string> promises = {fmt::format(
       "Region: for another problem {}, the ellipsoid of the conformed covariance at {:.3g} % (chi-square, 5 "
       "degrees "
-      "of freedom) holds the truth with probability at least {:.3g} %{}. It is an average over calibrations.",
+      "of freedom) contains the truth with probability at least {:.3g} %{}. It is an average over "
+      "calibrations.",
       population, 100.0 * rule.level, 100.0 * rule.level, strata)};
   const auto num_all = std::ranges::count_if(rule.factors, [](double x) { return !std::isfinite(x); });
   if (num_all > 0)

@@ -79,7 +79,7 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
     findings.push_back(
         {farthest,
          fmt::format(
-             "Coverage: the 95 % regions that {} states hold the truth in {}{}: they are too {}{}.", label,
+             "Coverage: the 95 % regions that {} states contain the truth in {}{}: they are too {}{}.", label,
              RateAt(summary, *worst), summary.is_of_population ? " over the population" : "",
              worst->value < kStatedCoverage ? "small" : "large",
              num_known > 1 ? fmt::format(", and far off in {} of {} conditions", num_off, num_known) : "")});

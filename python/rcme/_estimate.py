@@ -180,7 +180,8 @@ def _pair(place: str, x1: Any, x2: Any, camera1: Any, camera2: Any) -> tuple[Any
 
 def _numbered_pair(place: int, pair: Any) -> tuple[Any, ...]:
     if not isinstance(pair, (tuple, list)) or len(pair) not in (4, 5):
-        raise ValueError(f"pairs[{place}]: {_check.words(pair)} is not allowed; expected (x1, x2, camera1, camera2)")
+        given = f"a {type(pair).__name__} of {len(pair)}" if isinstance(pair, (tuple, list)) else _check.words(pair)
+        raise ValueError(f"pairs[{place}]: {given} is not allowed; expected (x1, x2, camera1, camera2), or noise_scale as a fifth")
     checked = _pair(f"pairs[{place}].", *pair[:4])
     return *checked, _check.scales(f"pairs[{place}].noise_scale", pair[4] if len(pair) == 5 else None, len(checked[0]))
 

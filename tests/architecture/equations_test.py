@@ -1,6 +1,7 @@
-"""docs/equations.md says where the paper's equations are: every file it names exists and cites the equation, every test
-includes a file of its row, every claim is one of the audit's and stands in the file beside it, and no label is cited in the code that it does not list. Needs nothing but this
-repository; the claims are those of the program in the environment variable RCME, without which they are not checked."""
+"""docs/equations.md says where the paper's equations are: every file it names exists and cites the equation, a header does so
+at code of its own, every test is of a file of its row, every claim is one of the audit's and stands in the file beside it, and
+no label is cited in the code that it does not list. Needs nothing but this repository; the claims are those of the program in
+the environment variable RCME, without which they are not checked."""
 
 import os
 import pathlib
@@ -16,6 +17,10 @@ ROOMS = ["parameters", "stats", "estimator", "simulator", "experiments", "plots"
 LABEL = re.compile(r"\beq::?[A-Za-z][A-Za-z0-9_-]*")
 NUMBER = re.compile(r"(?<![A-Za-z0-9] )\beq\. (\d+)(?![\d.])")
 IN_CODE_STYLE = re.compile(r"`([^`]+)`")
+NO_CODE = re.compile(r"//[^\n]*|/\*.*?\*/|^[ \t]*#(?:[^\n]*\\\n)*[^\n]*|\"(?:\\.|[^\"\\\n])*\"|'(?:\\.|[^'\\\n])*'",
+                     re.DOTALL | re.MULTILINE)
+HEAD_OF_A_FUNCTION = re.compile(r"\)(?:\s|const|noexcept|override|final|&|->[\w\s:<>,*&]+)*$")
+INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
 
 
 def tables(text):
@@ -55,16 +60,62 @@ def missing_citations(rows, read):
     return wrong
 
 
+def functions(text):
+    """The functions with a body in the text of a header, each with the comment above it."""
+    code = NO_CODE.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+    found, begin, parentheses, place = [], 0, 0, 0
+    while place < len(code):
+        parentheses += {"(": 1, ")": -1}.get(code[place], 0)
+        is_body = code[place] == "{" and not parentheses and HEAD_OF_A_FUNCTION.search(code[begin:place])
+        if is_body and not re.search(r"\bconcept\b", code[begin:place]):
+            depth, place = 1, place + 1
+            while depth and place < len(code):
+                depth += {"{": 1, "}": -1}.get(code[place], 0)
+                place += 1
+            found.append(text[begin:place])
+            begin = place
+            continue
+        place += 1
+        if code[place - 1] in "{};" and not parentheses:
+            end = (code + "\n").index("\n", place)
+            begin = end if not code[place:end].strip() else place  # what is said behind a member is of the member
+    return found
+
+
+def source_of(header):
+    return re.sub(r"\.h$", ".cc", header)
+
+
+def mere_declarations(files, label, read):
+    """The headers of a row whose code is elsewhere: the source beside it, which the row does not name, has it, and no function
+    in the header cites the label (without a label: the header has no function)."""
+    idle = []
+    for header in files:
+        source = source_of(header)
+        if source == header or source in files or read(source) is None:
+            continue
+        found = functions(read(header) or "")
+        if not (any(label in cited(function) for function in found) if label else found):
+            idle.append(header)
+    return idle
+
+
+def reached(test, read):
+    """The files that a test is of: those that it includes, and those that the header it is named after, or its source, does."""
+    subject = "estimator/" + test.removesuffix("_test.cc") + ".h"
+    texts = [read(f"tests/estimator/{test}"), read(subject), read(source_of(subject))]
+    return {file for text in texts for file in INCLUDE.findall(text or "")}
+
+
 def tests_without_their_subject(rows, read):
-    """Of the rows of the first table, the tests that do not exist or include no file that the row names, as sentences."""
+    """Of the rows of the first table, the tests that do not exist or are of no file that the row names, as sentences."""
     wrong = []
     for number, _, _, reference, fast, tests, *_ in rows:
         headers = [re.sub(r"\.cc$", ".h", path) for path in quoted(reference) + quoted(fast)]
         if not quoted(tests):
             wrong.append(f"equation {number}: no test")
         for test in quoted(tests):
-            text = read(f"tests/estimator/{test}")
-            if text is None or not any(f'"{header}"' in text for header in headers):
+            if read(f"tests/estimator/{test}") is None or reached(test, read).isdisjoint(headers):
                 wrong.append(f"equation {number}: {test} does not exist or includes none of {headers}")
     return wrong
 
@@ -99,6 +150,8 @@ def claims_of_the_program(program):
 
 
 class Equations(unittest.TestCase):
+    maxDiff = None
+
     def setUp(self):
         self.text = PAGE.read_text(encoding="utf-8")
         _, self.equations, self.parts = tables(self.text)
@@ -117,11 +170,56 @@ class Equations(unittest.TestCase):
             for path in quoted(row[2]):
                 self.assertIsNotNone(read_source(path), path)
 
+    def test_no_header_is_named_that_only_declares(self):
+        wrong = []
+        for row in self.equations:
+            for files in (quoted(row[3]), quoted(row[4])):
+                wrong += [f"equation {row[0]}: {header}" for header in mere_declarations(files, quoted(row[1])[0], read_source)]
+        for row in self.parts:
+            wrong += [f"{row[0]}: {header}" for header in mere_declarations(quoted(row[2]), None, read_source)]
+        self.assertEqual(wrong, [])
+
     def test_every_test_is_of_a_file_of_its_row(self):
         self.assertEqual(tests_without_their_subject(self.equations, read_source), [])
 
     def test_every_claim_is_in_the_file_beside_it(self):
         self.assertEqual(misplaced_claims(self.equations + self.parts, read_source), [])
+
+    def test_a_header_that_only_declares_is_seen(self):
+        declares = """// Of a file (eq::cov_p).
+            #define BODY(x) (x) { return x; }
+            namespace n {
+            struct Model {
+              double p = 0.0;  // a member (eq::cov_p)
+              double twice() const { return 2.0 * p; }
+            };
+            template <typename T>
+            concept Motion = requires(T motion) { { motion.p(std::array<int, 2>{}) } -> Same; };  // (eq::cov_p)
+            // A function (eq::cov_p).
+            Matrix Covariance(const Model& model, Options options = {});
+            }"""
+        declared = "Matrix Covariance(const Model& model, Options options = {});"
+        texts = {"a.h": declares, "a.cc": "", "b.h": declares}
+        self.assertEqual(mere_declarations(["a.h", "b.h", "c.cc"], "eq::cov_p", texts.get), ["a.h"])
+        self.assertEqual(mere_declarations(["a.h", "a.cc"], "eq::cov_p", texts.get), [])
+        self.assertEqual(mere_declarations(["a.h"], None, texts.get), [], "it has a function, though not of this equation")
+        texts["a.h"] = declares.replace("double twice() const { return 2.0 * p; }", "double twice() const;")
+        self.assertEqual(mere_declarations(["a.h"], None, texts.get), ["a.h"])
+        for body in ["inline " + declared[:-1] + " { return {}; }",
+                     "template <int m>\nMatrix Covariance(const Model& model) noexcept {\n  for (;;) { }\n}",
+                     "struct Root {\n  // (eq::cov_p)\n  explicit Root(int n) : L_(n), text_(\"{\") {}\n};",
+                     "auto Covariance() -> Matrix<3, 3> { return {}; /* (eq::cov_p) } */ }"]:
+            texts["a.h"] = declares.replace(declared, body)
+            self.assertNotEqual(texts["a.h"], declares)
+            self.assertEqual(mere_declarations(["a.h"], "eq::cov_p", texts.get), [], body)
+
+    def test_a_test_is_of_what_its_subject_includes(self):
+        row = ["7", "`eq::cov_p`", "", "`estimator/k/x-inl.h`", "—", "`k/a_test.cc`, `k/b_test.cc`", "", ""]
+        of_a = '#include "estimator/k/a.h"'
+        texts = {"tests/estimator/k/a_test.cc": of_a, "tests/estimator/k/b_test.cc": of_a,
+                 "estimator/k/a.h": "", "estimator/k/a.cc": '#include "estimator/k/x-inl.h"'}
+        self.assertEqual(tests_without_their_subject([row], texts.get),
+                         ["equation 7: k/b_test.cc does not exist or includes none of ['estimator/k/x-inl.h']"])
 
     def test_a_wrong_test_or_file_of_a_claim_is_seen(self):
         row = ["7", "`eq::cov_p`", "", "`a.cc`", "—", "`a_test.cc`, `b_test.cc`", "`f.x`, `g.y`", "`f.cc`, `h.cc`"]

@@ -35,7 +35,7 @@ class Conform : public BadInput {
 TEST_F(Conform, WritesAFileAndSaysWhatItPromises) {
   const std::string text = Make();
   EXPECT_THAT(text, HasSubstr("conformed"));
-  EXPECT_THAT(text, HasSubstr("holds the truth with probability at least 95 %"));
+  EXPECT_THAT(text, HasSubstr("contains the truth with probability at least 95 %"));
   EXPECT_THAT(ReadBytes(file_), HasSubstr("\"format\": \"rcme conform 1\""));
   EXPECT_EQ(folder_.NumEntries(), 2);  // the study and the file: no checkpoint is left
 }

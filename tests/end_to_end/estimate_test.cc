@@ -95,6 +95,27 @@ TEST(EstimateBounds, AreOfTheSameFit) {
   EXPECT_THAT(table.out, testing::HasSubstr("P(>1,5)"));
 }
 
+// Nothing else changes; below the stated probability of failure nothing is protected.
+TEST(EstimateIntegrity, StatesTheLevelsOfTheRisk) {
+  const TempFolder folder;
+  const std::string path = folder.Write("pair.csv", MatchHeader() + MatchRows(40));
+  nlohmann::json json = Estimate(path, "rcme_calibrated", {"--integrity-risk", "0.9"});
+  const nlohmann::json wide = json["protection_levels"];
+  EXPECT_EQ(wide["risk"], 0.9);
+  const double cov = json["pose_cov"][0].get<double>() + json["pose_cov"][7].get<double>() +
+                     json["pose_cov"][14].get<double>();
+  EXPECT_GT(wide["rotation_rad"].get<double>(), 0.0);
+  EXPECT_LT(wide["rotation_rad"].get<double>(), std::sqrt(cov));  // its 90 % are exceeded
+  json.erase("protection_levels");
+  EXPECT_EQ(json, Estimate(path, "rcme_calibrated"));
+  const nlohmann::json none = Estimate(path, "rcme_calibrated", {"--integrity-risk", "1e-12"});
+  EXPECT_NEAR(none["protection_levels"]["rotation_rad"].get<double>(), 3.14159265, 1e-6);
+  EXPECT_NEAR(none["protection_levels"]["direction_rad"].get<double>(), 3.14159265, 1e-6);
+  const ProgramResult text = RunRcme({"estimate", path, "--integrity-risk", "0.01"});
+  EXPECT_THAT(text.out, testing::HasSubstr("probability of at most 0.01\n"));
+  EXPECT_NE(RunRcme({"estimate", path, "--integrity-risk", "0"}).exit_code, 0);
+}
+
 TEST(EstimateBounds, AreRefusedWhereTheyAreNone) {
   const TempFolder folder;
   const std::string path = folder.Write("pair.csv", MatchHeader() + MatchRows(40));

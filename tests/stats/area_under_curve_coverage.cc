@@ -1,4 +1,4 @@
-// How often the 95 % interval of the area under the curve holds the truth (results/statistics;
+// How often the 95 % interval of the area under the curve contains the truth (results/statistics;
 // made by `scripts/results area_under_curve`):
 //   area_under_curve_coverage [REPETITIONS, default 4000]
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// How often the 95 % intervals for a population of conditions hold the truth (results/population; made by
+// How often the 95 % intervals for a population of conditions contain the truth (results/population; made by
 // `scripts/results population_coverage`):
 //   population_coverage FOLDER [REPETITIONS, default 4000]
 #include <fmt/format.h>

@@ -92,6 +92,13 @@ std::string ForBoundsText(const std::vector<ProbabilityForBounds>& for_bounds) {
   return text;
 }
 
+std::string ProtectionText(const LevelsAtRisk& at) {
+  return fmt::format(
+      "  levels     rotation {:.3g} deg, direction {:.3g} deg: an error beyond either has a\n"
+      "             probability of at most {:g}\n",
+      kDegPerRad * at.levels.rotation_rad, kDegPerRad * at.levels.direction_rad, at.risk);
+}
+
 std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const EstimatorSpec& spec) {
   const MotionEstimate& estimate = answer.estimate;
   std::string text = "\nHow sure\n";
@@ -108,6 +115,7 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
       "  95 %       rotation within {:.2g} x {:.2g} x {:.2g} deg, direction within {:.2g} x {:.2g} deg\n",
       spread.rotation_95_deg(0), spread.rotation_95_deg(1), spread.rotation_95_deg(2),
       spread.direction_95_deg(0), spread.direction_95_deg(1));
+  if (answer.protection) text += ProtectionText(*answer.protection);
   const MotionMode* found = FindRunnerUp(estimate);
   if (found == nullptr) return text;
   const MotionMode& other = *found;
@@ -249,6 +257,11 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
   json["failed_by_kappa"] = estimate.failed_by_kappa;
   if (!std::isnan(estimate.failure_probability)) AddProbabilities(estimate, &json);
   if (!answer.for_bounds.empty()) json["failure_probabilities"] = ForBoundsAsJson(answer.for_bounds);
+  if (answer.protection) {
+    json["protection_levels"] = {{"risk", answer.protection->risk},
+                                 {"rotation_rad", answer.protection->levels.rotation_rad},
+                                 {"direction_rad", answer.protection->levels.direction_rad}};
+  }
   json["evidence"] = EvidenceAsJson(answer.evidence);
   if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
   if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "estimator/protection_level.h"
 #include "experiments/real/answer/motion_evidence.h"
 #include "experiments/real/answer/probabilities_for_bounds.h"
 #include "experiments/study/estimator_spec.h"
@@ -12,12 +14,19 @@
 
 namespace rcme {
 
+// Of a motion (status ok), at the risk that was asked for.
+struct LevelsAtRisk {
+  double risk = 0.0;
+  ProtectionLevels levels;
+};
+
 struct PairAnswer {
   MotionEstimate estimate;  // judged (trial/answer_check.h)
   TrialRecord record;       // scored against the file's truth, where it has one
   MotionEvidence evidence;  // only of a motion (status ok)
   bool has_truth_sd = false;
   std::vector<ProbabilityForBounds> for_bounds = {};  // those that were asked for
+  std::optional<LevelsAtRisk> protection = {};
 };
 
 // What was found, how sure, what it rests on; of a refusal why, and what to try.

@@ -217,7 +217,7 @@ TEST(CalibrationCovariance, OfTheDistortionIsThatOfFitsToDistortedImages) {
   EXPECT_LT((added - expected).norm(), 0.1 * expected.norm()) << added << "\n\n" << expected;
 }
 
-// Whether the 95 % region holds the truth; that of a covariance that is none, or singular, holds nothing.
+// Whether the 95 % region contains the truth; that of a covariance that is none, or singular, holds nothing.
 bool Covers(const Matrix5d& covariance, const Vector5d& error) {
   const Eigen::LLT<Matrix5d> llt(covariance);
   return llt.info() == Eigen::Success && error.dot(llt.solve(error)) <= ChiSquareQuantile(5, 0.95);

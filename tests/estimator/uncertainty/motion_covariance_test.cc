@@ -191,7 +191,7 @@ MeasuredErrors MeasureErrors(double sigma_px, int num_trials, std::uint32_t purp
   return errors;
 }
 
-// How often the 95 % region of the covariance times `scale` holds the truth.
+// How often the 95 % region of the covariance times `scale` contains the truth.
 CoverageCount Coverage(const std::vector<double>& normalized_errors, int dof, double scale) {
   const double limit = ChiSquareQuantile(dof, 0.95);
   CoverageCount count;

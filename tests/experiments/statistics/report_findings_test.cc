@@ -86,11 +86,11 @@ TEST(ListFindings, WhatMattersMostComesFirst) {
   forecast.failure.interval = {0.15, 0.25};
   const std::vector<std::string> sentences = ListFindings(summary, comparison, {forecast});
   ASSERT_EQ(sentences.size(), 6u);
-  EXPECT_EQ(
-      sentences[0],
-      "Coverage: the 95 % regions that b states hold the truth in 5.00 % [3.00, 7.00] at outlier_ratio 0.1: "
-      "they are too small, and far off in 1 of 2 conditions.");
-  EXPECT_THAT(sentences[1], HasSubstr("regions that a states hold the truth in 80.00 %"));
+  EXPECT_EQ(sentences[0],
+            "Coverage: the 95 % regions that b states contain the truth in 5.00 % [3.00, 7.00] at "
+            "outlier_ratio 0.1: "
+            "they are too small, and far off in 1 of 2 conditions.");
+  EXPECT_THAT(sentences[1], HasSubstr("regions that a states contain the truth in 80.00 %"));
   EXPECT_THAT(sentences[2], HasSubstr("Against c no difference in failures or refusals is decided of ours"));
   EXPECT_EQ(sentences[3],
             "Probability: a states a probability of failure of 10.00 % on average, and 20.00 % [15.00, "

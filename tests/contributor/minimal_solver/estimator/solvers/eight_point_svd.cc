@@ -4,6 +4,7 @@
 
 namespace rcme {
 
+// f of eight matches (eq::model_instantiate).
 ModelList<EightPointSvd::Model, EightPointSvd::kMaxModels> EightPointSvd::FindModels(const Rays& rays1,
                                                                                      const Rays& rays2) {
   using Rows = Eigen::Matrix<double, 8, 9>;
