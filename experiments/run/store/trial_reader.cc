@@ -88,6 +88,10 @@ void ForEachStoredTrial(const SQLite::Database& database, const TrialFrame& fram
                         std::optional<std::uint32_t> condition,
                         const std::function<void(const StoredTrial&)>& visit) {
   TrialRows rows(database, frame, condition ? fmt::format(" WHERE condition = {}", *condition) : "");
+  if (condition) {  // too few for a thread to pay
+    while (rows.Next()) visit(rows.trial());
+    return;
+  }
   const auto read = [&](StoredTrial* trial) {
     if (!rows.Next()) return false;
     *trial = rows.trial();
