@@ -7,13 +7,17 @@ import hashlib
 import os
 import sys
 
+from worst_search.run_rcme import end_with_parent
+
+if __name__ == "__main__":
+    end_with_parent()  # before the imports that take long
+
 from common.command_line import Parser, PlotError, run
 from common.whole_file import write_text
 
 try:
     from worst_search.progress import Progress
     from worst_search.report import write_report
-    from worst_search.run_rcme import end_with_parent
     from worst_search.run_trials import CLAIMS, QUANTITIES, TrialsOfRun
     from worst_search.search import Plan, find_worst
     from worst_search.space import Space
@@ -98,5 +102,4 @@ def main(arguments=None):
 
 
 if __name__ == "__main__":
-    end_with_parent()
     sys.exit(main())

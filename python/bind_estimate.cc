@@ -7,6 +7,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -17,7 +19,6 @@
 #include "experiments/real/answer/probabilities_for_bounds.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
-#include "experiments/trial/answer_check.h"
 #include "peers/outside_answer.h"
 #include "python/function_estimator.h"
 #include "python/stoppable.h"
@@ -31,24 +32,35 @@ using namespace py::literals;
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// A motion's parts as Python has them: pose_cov is 6x6, of [w, dt] (peers/outside_answer.h).
-py::dict DictOfMotion(const RelativePose& pose, const Matrix5d& pose_cov) {
-  return py::dict("R"_a = MakeArray(pose.R), "t"_a = MakeArray(pose.t),
-                  "pose_cov"_a = MakeArray(CovarianceWithTranslation(pose_cov, pose.t)));
+// A motion as Python has it: pose_cov is 6x6, of [w, dt] (peers/outside_answer.h).
+struct PythonMotion {
+  Eigen::Matrix3d R;
+  Eigen::Vector3d t;
+  Matrix6d pose_cov;
+};
+
+PythonMotion MakeMotion(const RelativePose& pose, const Matrix5d& pose_cov) {
+  return {pose.R, pose.t, CovarianceWithTranslation(pose_cov, pose.t)};
 }
 
-// Without a direction: nothing is known of t, in the covariance either.
-py::dict DictOfRotation(const MotionEstimate& estimate) {
-  Eigen::MatrixXd pose_cov = Eigen::MatrixXd::Constant(6, 6, kNaN);
-  pose_cov.topLeftCorner<3, 3>() = estimate.pose_cov.topLeftCorner<3, 3>();
-  return py::dict("R"_a = MakeArray(estimate.cam2_from_cam1.R),
-                  "t"_a = MakeArray(Eigen::Vector3d::Constant(kNaN)), "pose_cov"_a = MakeArray(pose_cov));
+// Without a direction nothing is known of t, in the covariance either; nothing where there is no motion.
+std::optional<PythonMotion> FindMotion(const MotionEstimate& estimate) {
+  if (estimate.status == MotionStatus::kOk) return MakeMotion(estimate.cam2_from_cam1, estimate.pose_cov);
+  if (estimate.status != MotionStatus::kDirectionNotObservable) return std::nullopt;
+  PythonMotion motion{estimate.cam2_from_cam1.R, Eigen::Vector3d::Constant(kNaN), Matrix6d::Constant(kNaN)};
+  motion.pose_cov.topLeftCorner<3, 3>() = estimate.pose_cov.topLeftCorner<3, 3>();
+  return motion;
+}
+
+py::dict DictOfMotion(const PythonMotion& motion) {
+  return py::dict("R"_a = MakeArray(motion.R), "t"_a = MakeArray(motion.t),
+                  "pose_cov"_a = MakeArray(motion.pose_cov));
 }
 
 py::list MakeModesList(const MotionEstimate& estimate) {
   py::list modes;
   for (const MotionMode& mode : estimate.other_modes) {
-    py::dict dict = DictOfMotion(mode.cam2_from_cam1, mode.pose_cov);
+    py::dict dict = DictOfMotion(MakeMotion(mode.cam2_from_cam1, mode.pose_cov));
     dict["weight"] = mode.weight;
     dict["explained_share"] = mode.explained_share;
     modes.append(dict);
@@ -68,9 +80,7 @@ py::list MakeProbabilityList(const std::vector<ProbabilityForBounds>& probabilit
 py::dict MakeDict(const MotionEstimate& estimate) {
   py::dict dict("status"_a = StatusName(estimate.status), "message"_a = estimate.message,
                 "motion"_a = py::none());
-  if (estimate.status == MotionStatus::kOk)
-    dict["motion"] = DictOfMotion(estimate.cam2_from_cam1, estimate.pose_cov);
-  if (estimate.status == MotionStatus::kDirectionNotObservable) dict["motion"] = DictOfRotation(estimate);
+  if (const std::optional<PythonMotion> motion = FindMotion(estimate)) dict["motion"] = DictOfMotion(*motion);
   dict["inliers"] = estimate.inliers;
   dict["p_failure"] = estimate.failure_probability;
   dict["p_failure_domain"] = Name(estimate.probability_domain);
@@ -123,14 +133,6 @@ std::vector<FailureBounds> MakeBounds(const AnglePairs& pairs) {
   return bounds;
 }
 
-EstimateForBounds EstimateOne(const MotionEstimator& estimator, const MotionProblem& problem,
-                              const std::vector<FailureBounds>& bounds, std::uint64_t seed) {
-  RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
-  EstimateForBounds found = EstimateWithBounds(estimator, problem, bounds, rng);
-  found.estimate = Judged(std::move(found.estimate), problem.matches.size());
-  return found;
-}
-
 py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
                   double sigma_px, std::vector<double> noise_scale, const std::string& name,
                   const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process,
@@ -141,7 +143,7 @@ py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const
   EstimateForBounds found;
   {
     const py::gil_scoped_release unlocked;
-    found = EstimateOne(*chosen.estimator, problem, failure_bounds, seed);
+    found = AnswerProblem(*chosen.estimator, problem, failure_bounds, seed);
   }
   py::dict dict = MakeDict(found.estimate);
   dict["protection_levels"] = LevelsAt(found.estimate, integrity_risk);
@@ -167,19 +169,10 @@ class AnswerArrays {
 
   void Set(py::ssize_t i, const EstimateForBounds& found) {
     const MotionEstimate& estimate = found.estimate;
-    const bool has_motion = estimate.status == MotionStatus::kOk;
-    if (has_motion || estimate.status == MotionStatus::kDirectionNotObservable) {
-      const Eigen::Vector3d t = has_motion ? estimate.cam2_from_cam1.t : Eigen::Vector3d::Constant(kNaN);
-      Matrix6d cov = Matrix6d::Constant(kNaN);
-      cov.topLeftCorner<3, 3>() = estimate.pose_cov.topLeftCorner<3, 3>();
-      if (has_motion) cov = CovarianceWithTranslation(estimate.pose_cov, t);
-      for (int row = 0; row < 6; ++row) {
-        if (row < 3) t_.mutable_at(i, row) = t(row);
-        for (int column = 0; column < 6; ++column) {
-          if (row < 3 && column < 3) R_.mutable_at(i, row, column) = estimate.cam2_from_cam1.R(row, column);
-          pose_cov_.mutable_at(i, row, column) = cov(row, column);
-        }
-      }
+    if (const std::optional<PythonMotion> motion = FindMotion(estimate)) {
+      SetRow(motion->R, i, &R_);
+      SetRow(motion->t, i, &t_);
+      SetRow(motion->pose_cov, i, &pose_cov_);
     }
     p_failure_.mutable_at(i) = estimate.failure_probability;
     for (size_t k = 0; k < found.probabilities.size(); ++k)
@@ -191,7 +184,7 @@ class AnswerArrays {
     inliers_.append(estimate.inliers);
   }
 
-  py::dict Dict() const {
+  py::dict MakeDict() const {
     return py::dict("status"_a = status_, "R"_a = R_, "t"_a = t_, "pose_cov"_a = pose_cov_,
                     "p_failure"_a = p_failure_, "p_failure_domain"_a = domain_,
                     "p_failure_for_bounds"_a = p_for_bounds_, "sigma"_a = sigma_, "sigma_sd"_a = sigma_sd_,
@@ -199,6 +192,11 @@ class AnswerArrays {
   }
 
  private:
+  static void SetRow(const Eigen::MatrixXd& matrix, py::ssize_t i, Array* array) {
+    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    Eigen::Map<RowMajor>(array->mutable_data(i), matrix.rows(), matrix.cols()) = matrix;
+  }
+
   Array R_, t_, pose_cov_, p_failure_, p_for_bounds_, sigma_, sigma_sd_;
   py::list status_, domain_, inliers_;
 };
@@ -206,24 +204,39 @@ class AnswerArrays {
 // x1, x2, camera1, camera2, noise_scale.
 using GivenPair = std::tuple<Array, Array, Camera, Camera, std::vector<double>>;
 
-py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, const std::string& name,
-                      const std::string& file, const Settings& options, std::uint64_t seed,
-                      bool allow_process, const AnglePairs& bounds, int threads) {
-  const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
-  std::vector<MotionProblem> problems;
-  for (const auto& [x1, x2, camera1, camera2, noise_scale] : pairs)
-    problems.push_back(MakeProblem(x1, x2, camera1, camera2, sigma_px, noise_scale));
-  const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
+std::vector<EstimateForBounds> AnswerOnThreads(const MotionEstimator& estimator,
+                                               const std::vector<MotionProblem>& problems,
+                                               const std::vector<FailureBounds>& bounds, std::uint64_t seed,
+                                               int threads) {
   std::vector<EstimateForBounds> found(problems.size());
   RunStoppable([&] {
     ForEachIndex(std::ssize(problems), threads, [&](std::int64_t i) {
       const auto place = static_cast<size_t>(i);
-      found[place] = EstimateOne(*chosen.estimator, problems[place], failure_bounds, seed);
+      found[place] = AnswerProblem(estimator, problems[place], bounds, seed);
     });
+    if (IsStopRequested()) throw Stopped("stopped");
   });
-  AnswerArrays arrays(found.size(), bounds.size());
-  for (size_t i = 0; i < found.size(); ++i) arrays.Set(static_cast<py::ssize_t>(i), found[i]);
-  py::dict dict = arrays.Dict();
+  return found;
+}
+
+py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, const std::string& name,
+                      const std::string& file, const Settings& options, std::uint64_t seed,
+                      bool allow_process, const AnglePairs& bounds, int threads) {
+  const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
+  const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
+  AnswerArrays arrays(pairs.size(), bounds.size());
+  constexpr size_t kNumTogether = 2'000;  // of whose answers everything is held
+  for (size_t begin = 0; begin < pairs.size(); begin += kNumTogether) {
+    const std::span block = std::span(pairs).subspan(begin, std::min(kNumTogether, pairs.size() - begin));
+    std::vector<MotionProblem> problems;
+    for (const auto& [x1, x2, camera1, camera2, noise_scale] : block)
+      problems.push_back(MakeProblem(x1, x2, camera1, camera2, sigma_px, noise_scale));
+    const std::vector<EstimateForBounds> found =
+        AnswerOnThreads(*chosen.estimator, problems, failure_bounds, seed, threads);
+    for (size_t i = 0; i < found.size(); ++i) arrays.Set(static_cast<py::ssize_t>(begin + i), found[i]);
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+  }
+  py::dict dict = arrays.MakeDict();
   dict["estimator"] = chosen.spec.label;
   return dict;
 }

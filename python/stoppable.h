@@ -3,21 +3,45 @@
 #include <pybind11/pybind11.h>
 
 #include <csignal>
+#include <mutex>
+#include <optional>
 
 #include "experiments/core/work/stop_request.h"
 
 namespace rcme {
 
+// Signals are requests to stop while any call of Python works: threads of Python may call at a time, and a
+// function of Python that is called may call in turn.
+class StopShared {
+ public:
+  StopShared() {
+    const std::scoped_lock lock(mutex_);
+    if (num_users_++ == 0) stop_.emplace();
+  }
+  ~StopShared() {
+    const std::scoped_lock lock(mutex_);
+    if (--num_users_ > 0) return;
+    stop_.reset();
+    stop_signal = 0;  // the next call is not stopped by it
+  }
+  StopShared(const StopShared&) = delete;
+  StopShared& operator=(const StopShared&) = delete;
+
+ private:
+  static inline std::mutex mutex_;
+  static inline int num_users_ = 0;
+  static inline std::optional<StopOnSignals> stop_;
+};
+
 // Work that may be stopped: Ctrl-C is an exception of Python once what is in hand is kept.
 template <typename Work>
 auto RunStoppable(Work work) {
-  const StopOnSignals stop;
+  const StopShared stop;
   try {
     const pybind11::gil_scoped_release unlocked;
     return work();
   } catch (const Stopped& stopped) {
     const bool is_interrupt = StopExitCode() == 128 + SIGINT;
-    stop_signal = 0;  // the next call is not stopped by it
     PyErr_SetString(is_interrupt ? PyExc_KeyboardInterrupt : PyExc_SystemExit, stopped.what());
     throw pybind11::error_already_set();
   }

@@ -132,11 +132,10 @@ class Answerer {
   }
 
   PairAnswer Answer(const TrialData& data) const {
-    const auto seed = static_cast<std::uint64_t>(arguments_.seed);
-    RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
     PairAnswer answer;
-    EstimateForBounds found = EstimateWithBounds(*estimator_, data.problem, bounds_, rng);
-    answer.estimate = Judged(std::move(found.estimate), data.problem.matches.size());
+    EstimateForBounds found =
+        AnswerProblem(*estimator_, data.problem, bounds_, static_cast<std::uint64_t>(arguments_.seed));
+    answer.estimate = std::move(found.estimate);
     answer.for_bounds = std::move(found.probabilities);
     answer.record = Score(answer.estimate, data, 0.0);
     answer.has_truth_sd = data.truth.sd.has_value();
@@ -205,7 +204,8 @@ void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, con
 // The table of many pairs, filled as they are answered.
 class AnswerTable {
  public:
-  explicit AnswerTable(const std::vector<FailureBounds>& bounds) : bounds_(bounds) {}
+  AnswerTable(const std::vector<FailureBounds>& bounds, std::optional<double> integrity_risk)
+      : bounds_(bounds), integrity_risk_(integrity_risk) {}
   void Add(const std::string& path, const PairAnswer& answer) {
     std::string name = std::filesystem::path(path).filename().string();
     rows_.emplace_back(name.substr(0, name.find(".csv")), answer);
@@ -215,17 +215,18 @@ class AnswerTable {
   void AddUnreadable() { ++num_unreadable_; }
 
   std::string Text() const {
-    std::vector<std::vector<std::string>> rows = {AnswerColumns(bounds_, has_errors_)};
-    for (const auto& [name, answer] : rows_)
-      rows.push_back(FormatAnswerRow(name, answer, bounds_, has_errors_));
+    const AnswerTableColumns columns{bounds_, integrity_risk_.has_value(), has_errors_};
+    std::vector<std::vector<std::string>> rows = {ListAnswerColumns(columns)};
+    for (const auto& [name, answer] : rows_) rows.push_back(FormatAnswerRow(name, answer, columns));
     const size_t num_refused = rows_.size() - num_motions_;
-    return FormatColumns(rows) + "\n" + AnswerLegend(has_errors_) +
+    return FormatColumns(rows) + "\n" + AnswerLegend(has_errors_, integrity_risk_) +
            fmt::format("{} pairs: {} motions, {} without one, {} not read\n", rows_.size() + num_unreadable_,
                        num_motions_, num_refused, num_unreadable_);
   }
 
  private:
   const std::vector<FailureBounds>& bounds_;
+  std::optional<double> integrity_risk_;
   std::vector<std::pair<std::string, PairAnswer>> rows_;
   bool has_errors_ = false;
   size_t num_motions_ = 0, num_unreadable_ = 0;
@@ -258,8 +259,10 @@ FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
 // What is printed of many files.
 class AnswerReport {
  public:
-  AnswerReport(const Answerer& answerer, bool as_json)
-      : answerer_(answerer), as_json_(as_json), table_(answerer.bounds()) {}
+  AnswerReport(const Answerer& answerer, const EstimateArguments& arguments)
+      : answerer_(answerer),
+        as_json_(arguments.as_json),
+        table_(answerer.bounds(), arguments.integrity_risk) {}
 
   void Add(const FileAnswer& file) {
     warnings_.Add(file.doubts);
@@ -301,7 +304,7 @@ class AnswerReport {
 void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
                 const std::vector<std::string>& files) {
   const StopOnSignals stop;
-  AnswerReport report(answerer, arguments.as_json);
+  AnswerReport report(answerer, arguments);
   std::int64_t num_done = 0;
   try {
     Progress progress("pairs", std::ssize(files), 0);
@@ -339,7 +342,7 @@ share of matches that could lie on one plane. If there is no motion, it says why
 what to try.
 
 For several files, or a folder, it prints a table with a line per file, or with --json a
-line of JSON per file; several are answered at a time (--threads). '-' reads standard input. A file may have just four columns
+line of JSON per file. '-' reads standard input. A file may have just four columns
 x1 y1 x2 y2, separated by commas or blanks; give the intrinsics with --K, once for both
 images or once for each. A K that does not fit the size of the images or the positions
 of the key points gives a warning; an impossible K is refused.

@@ -94,7 +94,7 @@ void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& 
 void KeepQuantities(const std::vector<std::string>& quantities, Summary* summary) {
   CheckAreQuantities(*summary, quantities);
   std::erase_if(summary->rows, [&](const SummaryRow& row) {
-    return row.estimator == kSceneLabel || std::ranges::count(quantities, row.quantity) == 0;
+    return IsOfProblems(row) || std::ranges::count(quantities, row.quantity) == 0;
   });
 }
 

@@ -32,7 +32,7 @@ std::string PercentWithInterval(double value, const Interval& interval) {
                      100.0 * interval.upper);
 }
 
-// " at outlier_ratio 0.4, sigma_px 1"; of a population " over the population"; nothing without factors.
+// " at outlier_ratio 0.4, sigma_px 1"; nothing without factors.
 std::string FormatPlace(const std::vector<std::string>& levels,
                         const std::vector<std::string>& factor_names) {
   std::vector<std::string> words;

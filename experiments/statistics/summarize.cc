@@ -92,7 +92,7 @@ std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {
 Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups) {
   const RunDescription run = store.Description();
   const SummaryCell empty(run.estimators.size(), run.repeats_per_scene);
-  SummaryOfGroups summary(run, groups);
+  GroupSummarizer summary(run, groups);
   std::map<size_t, SummaryCell> cells;  // of groups that have trials and may get more
   size_t num_finished = 0;
   const auto finish_before = [&](size_t group) {

@@ -321,7 +321,7 @@ SummaryCell SummaryCell::FromTexts(const std::vector<CountedQuantity>& texts, si
   return cell;
 }
 
-SummaryOfGroups::SummaryOfGroups(const RunDescription& run, const TrialGroups& groups) : run_(run) {
+GroupSummarizer::GroupSummarizer(const RunDescription& run, const TrialGroups& groups) : run_(run) {
   summary_.study = run.study;
   summary_.factor_names = groups.factor_names;
   summary_.levels = groups.levels;
@@ -334,7 +334,7 @@ SummaryOfGroups::SummaryOfGroups(const RunDescription& run, const TrialGroups& g
     summary_.efforts.emplace_back(estimator.label, estimator.effort);
 }
 
-void SummaryOfGroups::Append(const SummaryCell& cell) {
+void GroupSummarizer::Append(const SummaryCell& cell) {
   summary_.num_trials_done += cell.num_trials();
   SummaryRow row;
   row.condition = num_groups_++;
@@ -343,14 +343,14 @@ void SummaryOfGroups::Append(const SummaryCell& cell) {
   if (num_groups_ == 1) summary_.rows.reserve(summary_.rows.size() * summary_.levels.size());
 }
 
-Summary SummaryOfGroups::Finish(bool with_times) {
+Summary GroupSummarizer::Finish(bool with_times) {
   LeaveOutRows(with_times, &summary_);
   return std::move(summary_);
 }
 
 Summary SummarizeCells(const RunDescription& run, const TrialGroups& groups,
                        const std::vector<const SummaryCell*>& cells, bool with_times) {
-  SummaryOfGroups summary(run, groups);
+  GroupSummarizer summary(run, groups);
   for (const SummaryCell* cell : cells) summary.Append(*cell);
   return summary.Finish(with_times);
 }

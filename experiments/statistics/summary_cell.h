@@ -82,9 +82,9 @@ class SummaryCell {
 };
 
 // The summary of a run, of one group after the other.
-class SummaryOfGroups {
+class GroupSummarizer {
  public:
-  SummaryOfGroups(const RunDescription& run, const TrialGroups& groups);
+  GroupSummarizer(const RunDescription& run, const TrialGroups& groups);
 
   void Append(const SummaryCell& cell);  // of the next group
   Summary Finish(bool with_times);

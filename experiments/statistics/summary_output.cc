@@ -79,8 +79,8 @@ double TrialsToDecide(const CoverageVerdict& verdict) {
   return is_known ? verdict.trials_to_decide : std::nan("");
 }
 
-// Of every quantity in a row of its own. The summary outlives them.
-std::vector<ColumnOf<SummaryRow>> RowColumns(const Summary& summary) {
+// Of a table with a row for every quantity. `summary` must outlive the columns.
+std::vector<ColumnOf<SummaryRow>> MakeRowColumns(const Summary& summary) {
   using R = const SummaryRow&;
   std::vector<ColumnOf<SummaryRow>> columns = {
       {{.name = "study", .json_name = kNotInJson}, [&](R) { return summary.study; }},
@@ -264,7 +264,7 @@ std::string SummaryAsTable(const Summary& summary) {
   return text + DescribeEfforts(summary);
 }
 
-std::string SummaryAsCsv(const Summary& summary) { return RenderCsv(RowColumns(summary), summary.rows); }
+std::string SummaryAsCsv(const Summary& summary) { return RenderCsv(MakeRowColumns(summary), summary.rows); }
 
 std::string SummaryAsJson(const Summary& summary) {
   nlohmann::ordered_json json = {{"study", summary.study},
@@ -272,7 +272,7 @@ std::string SummaryAsJson(const Summary& summary) {
                                  {"trials_planned", summary.num_trials_planned},
                                  {"repeats_per_scene", summary.repeats_per_scene},
                                  {"efforts", nlohmann::ordered_json::object()},
-                                 {"rows", RenderJson(MakeTable(RowColumns(summary), summary.rows))}};
+                                 {"rows", RenderJson(MakeTable(MakeRowColumns(summary), summary.rows))}};
   for (const auto& [label, effort] : summary.efforts) json["efforts"][label] = effort;
   if (!summary.truth_quality.empty()) json["truth"] = summary.truth_quality;
   if (!summary.population.empty()) json["population"] = summary.population;

@@ -53,6 +53,11 @@ def all_texts(value):
     return [all_texts(part) for part in value] if isinstance(value, list) else str(value)
 
 
+def read_text(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
 def study_text(study):
     return yaml.dump(all_texts(study), Dumper=PlainDumper, sort_keys=False, default_flow_style=None, width=120)
 
@@ -203,9 +208,12 @@ class TrialsOfRun(Objective):
 
     def ask(self, name, study, first):
         """{draws, levels, events, trials, reverse, seconds}, by condition."""
-        answer = self.path(name, ".json")
+        answer, asked = self.path(name, ".json"), self.path(name, ".yaml")
         if not os.path.exists(answer):
             self.run(name, study)
+        elif read_text(asked) != study_text(study):
+            raise PlotError(f"{asked} asks for other trials than this search does now (of another version of rcme?); give "
+                            "another folder.")
             found = self.read(name, first)
             write_text(answer, json.dumps(found))
         with open(answer, encoding="utf-8") as file:

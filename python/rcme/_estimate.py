@@ -125,7 +125,8 @@ def estimate_relative_poses(pairs: Iterable[tuple[Any, ...]], options: Optional[
     problems = [_numbered_pair(place, pair) for place, pair in enumerate(given)]
     for key in ("noise_scale", "integrity_risk"):
         if isinstance(options, Mapping) and key in options:
-            raise ValueError(f"options: {key} is not allowed here; noise_scale is the fifth element of a pair")
+            hint = "; give it as the fifth element of a pair" if key == "noise_scale" else ""
+            raise ValueError(f"options: {key} is not allowed here{hint}")
     chosen = _options(options, 0)
     limits = _bounds(bounds)
     threads = _check.whole("threads", threads, 0, 1024)

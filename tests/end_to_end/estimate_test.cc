@@ -95,6 +95,31 @@ TEST(EstimateBounds, AreOfTheSameFit) {
   EXPECT_THAT(table.out, testing::HasSubstr("P(>1,5)"));
 }
 
+// Answers and their order are the same for any number of threads; a file that cannot be read is named, and
+// the others are answered.
+TEST(EstimateMany, DoesNotDependOnThreads) {
+  const TempFolder folder;
+  std::vector<std::string> arguments = {"estimate", "--json", "--threads", "1"};
+  for (int i = 0; i < 12; ++i) {
+    const std::string name = "pair_" + std::to_string(i) + ".csv";
+    arguments.push_back(folder.Write(name, i == 5 ? "no matches" : MatchHeader() + MatchRows(30 + i)));
+  }
+  const ProgramResult one = RunRcme(arguments);
+  EXPECT_EQ(one.exit_code, 2);
+  EXPECT_EQ(std::ranges::count(one.out, '\n'), 12);
+  EXPECT_THAT(one.err, testing::HasSubstr("pair_5.csv"));
+  for (const char* threads : {"2", "8"}) {
+    arguments[3] = threads;
+    EXPECT_EQ(RunRcme(arguments).out, one.out);
+  }
+  arguments[1] = "--integrity-risk";
+  arguments[2] = "0.5";
+  arguments.erase(arguments.begin() + 3);
+  const ProgramResult table = RunRcme(arguments);
+  EXPECT_THAT(table.out, testing::HasSubstr("levels"));
+  EXPECT_THAT(table.out, testing::HasSubstr("probability of at most 0.5 each"));
+}
+
 // Nothing else changes; below the stated probability of failure nothing is protected.
 TEST(EstimateIntegrity, StatesTheLevelsOfTheRisk) {
   const TempFolder folder;

@@ -97,6 +97,12 @@ class WorstTest(unittest.TestCase):
         outcomes = [trial["outcome"] for trial in csv.DictReader(raw.splitlines())]
         self.assertEqual((outcomes.count("failure"), len(outcomes)), (int(row["events"]), int(row["trials"])))
 
+        asked = self.folder / "killed" / "trials" / "explore_0_0.yaml"
+        asked.write_text(asked.read_text().replace("trials: '1'", "trials: '2'").replace("trials: 1", "trials: 2"))
+        other = subprocess.run(self.command("killed"), capture_output=True, text=True, check=False)
+        self.assertEqual(other.returncode, 2)
+        self.assertIn("asks for other trials", other.stderr)
+
         other = subprocess.run(self.command("whole", "--seed", "9"), capture_output=True, text=True, check=False)
         self.assertEqual(other.returncode, 2)
         self.assertIn("another study", other.stderr)

@@ -2,9 +2,10 @@
 """The search of `rcme worst` on functions that are known: what it finds, and that its rates are of fresh trials alone."""
 
 import sys
+import tempfile
 import unittest
 from pathlib import Path
-
+from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "studies"))
 
@@ -12,7 +13,7 @@ import plot_test_case  # noqa: F401  makes plots/ importable
 from planted_regions import PlantedRegion
 from worst_search.intervals import clopper_pearson, simultaneous_rate
 from worst_search.objective import Counts
-from worst_search.run_trials import event_of, narrowed_conditions
+from worst_search.run_trials import TrialsOfRun, event_of, narrowed_conditions
 from worst_search.search import Plan, find_worst
 from worst_search.space import Box, Space, overlap
 
@@ -78,6 +79,27 @@ class KnownFunctions(unittest.TestCase):
             finds += any(r.is_find for r in find_worst(objective, Plan(budget=700, num_fresh=60, claim=0.3, num_raced=40,
                                                                        num_looks=2, box_draws=40, seed=seed)))
         self.assertLess(finds, 4)
+
+
+class Requests(unittest.TestCase):
+    def test_many_draws_are_asked_for_in_parts(self):
+        rows = [["room", str(i)] for i in range(10)]
+        asked = []
+
+        class Asked(TrialsOfRun):
+            def ask(self, name, study, first):
+                draws = study["conditions"]["draws"]
+                asked.append((name, draws))
+                return {"draws": draws, **{key: [10 * draw for draw in draws] for key in ("events", "trials", "reverse")}}
+
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "study.yaml").write_text("conditions: {}\n")
+            objective = Asked(folder, "rcme", Space(["scene", "sigma_px"], rows), list(range(100, 110)), "failure", ["a"], 1)
+            with mock.patch("worst_search.run_trials.MOST_DRAWS", 3):
+                tried = objective.try_draws("explore", [9, 0, 1, 2, 3, 4, 5], 1)
+        self.assertEqual(asked, [("explore", [109, 100, 101]), ("explore_3", [102, 103, 104]), ("explore_6", [105])])
+        self.assertEqual(list(tried.events), [1090, 1000, 1010, 1020, 1030, 1040, 1050])
+        self.assertEqual(list(tried.table.columns["sigma_px"]), [9, 0, 1, 2, 3, 4, 5])
 
 
 class Intervals(unittest.TestCase):

@@ -1,7 +1,11 @@
 """estimate_relative_pose and simulate: right numbers in the stated conventions."""
 
 import json
+import os
+import signal
 import subprocess
+import threading
+import time
 import unittest
 
 import numpy as np
@@ -127,6 +131,28 @@ class Estimate(unittest.TestCase):
             for here, there in zip(found[:-1], again[:-1]):
                 np.testing.assert_array_equal(here, there)
         self.assertEqual(rcme.estimate_relative_poses([]).R.shape, (0, 3, 3))
+
+    def test_threads_of_python_may_call_at_a_time_and_an_interrupt_still_comes(self):
+        pairs = [tuple(self.arguments)] * 40
+        found = []
+        callers = [threading.Thread(target=lambda n=n: found.append(rcme.estimate_relative_poses(pairs[:n]))) for n in (5, 20, 40)]
+        for caller in callers:
+            caller.start()
+        for caller in callers:
+            caller.join()
+        self.assertEqual(sorted(len(poses.status) for poses in found), [5, 20, 40])
+        with self.assertRaises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(5)
+
+    def test_an_interrupt_ends_the_call(self):
+        pairs = [tuple(self.arguments)] * 100_000  # takes a minute
+        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        start = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            rcme.estimate_relative_poses(pairs)
+        self.assertLess(time.monotonic() - start, 30)
 
     def test_cameras_in_every_form(self):
         fx, fy, cx, cy = self.trial["camera1"]["params"]

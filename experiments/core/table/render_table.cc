@@ -195,7 +195,7 @@ std::string RenderCsvValue(const Value& value, const Column& column) {
       value);
 }
 
-// `render_field` gives that of a column by its number.
+// render_field(c): the text of column c.
 template <typename RenderField>
 void AppendCsvLine(const std::vector<Column>& columns, RenderField render_field, std::string* text) {
   bool is_first = true;

@@ -1,28 +1,51 @@
 // Values that several threads make, taken in their order.
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <utility>
 
 #include "experiments/core/work/for_each_index.h"
+#include "experiments/core/work/stop_request.h"
 
 namespace rcme {
 
 // Calls make(i) for i = 0, ..., n - 1 on `num_threads` threads (0: one per core), and take(value) for each in
-// that order, one at a time, as soon as those before it are taken. Ends as ForEachIndex does.
+// that order, one at a time, as soon as those before it are taken; a thread that is far ahead waits. Ends as
+// ForEachIndex does.
 template <typename Make, typename Take>
 void MakeInOrder(std::int64_t n, int num_threads, Make make, Take take) {
   using Made = decltype(make(std::int64_t{}));
+  const std::int64_t most_ahead = 16 * std::int64_t{NumThreads(num_threads)};
   std::mutex mutex;
+  std::condition_variable changed;
   std::map<std::int64_t, Made> waiting;  // for one before them
   std::int64_t num_taken = 0;
+  bool has_failed = false;
+
+  const auto wait_for_turn = [&](std::int64_t i) {
+    std::unique_lock lock(mutex);
+    // A request to stop says nothing to the condition variable.
+    while (i - num_taken > most_ahead && !has_failed && !IsStopRequested())
+      changed.wait_for(lock, std::chrono::milliseconds(50));
+  };
   ForEachIndex(n, num_threads, [&](std::int64_t i) {
-    Made made = make(i);
-    const std::scoped_lock lock(mutex);
-    waiting.emplace(i, std::move(made));
-    for (; waiting.contains(num_taken); ++num_taken) take(waiting.extract(num_taken).mapped());
+    wait_for_turn(i);
+    try {
+      Made made = make(i);
+      const std::scoped_lock lock(mutex);
+      waiting.emplace(i, std::move(made));
+      for (; waiting.contains(num_taken); ++num_taken) take(waiting.extract(num_taken).mapped());
+    } catch (...) {
+      const std::scoped_lock lock(mutex);
+      has_failed = true;
+      changed.notify_all();
+      throw;
+    }
+    changed.notify_all();
   });
 }
 

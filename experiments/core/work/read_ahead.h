@@ -1,4 +1,4 @@
-// Reading on one thread what another works on.
+// Items that one thread reads while another visits those before.
 #pragma once
 
 #include <condition_variable>

@@ -92,9 +92,9 @@ std::string ForBoundsText(const std::vector<ProbabilityForBounds>& for_bounds) {
   return text;
 }
 
-std::string ProtectionText(const LevelsAtRisk& at) {
+std::string FormatProtection(const LevelsAtRisk& at) {
   return fmt::format(
-      "  levels     rotation {:.3g} deg, direction {:.3g} deg: an error beyond either has a\n"
+      "  levels     rotation {:.3g} deg, direction {:.3g} deg: each error exceeds its level with a\n"
       "             probability of at most {:g}\n",
       kDegPerRad * at.levels.rotation_rad, kDegPerRad * at.levels.direction_rad, at.risk);
 }
@@ -115,7 +115,7 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
       "  95 %       rotation within {:.2g} x {:.2g} x {:.2g} deg, direction within {:.2g} x {:.2g} deg\n",
       spread.rotation_95_deg(0), spread.rotation_95_deg(1), spread.rotation_95_deg(2),
       spread.direction_95_deg(0), spread.direction_95_deg(1));
-  if (answer.protection) text += ProtectionText(*answer.protection);
+  if (answer.protection) text += FormatProtection(*answer.protection);
   const MotionMode* found = FindRunnerUp(estimate);
   if (found == nullptr) return text;
   const MotionMode& other = *found;
@@ -272,20 +272,21 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
   return json;
 }
 
-std::vector<std::string> AnswerColumns(const std::vector<FailureBounds>& bounds, bool with_errors) {
-  std::vector<std::string> columns = {"pair", "inliers", "turned (sd)", "stands (sd)", "P(wrong)"};
-  for (const FailureBounds& each : bounds)
-    columns.push_back(fmt::format("P(>{},{})", each.max_rotation_error_deg, each.max_direction_error_deg));
-  if (with_errors) columns.push_back("errors");
-  columns.push_back("status");
-  return columns;
+std::vector<std::string> ListAnswerColumns(const AnswerTableColumns& columns) {
+  std::vector<std::string> names = {"pair", "inliers", "turned (sd)", "stands (sd)", "P(wrong)"};
+  for (const FailureBounds& each : columns.bounds)
+    names.push_back(fmt::format("P(>{},{})", each.max_rotation_error_deg, each.max_direction_error_deg));
+  if (columns.with_levels) names.push_back("levels");
+  if (columns.with_errors) names.push_back("errors");
+  names.push_back("status");
+  return names;
 }
 
 std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnswer& answer,
-                                         const std::vector<FailureBounds>& bounds, bool with_errors) {
+                                         const AnswerTableColumns& columns) {
   const MotionEstimate& estimate = answer.estimate;
   const TrialRecord& record = answer.record;
-  std::vector<std::string> row(AnswerColumns(bounds, with_errors).size(), "-");
+  std::vector<std::string> row(ListAnswerColumns(columns).size(), "-");
   row.front() = name;
   row.back() = StatusName(estimate.status);
   row[1] = fmt::format("{}/{}", record.num_inliers, record.num_matches);
@@ -297,17 +298,28 @@ std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnsw
   if (!std::isnan(estimate.failure_probability)) row[4] = ProbabilityText(estimate.failure_probability);
   for (size_t i = 0; i < answer.for_bounds.size(); ++i)
     row[5 + i] = ProbabilityText(answer.for_bounds[i].failure_probability);
-  if (with_errors && !std::isnan(record.rotation_error_deg))
-    row[5 + bounds.size()] =
-        fmt::format("{:.2g}/{:.2g}", record.rotation_error_deg, record.direction_error_deg);
+  size_t next = 5 + columns.bounds.size();
+  if (columns.with_levels && answer.protection)
+    row[next] = fmt::format("{:.3g}/{:.3g}", kDegPerRad * answer.protection->levels.rotation_rad,
+                            kDegPerRad * answer.protection->levels.direction_rad);
+  next += columns.with_levels;
+  if (columns.with_errors && !std::isnan(record.rotation_error_deg))
+    row[next] = fmt::format("{:.2g}/{:.2g}", record.rotation_error_deg, record.direction_error_deg);
   return row;
 }
 
-std::string AnswerLegend(bool with_errors) {
-  return fmt::format(
+std::string AnswerLegend(bool with_errors, std::optional<double> integrity_risk) {
+  std::string text =
       "turned: by how much camera 2 is rotated, deg; stands: where it is, seen from camera 1; (sd): their "
-      "standard\ndeviations, deg{}\n",
-      with_errors ? "; errors: of rotation/direction against the file's true motion, deg" : "");
+      "standard\ndeviations, deg";
+  if (integrity_risk) {
+    text += fmt::format(
+        "; levels: the errors of rotation/direction exceed them with a\nprobability of at most {:g} each, "
+        "deg",
+        *integrity_risk);
+  }
+  if (with_errors) text += "; errors: of rotation/direction against the file's true motion, deg";
+  return text + "\n";
 }
 
 bool IsBadInput(MotionStatus status) {

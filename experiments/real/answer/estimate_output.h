@@ -35,12 +35,16 @@ std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec);
 // The same for a program, but for the format (core/text/json_output.h).
 nlohmann::ordered_json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec);
 
-// One row of a table over pairs, and what its columns mean; that of the errors only `with_errors`. One for
-// each of the bounds that were asked for.
-std::vector<std::string> AnswerColumns(const std::vector<FailureBounds>& bounds, bool with_errors);
+// What a table over pairs shows beside the motions.
+struct AnswerTableColumns {
+  const std::vector<FailureBounds>& bounds;  // a probability for each
+  bool with_levels = false, with_errors = false;
+};
+std::vector<std::string> ListAnswerColumns(const AnswerTableColumns& columns);
 std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnswer& answer,
-                                         const std::vector<FailureBounds>& bounds, bool with_errors);
-std::string AnswerLegend(bool with_errors);
+                                         const AnswerTableColumns& columns);
+// What the columns mean; `integrity_risk`: of the levels, nothing without them.
+std::string AnswerLegend(bool with_errors, std::optional<double> integrity_risk);
 
 // Whether the file, not the problem, is to blame: too few matches, bad numbers, points on one line.
 bool IsBadInput(MotionStatus status);

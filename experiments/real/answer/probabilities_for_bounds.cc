@@ -1,8 +1,11 @@
 #include "experiments/real/answer/probabilities_for_bounds.h"
 
 #include <optional>
+#include <utility>
 
 #include "estimator/estimators/rcme_calibrated.h"
+#include "experiments/data/data_source.h"
+#include "experiments/trial/answer_check.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 
@@ -33,6 +36,14 @@ EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const Mot
         {each, p, AreCovered(each) ? answer.estimate.probability_domain : ProbabilityDomain::kExtrapolated});
   }
   return answer;
+}
+
+EstimateForBounds AnswerProblem(const MotionEstimator& estimator, const MotionProblem& problem,
+                                const std::vector<FailureBounds>& bounds, std::uint64_t seed) {
+  RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
+  EstimateForBounds found = EstimateWithBounds(estimator, problem, bounds, rng);
+  found.estimate = Judged(std::move(found.estimate), problem.matches.size());
+  return found;
 }
 
 }  // namespace rcme

@@ -1,6 +1,7 @@
 // The probability of failure for bounds other than the estimator's own, from the same fit.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "estimator/motion_estimator.h"
@@ -25,5 +26,10 @@ struct EstimateForBounds {
 // (calibrated/motion_posterior.h).
 EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const MotionProblem& problem,
                                      const std::vector<FailureBounds>& bounds, RandomStream& rng);
+
+// The same of the stream of samples that belongs to `seed`, judged (trial/answer_check.h): what `rcme
+// estimate` and Python answer to a problem.
+EstimateForBounds AnswerProblem(const MotionEstimator& estimator, const MotionProblem& problem,
+                                const std::vector<FailureBounds>& bounds, std::uint64_t seed);
 
 }  // namespace rcme

@@ -88,7 +88,8 @@ class ResultStore {
   // Calls `visit` for every record, ordered by condition, trial, estimator. Constant memory.
   void ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const;
   // Calls `visit` for every trial, ordered by condition and trial; its records are ordered by estimator. Only
-  // the trials of one condition, if it is given.
+  // the trials of one condition, if it is given. Reads on a thread of its own: `visit` calls no function of
+  // this store.
   void ForEachTrial(const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&)>& visit,
                     std::optional<std::uint32_t> condition = std::nullopt) const;
   // The records of one trial, ordered by estimator. Where there is none all trials are checked, so that a

@@ -26,6 +26,7 @@ struct StoredTrial {
 };
 
 // Calls `visit` for every trial, ordered by condition and trial; only those of one condition, if it is given.
+// Reads on a thread of its own, so that `visit` may not use `database`.
 // Throws Damage at the first that is not sound: a column of another type or out of range, out of order, not
 // one record per estimator, another checksum.
 void ForEachStoredTrial(const SQLite::Database& database, const TrialFrame& frame,

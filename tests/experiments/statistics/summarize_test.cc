@@ -41,6 +41,23 @@ TEST_F(SummarizeTest, AKnownInterval) {
   EXPECT_NEAR(Row("success").interval.upper, 0.7376219, 1e-7);
 }
 
+// Where the first condition has no trial its rows have n = 0, and the second has its own.
+TEST_F(SummarizeTest, AConditionWithoutTrialsKeepsItsRows) {
+  std::vector<TrialRecord> records = HandMadeRecords();
+  for (TrialRecord& record : records) record.condition = 1;
+  Write("second", records);
+  const Summary summary = SummarizeRun("second"), first = SummarizeRun("run");
+  ASSERT_EQ(summary.rows.size(), first.rows.size());
+  const size_t half = summary.rows.size() / 2;
+  for (size_t i = 0; i < half; ++i) {
+    EXPECT_EQ(summary.rows[i].condition, 0u);
+    EXPECT_EQ(summary.rows[i].n, 0);
+    EXPECT_EQ(summary.rows[half + i].condition, 1u);
+    EXPECT_EQ(summary.rows[half + i].quantity, first.rows[i].quantity);
+    EXPECT_EQ(summary.rows[half + i].n, first.rows[i].n);
+  }
+}
+
 // The ten trials in one condition, and six of them in another.
 TEST_F(SummarizeTest, PooledConditionsAreOne) {
   std::vector<TrialRecord> records = HandMadeRecords();
