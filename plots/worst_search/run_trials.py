@@ -211,11 +211,10 @@ class TrialsOfRun(Objective):
         answer, asked = self.path(name, ".json"), self.path(name, ".yaml")
         if not os.path.exists(answer):
             self.run(name, study)
+            write_text(answer, json.dumps(self.read(name, first)))
         elif read_text(asked) != study_text(study):
             raise PlotError(f"{asked} asks for other trials than this search does now (of another version of rcme?); give "
                             "another folder.")
-            found = self.read(name, first)
-            write_text(answer, json.dumps(found))
         with open(answer, encoding="utf-8") as file:
             found = json.load(file)
         self.calls += found["calls"]
