@@ -58,7 +58,7 @@ GateLook Look(const ReadableRun& run, const std::vector<GateTest>& tests, std::i
 TEST(GateQuantity, DifferencesAndMargins) {
   const GateQuantity& failure = GateQuantities().front();
   EXPECT_EQ(failure.Difference(1.0, 0.0), 1.0);
-  const GateQuantity& error = MakeGateTests({"error"}, {}).front().quantity;
+  const GateQuantity error = MakeGateTests({"error"}, {}).front().quantity;
   const double infinity = std::numeric_limits<double>::infinity();
   EXPECT_NEAR(error.Difference(1.1, 1.0), std::log(1.1), 1e-12);
   EXPECT_EQ(error.Difference(infinity, 1.0), 1.0);
