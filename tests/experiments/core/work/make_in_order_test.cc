@@ -65,6 +65,16 @@ TEST_P(MakeInOrderTest, HoldsNoMoreThanAFewValues) {
   EXPECT_LE(furthest_of_first, 16 * GetParam() + GetParam());
 }
 
+// Those that are far ahead of the first wait for it: they do not wait for ever.
+TEST_P(MakeInOrderTest, AnErrorEndsThoseThatWait) {
+  const auto make = [](std::int64_t i) {
+    if (i > 0) return i;
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    throw std::runtime_error("no such file");
+  };
+  EXPECT_THROW(MakeInOrder(10'000, GetParam(), make, [](std::int64_t) {}), std::runtime_error);
+}
+
 INSTANTIATE_TEST_SUITE_P(Threads, MakeInOrderTest, testing::Values(1, 2, 8));
 
 TEST(MakeInOrder, NothingIsMadeOfNothing) {
