@@ -13,7 +13,7 @@ struct InlierScore {
   double sum_squares = 0.0;   // sum (h - psi)^2, Welford
   double negative_log_likelihood = 0.0;  // of all matches, predictive
 
-  // The mean of one more entropy (eq. 16).
+  // With one more entropy: psi and the sum of squares (eq. 16).
   void AddInlier(double entropy) {
     ++num_inliers;
     const double step = entropy - mean_entropy;

@@ -146,13 +146,11 @@ class Estimate(unittest.TestCase):
             time.sleep(5)
 
     def test_an_interrupt_ends_the_call(self):
-        pairs = [tuple(self.arguments)] * 100_000  # takes a minute
-        timer = threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT))
+        pairs = [tuple(self.arguments)] * 200
+        timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
         timer.start()
-        start = time.monotonic()
-        with self.assertRaises(KeyboardInterrupt):
-            rcme.estimate_relative_poses(pairs)
-        self.assertLess(time.monotonic() - start, 30)
+        with self.assertRaisesRegex(KeyboardInterrupt, "stopped"):  # Python's own, between two calls, has no words
+            rcme.estimate_relative_poses(pairs, {"estimator": "standard", "num_iterations": 200_000}, threads=1)
 
     def test_cameras_in_every_form(self):
         fx, fy, cx, cy = self.trial["camera1"]["params"]
