@@ -189,15 +189,17 @@ def pooled_rates(spec):
 
 
 def ratios(spec):
-    """The ratios of a benchmark with their intervals."""
-    measured = json.loads((ROOT / spec.argument).read_text())
+    """The ratios of benchmarks with their intervals, a column per processor: the files of a folder."""
+    files = [json.loads(path.read_text()) for path in sorted((ROOT / spec.argument).glob("*.json"))]
     body = []
     for key, words in spec.parts("rows"):
-        interval = measured["intervals"].get(key)
-        limits = f" [{interval['lower']:.3g}, {interval['upper']:.3g}]" if interval else ""
+        measured = []
+        for file in files:
+            interval = file["intervals"].get(key)
+            measured.append(f"{file['ratios'][key]:.3g} [{interval['lower']:.3g}, {interval['upper']:.3g}]" if interval else "")
         name, _, target = words.partition(", target ")
-        body.append([name, f"{measured['ratios'][key]:.3g}{limits}", target])
-    return markdown(["ratio", "measured", "target set beforehand"], body)
+        body.append([name, *measured, target])
+    return markdown(["ratio", *(f"{file['run']['processor']}, {file['run']['instruction_set']}" for file in files), "target set beforehand"], body)
 
 
 def transfer(spec):

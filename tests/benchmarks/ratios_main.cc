@@ -18,6 +18,7 @@
 #include "tests/benchmarks/benchmark_cases.h"
 #include "tests/benchmarks/engine_fixture.h"
 #include "tests/benchmarks/fma_peak.h"
+#include "tests/benchmarks/processor.h"
 #include "tests/benchmarks/rounds.h"
 
 namespace rcme {
@@ -305,6 +306,7 @@ ordered_json DescribeRun(const Extent& extent, const Times& times, const std::st
       {"clock", "CPU time of the thread; studies: wall time"},
       {"problem", "uniform_volume, n = 500, 20 % outliers, sigma 0.5 px, N = 200"},
       {"interval", "median over rounds, order statistics, 95 %"},
+      {"processor", FindProcessor()},
       {"instruction_set", InstructionSet()},
       {"cores", std::thread::hardware_concurrency()},
       {"peak_fma_lanes_per_ns", Described(rate)},
