@@ -12,6 +12,7 @@
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/rare/rare_output.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -32,18 +33,27 @@ RareTexts Split(const StudyPlan& plan, const RareArguments& arguments, Runner* r
   const std::vector<RareCell> cells = SplitFailures(plan, plan.study.seed, arguments.splitting, runner);
   std::vector<RareRow> rows;
   for (const RareCell& cell : cells) rows.push_back(MakeRareRow(cell));
-  return {RareAsTable(plan, cells), RareAsCsv(plan, rows), RareAsJson(plan, arguments.splitting, cells)};
+  const RareEvent& event = arguments.splitting.event;
+  return {RareAsTable(plan, event, cells), RareAsCsv(plan, event, rows),
+          RareAsJson(plan, arguments.splitting, cells)};
 }
 
 RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments, Runner* runner) {
   const std::vector<StratifiedCell> cells = StratifyFailures(plan, arguments.stratified, runner);
   std::vector<RareRow> rows;
   for (const StratifiedCell& cell : cells) rows.push_back(MakeRareRow(cell));
-  return {StratifiedAsTable(plan, cells), RareAsCsv(plan, rows),
+  return {StratifiedAsTable(plan, cells), RareAsCsv(plan, {}, rows),
           StratifiedAsJson(plan, arguments.stratified, cells)};
 }
 
+void RequireEventOfMethod(const RareArguments& arguments) {
+  if (arguments.method == "splitting" || arguments.splitting.event.kind == RareEvent::Kind::kFailure) return;
+  throw InputError(fmt::format("--event {}: of --method stratified only failure is allowed",
+                               Name(arguments.splitting.event.kind)));
+}
+
 void RunRare(const RareArguments& arguments) {
+  RequireEventOfMethod(arguments);
   const StopOnSignals stop;
   StartTimeLimit(arguments.max_time);
   const bool is_splitting = arguments.method == "splitting";
@@ -63,6 +73,25 @@ void RunRare(const RareArguments& arguments) {
   fmt::print("{}", texts.table);
 }
 
+void AddEventOptions(CLI::App* command, RareEvent* event) {
+  std::vector<std::pair<std::string, RareEvent::Kind>> kinds;
+  for (const auto kind : {RareEvent::Kind::kFailure, RareEvent::Kind::kMisleadingRotation,
+                          RareEvent::Kind::kMisleadingDirection})
+    kinds.emplace_back(Name(kind), kind);
+  command
+      ->add_option_function<std::string>(
+          "--event",
+          [event, kinds](const std::string& name) {
+            for (const auto& [known, kind] : kinds)
+              if (known == name) event->kind = kind;
+          },
+          "splitting: what is counted, failure (default), or an error beyond its protection level")
+      ->check(MakeChoiceValidator({"failure", "misleading_rotation", "misleading_direction"}));
+  command->add_option("--risk", event->risk, "of the protection levels (docs/integrity.md)")
+      ->transform(NumberIn({1e-9, 0.5}))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void AddRareCommand(CLI::App& app) {
@@ -78,13 +107,16 @@ trials would take too many calls. Two methods:
   stratified  for any failure and noise. Plain trials: all of those with a hard scene
               (Cramer-Rao bound) and one in 2, 4, ..., 64 of the others. Pays off if
               calls are slow and hard scenes have most of the failures
-If the number of outliers drives the failures, use `rcme run` with tilted_to. A rate
+With --event misleading_rotation or misleading_direction splitting counts errors
+beyond the protection level that the answer states, as `rcme integrity` does of
+plain trials. If the number of outliers drives the failures, use `rcme run` with tilted_to. A rate
 that cannot be trusted is marked, with the reason. If the command is stopped or killed,
 run it again: finished work is kept in OUT/unfinished.part.
 
 Examples:
   rcme rare studies/rare_noise.yaml --out rare
   rcme rare STUDY --set sigma_px=0.25 --replicates 40 --out rare
+  rcme rare STUDY --event misleading_direction --risk 1e-5 --out misleading
   rcme rare STUDY --method stratified --trials 1000000 --out strata)");
   auto arguments = std::make_shared<RareArguments>();
   command
@@ -98,6 +130,7 @@ Examples:
   AddProcessOption(command, &arguments->changes.allow_process);
   command->add_option("--method", arguments->method, "splitting (default) or stratified")
       ->check(MakeChoiceValidator({"splitting", "stratified"}));
+  AddEventOptions(command, &arguments->splitting.event);
   command
       ->add_option("--trials", arguments->stratified.num_trials,
                    "stratified: trials drawn per condition (default: 100000)")

@@ -31,19 +31,12 @@ void RequireDrawnScenes(const Study& study) {
   }
 }
 
-double ErrorOverBound(const TrialRecord& record, const FailureBounds& bounds) {
-  if (IsInvalid(record)) return std::numeric_limits<double>::infinity();
-  if (HasRefused(record)) return 0.0;
-  const double rotation = record.rotation_error_deg / bounds.max_rotation_error_deg;
-  const double direction = record.direction_error_deg / bounds.max_direction_error_deg;
-  const double error = std::isnan(direction) ? rotation : std::max(rotation, direction);
-  // A quotient is rounded, and 0 / 0 where a bound is 0: the event decides.
-  if (HasFailed(record, bounds)) return std::fmax(error, std::nextafter(1.0, 2.0));
-  return std::fmin(error, 1.0);
-}
-
-FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, size_t estimator)
-    : estimator_(plan.estimators[estimator]), study_(plan.study), stream_key_(condition.stream_key) {
+FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, size_t estimator,
+                             const RareEvent& event)
+    : estimator_(plan.estimators[estimator]),
+      study_(plan.study),
+      event_(event),
+      stream_key_(condition.stream_key) {
   RequireDrawnScenes(plan.study);
   data_ = MakeSimulatedData(CombineSettings(plan.study, condition.levels), BaselineSearch::kWithFirstScene);
   if (!data_->HasNormalNoise()) {
@@ -167,7 +160,8 @@ double FailingMotion::Value(const State& state) const {
   if (!simulated.made) return kNoTrial;
   const TrialData& data = *simulated.made;
   RandomStream sampling_rng = StreamFor({state.sampling_seed, stream_key_, 0, 0}, StreamPurpose::kSampling);
-  return ErrorOverBound(Score(estimator_->Estimate(data.problem, sampling_rng), data, 0.0), study_.failure);
+  const MotionEstimate estimate = estimator_->Estimate(data.problem, sampling_rng);
+  return ComputeNearness(estimate, Score(estimate, data, 0.0), event_, study_.failure);
 }
 
 }  // namespace rcme

@@ -1,11 +1,12 @@
 // A trial as a system for multilevel splitting (stats/splitting.h): its random inputs as a state, moves that
-// leave their law as it is, and how near the estimator is to failing.
+// leave their law as it is, and how near the estimator is to a rare event.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
+#include "experiments/rare/rare_event.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial.h"
 
@@ -16,16 +17,12 @@ class SimulatedData;
 // Of the streams of splitting, beside the purposes of a trial's streams (StreamPurpose).
 inline constexpr std::uint32_t kSplittingPurpose = 100;
 
-// The random inputs of a trial: all that decides whether the estimator fails.
+// The random inputs of a trial: all that decides whether the event happens.
 struct MotionInputs {
   std::shared_ptr<const Scene> scene;                 // null: it could not be simulated
   std::vector<double> noise;                          // standard normal, four for each point of the scene
   std::uint64_t outlier_seed = 0, sampling_seed = 0;  // name the streams of outliers and samples
 };
-
-// The greater of rotation and direction error, each over its bound: beyond 1 exactly where HasFailed says so.
-// 0 for a refusal, infinite for an answer that is not valid.
-double ErrorOverBound(const TrialRecord& record, const FailureBounds& bounds);
 
 // Throws InputError for a study on match files: scene, noise and outliers of real pairs cannot be drawn
 // again.
@@ -37,7 +34,8 @@ class FailingMotion {
 
   // One condition of the plan, one of its estimators. Throws InputError that names key and value:
   // match files; noise that is not normal; trials with weights.
-  FailingMotion(const StudyPlan& plan, const Condition& condition, size_t estimator);
+  FailingMotion(const StudyPlan& plan, const Condition& condition, size_t estimator,
+                const RareEvent& event = {});
 
   // Of the first kNumTried draws of a condition of a population; not simulated if it is all of them. The law
   // is that of the trials that can be simulated: draws are repeated until one can, and moves to others not
@@ -56,7 +54,8 @@ class FailingMotion {
   // these are moves of the noise too. Two renew the outliers, one the scene, one the samples, whole.
   State Propose(const State& state, double step, RandomStream& rng, bool& is_local) const;
 
-  // ErrorOverBound of the estimator's answer. Below all others where the state cannot be simulated.
+  // ComputeNearness of the estimator's answer to the event. Below all others where the state cannot be
+  // simulated.
   double Value(const State& state) const;
 
  private:
@@ -72,6 +71,7 @@ class FailingMotion {
   std::shared_ptr<const SimulatedData> data_;
   std::shared_ptr<const MotionEstimator> estimator_;
   Study study_;
+  RareEvent event_;
   std::uint64_t stream_key_;
   bool has_free_points_ = false;  // given the motion they are independent
   int num_not_simulated_ = 0;

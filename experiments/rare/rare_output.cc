@@ -73,6 +73,12 @@ double KnownShare(const RareRow& row) {
   return std::isfinite(share) ? share : std::nan("");
 }
 
+// "failures", or "misleading_rotation (protection levels at the risk 1e-05)".
+std::string DescribeEvents(const RareEvent& event) {
+  if (event.kind == RareEvent::Kind::kFailure) return "failures";
+  return fmt::format("{} (protection levels at the risk {:g})", Name(event.kind), event.risk);
+}
+
 // Of so many trials of every condition; the estimators of one share them.
 template <typename Cell>
 std::string DescribeMissingCellTrials(const std::vector<Cell>& cells, std::int64_t num_of_condition) {
@@ -92,9 +98,9 @@ std::int64_t NumDrawn(const std::vector<StratifiedCell>& cells) {
 }
 
 // The columns that all rates have.
-Table MakeRateTable(const StudyPlan& plan, const std::vector<RareRow>& rows) {
+Table MakeRateTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows) {
   Table table{HeadColumns(plan)};
-  table.AddColumns({Column::Estimated("failure", {1.0, "", ".2e"}), Column::Count("calls"),
+  table.AddColumns({Column::Estimated(Name(event.kind), {1.0, "", ".2e"}), Column::Count("calls"),
                     Column::Number("of brute force", {100.0, "%", ".2g"}),
                     Column::Number("unseen up to", {1.0, "", ".1e"}), Column::Flag("trusted")});
   for (const RareRow& row : rows) {
@@ -185,10 +191,10 @@ RareRow MakeRareRow(const StratifiedCell& cell) {
   return row;
 }
 
-std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cells) {
+std::string RareAsTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareCell>& cells) {
   std::vector<RareRow> rows;
   for (const RareCell& cell : cells) rows.push_back(MakeRareRow(cell));
-  Table table = MakeRateTable(plan, rows);
+  Table table = MakeRateTable(plan, event, rows);
   table.columns.push_back(Column::Number("spread", {1.0, "", ".2f"}));
   std::string doubts;
   for (size_t i = 0; i < cells.size(); ++i) {
@@ -198,8 +204,8 @@ std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cell
         "{}: not trusted: {}", fmt::join(MakeRowHead(plan, rows[i].condition, rows[i].estimator), ", "),
         DescribeDoubts(cells[i])));
   }
-  return fmt::format("{}: failures by multilevel splitting\n\n{}\n{}{}", plan.study.name, RenderText(table),
-                     doubts, doubts.empty() ? "" : "\n") +
+  return fmt::format("{}: {} by multilevel splitting\n\n{}\n{}{}", plan.study.name, DescribeEvents(event),
+                     RenderText(table), doubts, doubts.empty() ? "" : "\n") +
          FormatParagraph(
              "Mean of independent unbiased replicates with Cox's 95 % interval; spread: standard deviation "
              "of "
@@ -214,7 +220,7 @@ std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cell
 std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<StratifiedCell>& cells) {
   std::vector<RareRow> rows;
   for (const StratifiedCell& cell : cells) rows.push_back(MakeRareRow(cell));
-  Table table = MakeRateTable(plan, rows);
+  Table table = MakeRateTable(plan, {}, rows);
   for (size_t k = 0; k < kNumStrata; ++k) {
     table.columns.push_back({fmt::format("1 in {}", 1 << k)});
     for (size_t i = 0; i < cells.size(); ++i) {
@@ -236,7 +242,7 @@ std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<Stratifie
          FormatParagraph("1 in k: of the trials of a stratum one in k is run: failed/run/drawn.");
 }
 
-std::string RareAsCsv(const StudyPlan& plan, const std::vector<RareRow>& rows) {
+std::string RareAsCsv(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows) {
   Table table{{Column::Text("study"), Column::Count("condition")}};
   table.AddColumns(HeadColumns(plan));
   table.AddColumns({Column::Text("quantity"), Column::Text("kind"), Column::Number("value"),
@@ -249,8 +255,8 @@ std::string RareAsCsv(const StudyPlan& plan, const std::vector<RareRow>& rows) {
         std::vector<Value>{plan.study.name, static_cast<std::int64_t>(row.condition)});
     std::ranges::copy(MakeRowHead(plan, row.condition, row.estimator), std::back_inserter(values));
     const std::int64_t is_trusted = row.doubts.empty() ? 1 : 0;
-    values.insert(values.end(), {"failure", "rate", row.estimate, row.interval.lower, row.interval.upper,
-                                 row.standard_error, row.num_calls, is_trusted,
+    values.insert(values.end(), {Name(event.kind), "rate", row.estimate, row.interval.lower,
+                                 row.interval.upper, row.standard_error, row.num_calls, is_trusted,
                                  fmt::format("{}", fmt::join(row.doubts, " ")), row.unseen_up_to,
                                  row.relative_spread, KnownShare(row)});
   }
@@ -269,6 +275,8 @@ std::string RareAsJson(const StudyPlan& plan, const RareEffort& effort, const st
                        {"replicates", estimates}});
   }
   Json json = StudyAsJson(plan, "splitting");
+  if (effort.event.kind != RareEvent::Kind::kFailure)
+    json.update({{"event", Name(effort.event.kind)}, {"risk", effort.event.risk}});
   json.update({{"num_particles", effort.splitting.num_particles},
                {"num_moves", effort.splitting.num_moves},
                {"kept_share", effort.splitting.kept_share},

@@ -27,12 +27,12 @@ RareRow MakeRareRow(const StratifiedCell& cell);
 inline constexpr double kLeastFailures = 3.0;  // as many of equal weight as have the same relative error
 
 // For people: a row for each condition and estimator, and why a rate is not to be trusted.
-std::string RareAsTable(const StudyPlan& plan, const std::vector<RareCell>& cells);
+std::string RareAsTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareCell>& cells);
 std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<StratifiedCell>& cells);
 
-// Rows of `rcme summarize --format csv` with more columns: trusted, doubts, unseen_up_to,
-// relative_spread, brute_force_share. n counts calls of the estimator.
-std::string RareAsCsv(const StudyPlan& plan, const std::vector<RareRow>& rows);
+// Rows of `rcme summarize --format csv`, the event as their quantity, with more columns: trusted, doubts,
+// unseen_up_to, relative_spread, brute_force_share. n counts calls of the estimator.
+std::string RareAsCsv(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows);
 
 // The rows, and of splitting the levels and the estimate of every replicate.
 std::string RareAsJson(const StudyPlan& plan, const RareEffort& effort, const std::vector<RareCell>& cells);

@@ -78,6 +78,12 @@ SplittingReplicate ReplicateFrom(const Json& json, const SplittingEffort& effort
   return replicate;
 }
 
+// Beside the numbers of the effort; empty for failures.
+std::string DescribeEvent(const RareEvent& event) {
+  if (event.kind == RareEvent::Kind::kFailure) return "";
+  return fmt::format("event: {}, risk {}\n", Name(event.kind), event.risk);
+}
+
 // Every estimator in every condition, without results.
 std::vector<RareCell> MakeCells(const StudyPlan& plan) {
   std::vector<RareCell> cells;
@@ -94,12 +100,13 @@ std::vector<RareCell> MakeCells(const StudyPlan& plan) {
 }  // namespace
 
 WorkPlan PlanSplitting(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort) {
-  WorkPlan work{"splitting",
-                "replicate",
-                fmt::format("seed: {}\nparticles: {}\nmoves: {}\nkept share: {}\nreplicates: {}\n{}", seed,
-                            effort.splitting.num_particles, effort.splitting.num_moves,
-                            effort.splitting.kept_share, effort.num_replicates, plan.identity),
-                {}};
+  WorkPlan work{
+      "splitting",
+      "replicate",
+      fmt::format("seed: {}\nparticles: {}\nmoves: {}\nkept share: {}\nreplicates: {}\n{}{}", seed,
+                  effort.splitting.num_particles, effort.splitting.num_moves, effort.splitting.kept_share,
+                  effort.num_replicates, DescribeEvent(effort.event), plan.identity),
+      {}};
   for (const auto& [name, num_items] : {std::pair<const char*, int>{"pilot", 1},
                                         std::pair<const char*, int>{"replicates", effort.num_replicates}}) {
     for (const RareCell& cell : MakeCells(plan)) {
@@ -116,7 +123,8 @@ std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, c
   std::vector<RareCell> cells = MakeCells(plan);
   std::vector<FailingMotion> systems;  // all made first: bad input ends it before any work
   for (RareCell& cell : cells) {
-    const FailingMotion& system = systems.emplace_back(plan, plan.conditions[cell.condition], cell.estimator);
+    const FailingMotion& system =
+        systems.emplace_back(plan, plan.conditions[cell.condition], cell.estimator, effort.event);
     cell.num_not_simulated = system.num_not_simulated();
     if (cell.num_not_simulated < FailingMotion::kNumTried) continue;
     cell.why_not_simulated = system.why_not_simulated();

@@ -12,6 +12,7 @@ namespace rcme {
 struct RareEffort {
   SplittingEffort splitting;
   int num_replicates = 20;  // at least 2
+  RareEvent event = {};
 };
 
 // One estimator in one condition.
@@ -28,9 +29,9 @@ struct RareCell {
 // The runner's work: each cell's pilot, then its replicates.
 WorkPlan PlanSplitting(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort);
 
-// The rate of failure (HasFailed) of every estimator in every condition, the estimators of the first
-// condition first. A replicate is a pure function of (study, seed, condition, estimator, effort, its number),
-// `seed` in the place of the study's. Throws InputError as FailingMotion does, and as Runner::Get.
+// The rate of the event (of failure: HasFailed) of every estimator in every condition, the estimators of the
+// first condition first. A replicate is a pure function of (study, seed, condition, estimator, effort, its
+// number), `seed` in the place of the study's. Throws InputError as FailingMotion does, and as Runner::Get.
 std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort,
                                     Runner* runner);
 

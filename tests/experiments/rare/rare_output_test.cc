@@ -81,7 +81,7 @@ TEST(RareAsJson, HasTheRatesBeyondEachLevel) {
 TEST(RareAsCsv, SaysWhatIsTrusted) {
   RareRow trusted = MakeRareRow(CellByHand()), doubted = trusted;
   doubted.doubts = {"no_levels", "moves_stuck"};
-  const std::string csv = RareAsCsv(MakePlan(SmallStudy()), {trusted, doubted});
+  const std::string csv = RareAsCsv(MakePlan(SmallStudy()), {}, {trusted, doubted});
   EXPECT_THAT(csv, testing::HasSubstr(",failure,rate,0.07,0.02,0.2,0.03,700,1,,"));
   EXPECT_THAT(csv, testing::HasSubstr(",failure,rate,0.07,0.02,0.2,0.03,700,0,no_levels moves_stuck,"));
 }

@@ -200,7 +200,7 @@ TEST(SimulateDraw, SplittingNamesConditionsWithoutATrial) {
     EXPECT_EQ(cell.pilot.num_values > 0, is_possible);
     EXPECT_EQ(MakeRareRow(cell).doubts == std::vector<std::string>{"not_simulated"}, !is_possible);
   }
-  EXPECT_THAT(RareAsTable(plan, cells), HasSubstr("not trusted: not_simulated:"));
+  EXPECT_THAT(RareAsTable(plan, {}, cells), HasSubstr("not trusted: not_simulated:"));
 }
 
 // The law is that of the trials that can be simulated, and no move leaves it.
