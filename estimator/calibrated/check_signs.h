@@ -1,5 +1,5 @@
-// The terms of the check of rcme_calibrated's model, in the order that the fit and its tables have them in.
-// To leave one out, take its line away here; then scripts/fit_calibrated fits the others again.
+// The signs that the check of rcme_calibrated's model goes by. The fit chooses among them; to leave one out,
+// take its line away here and run scripts/fit_calibrated.
 #pragma once
 
 #include <algorithm>
@@ -10,43 +10,38 @@
 
 namespace rcme {
 
-struct CheckTerm {
+struct CheckSign {
   const char* name;  // as fitted_constants.h has it
   double (*value)(const ModelCheck& check);
 };
 
-// c_k: each tempers the posterior's log-odds l; the fit has l c_k.
-inline constexpr auto kSlopeTerms = std::to_array<CheckTerm>({
-    {"log_odds_by_neighbour_correlation",
-     [](const ModelCheck& c) { return std::clamp(c.neighbour_correlation, -1.0, 1.0); }},
-    {"log_odds_by_spread_in_matches", [](const ModelCheck& c) { return c.spread_in_matches; }},
-    {"log_odds_by_planar_share", [](const ModelCheck& c) { return c.planar_share; }},
-    {"log_odds_by_wrong_share", [](const ModelCheck& c) { return c.wrong_share; }},
-});
-
-// c_m: each is added to the log-odds.
-inline constexpr auto kAddedTerms = std::to_array<CheckTerm>({
-    {"log_parallax_share", [](const ModelCheck& c) { return c.log_parallax_share; }},
-    {"noise_above", [](const ModelCheck& c) { return std::clamp(c.log_noise_ratio, 0.0, 2.0); }},
-    {"noise_below", [](const ModelCheck& c) { return std::clamp(-c.log_noise_ratio, 0.0, 2.0); }},
+// x_j: of the probability of failure.
+inline constexpr auto kCheckSigns = std::to_array<CheckSign>({
+    {"log_noise_ratio", [](const ModelCheck& c) { return c.log_noise_ratio; }},
     {"neighbour_root_z",
      [](const ModelCheck& c) { return std::copysign(std::sqrt(std::abs(c.neighbour_z)), c.neighbour_z); }},
     {"log_design_2", [](const ModelCheck& c) { return c.log_design_2; }},
-    {"num_rivals", [](const ModelCheck& c) { return c.num_rivals; }},
-    {"greatest_rival", [](const ModelCheck& c) { return c.greatest_rival; }},
-    {"log_rotation_sd", [](const ModelCheck& c) { return c.log_rotation_sd; }},
-    {"wrong_coherence", [](const ModelCheck& c) { return c.wrong_coherence; }},
-    {"spread_in_image", [](const ModelCheck& c) { return c.spread_in_image; }},
-    {"direction_mass", [](const ModelCheck& c) { return c.direction_mass; }},
+    {"log_design_4", [](const ModelCheck& c) { return c.log_design_4; }},
+    {"planar_share", [](const ModelCheck& c) { return c.planar_share; }},
+    {"log_parallax_share", [](const ModelCheck& c) { return c.log_parallax_share; }},
     {"low_depth", [](const ModelCheck& c) { return c.low_depth; }},
-    {"partner_dependence", [](const ModelCheck& c) { return std::clamp(c.partner_dependence, 0.0, 5.0); }},
+    {"spread_in_matches", [](const ModelCheck& c) { return c.spread_in_matches; }},
+    {"log_num_right", [](const ModelCheck& c) { return c.log_num_right; }},
+    {"wrong_coherence", [](const ModelCheck& c) { return c.wrong_coherence; }},
+    {"rank_dependence", [](const ModelCheck& c) { return c.partner_dependence.rank_z; }},
+    {"mean_probability", [](const ModelCheck& c) { return c.mean_probability; }},
+    {"mean_gain", [](const ModelCheck& c) { return c.mean_gain; }},
+    {"greatest_leverage", [](const ModelCheck& c) { return c.greatest_leverage; }},
+    {"log_rotation_sd", [](const ModelCheck& c) { return c.log_rotation_sd; }},
+    {"greatest_rival", [](const ModelCheck& c) { return c.greatest_rival; }},
 });
 
-// y: of the covariance.
-inline constexpr auto kCovarianceTerms = std::to_array<CheckTerm>({
+// y_k: of the covariance. Up to the value that is taken away they are what independent noise gives.
+inline constexpr auto kCovarianceSigns = std::to_array<CheckSign>({
     {"constant", [](const ModelCheck&) { return 1.0; }},
-    {"neighbour_root_z_above", [](const ModelCheck& c) { return std::sqrt(std::max(c.neighbour_z, 0.0)); }},
-    {"log_design_4", [](const ModelCheck& c) { return c.log_design_4; }},
+    {"neighbour_root_z_above",
+     [](const ModelCheck& c) { return std::max(std::sqrt(std::max(c.neighbour_z, 0.0)) - 1.1, 0.0); }},
+    {"log_design_4_above", [](const ModelCheck& c) { return std::max(c.log_design_4 - 0.6, 0.0); }},
 });
 
 }  // namespace rcme

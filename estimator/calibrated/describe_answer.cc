@@ -53,7 +53,7 @@ namespace {
 // The first of the check's signs that stands out.
 std::string ModelDoubt(const ModelCheck& check) {
   const double noise = std::exp(check.log_noise_ratio);
-  if (check.partner_dependence < kRandomPartners)
+  if (check.partner_dependence.greater_z() < kRandomPartners)
     return ": along the epipolar lines the matches lie as random ones would";
   if (check.neighbour_z > 5.0) return ": neighbouring matches err alike";
   if (noise > 1.25 || noise < 0.8) return fmt::format(": the noise is {:.2g} times the assumed", noise);

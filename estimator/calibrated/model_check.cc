@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "estimator/calibrated/direction_posterior.h"
-#include "estimator/calibrated/partner_dependence.h"
 #include "estimator/calibrated/twisted_pair.h"
 #include "estimator/noise_scale.h"
 #include "stats/order_statistic.h"
@@ -22,7 +21,6 @@ constexpr double kPlaneBound = 4.0;     // standard deviations of a match
 constexpr double kApart = 0.5;          // of two displacements, per distance
 constexpr double kLeastDistance = 1.0;  // px; nearer ones are the same key point
 constexpr double kLeastKept = 0.05;     // of the information along a direction, without a block
-constexpr double kMostRivals = 6.0;
 
 double LogWithin(double x, double least, double most) { return std::log(std::clamp(x, least, most)); }
 
@@ -75,7 +73,6 @@ void CheckNeighbours(const MotionProblem& problem, const Split& split, const Exp
     count += 1.0;
   }
   if (count == 0.0) return;
-  check->neighbour_correlation = sum / count;
   check->neighbour_z = sum / std::sqrt(count);
 }
 
@@ -132,10 +129,8 @@ void CheckSpread(const MotionProblem& problem, const Split& split, ModelCheck* c
   std::vector<size_t> all(problem.matches.size());
   for (size_t i = 0; i < all.size(); ++i) all[i] = i;
   const double of_right = ScatterDeterminant(problem, split.right) + 1.0;
-  const double of_image = std::pow(problem.camera1.width * problem.camera1.height / 12.0, 2);
   check->spread_in_matches =
       std::clamp(0.25 * std::log(of_right / (ScatterDeterminant(problem, all) + 1.0)), -2.0, 1.0);
-  check->spread_in_image = std::clamp(0.25 * std::log(of_right / of_image), -3.0, 1.0);
 }
 
 // Of the right matches in a block of image 1.
@@ -233,18 +228,29 @@ double LowDepth(const Split& split, const ExplainedMode& answer) {
   return std::clamp(ValueOfRank(rank, &depths) / answer.mode.mixture.scale, -3.0, 3.0);
 }
 
+void CheckRightMatches(const Split& split, const ExplainedMode& answer, ModelCheck* check) {
+  if (split.right.empty()) return;
+  const Explanation& e = answer.explanation;
+  double probability = 0.0, gain = 0.0;
+  for (const size_t i : split.right) {
+    probability += e.probability[i];
+    gain += std::log(e.inlier_density[i] / answer.mode.mixture.outlier_density);
+    check->greatest_leverage = std::max(check->greatest_leverage, e.leverage[i]);
+  }
+  check->mean_probability = probability / static_cast<double>(split.right.size());
+  check->mean_gain = std::clamp(gain / static_cast<double>(split.right.size()), 0.0, 8.0);
+}
+
 void CheckRivals(const ModeWeights& weights, ModelCheck* check) {
   for (size_t i = 0; i < weights.of_modes.size(); ++i) {
-    if (!weights.is_rival[i]) continue;
-    check->num_rivals = std::min(check->num_rivals + 1.0, kMostRivals);
-    check->greatest_rival = std::max(check->greatest_rival, weights.of_modes[i]);
+    if (weights.is_rival[i]) check->greatest_rival = std::max(check->greatest_rival, weights.of_modes[i]);
   }
 }
 
 }  // namespace
 
 ModelCheck CheckModel(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
-                      const ModeWeights& weights, const std::optional<double>& direction_mass) {
+                      const ModeWeights& weights) {
   const ExplainedMode& answer = modes[weights.answer];
   const MixtureParameters& m = answer.mode.mixture;
   const Split split = SplitMatches(answer.explanation);
@@ -254,12 +260,13 @@ ModelCheck CheckModel(const MotionProblem& problem, const std::vector<ExplainedM
   check.planar_share = PlanarShare(problem, split, answer);
   CheckSpread(problem, split, &check);
   CheckBlocks(problem, split, answer, &check);
+  check.log_num_right = LogWithin(static_cast<double>(split.right.size()), 1.0, 1e9);
   check.wrong_share = static_cast<double>(split.wrong.size()) / static_cast<double>(problem.matches.size());
   check.wrong_coherence = WrongCoherence(problem, split);
+  CheckRightMatches(split, answer, &check);
   check.log_rotation_sd =
       LogWithin(std::sqrt(answer.mode.inverse_hessian.topLeftCorner<3, 3>().trace()), 1e-6, 3.0);
   CheckRivals(weights, &check);
-  check.direction_mass = direction_mass.value_or(1.0);
   check.low_depth = LowDepth(split, answer);
   check.usual_depth = UsualDepthInNoise(answer.explanation);
   check.partner_dependence = FindPartnerDependence(problem, answer.mode.pose, split.right);

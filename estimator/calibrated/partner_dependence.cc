@@ -68,13 +68,13 @@ double TestRank(const Cosines& c, const std::vector<double>& partners) {
 
 }  // namespace
 
-double FindPartnerDependence(const MotionProblem& problem, const RelativePose& pose,
-                             std::span<const size_t> some) {
+PartnerDependence FindPartnerDependence(const MotionProblem& problem, const RelativePose& pose,
+                                        std::span<const size_t> some) {
   const Cosines cosines = ComputeCosines(problem, pose, some);
   std::vector<double> partners;
   for (size_t i = 0; i < std::min(problem.matches.size(), kMostPartners); ++i)
     partners.push_back(CosineInCamera2(problem, pose, i));
-  return std::max(TestOrder(cosines), TestRank(cosines, partners));
+  return {TestOrder(cosines), TestRank(cosines, partners)};
 }
 
 }  // namespace rcme

@@ -157,7 +157,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       weights.is_rival = FindRivals(modes, weights.answer, Bounds());
     }
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
-    const ModelCheck check = CheckModel(shuffled, modes, weights, direction_mass);
+    const ModelCheck check = CheckModel(shuffled, modes, weights);
     std::vector<Matrix5d> spreads;
     Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, check, rng,
                             posterior != nullptr ? &spreads : nullptr);

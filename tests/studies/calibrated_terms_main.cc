@@ -4,9 +4,9 @@
 // The bytes do not depend on the number of threads. Columns of every listing:
 //   condition, trial     of the study
 //   levels...            of the condition, one column per factor
-// check: the terms of the check (estimator/calibrated/checked_probability.h), a row per answer that can be
+// check: what the check goes by (estimator/calibrated/checked_probability.h), a row per answer that can be
 // scored:
-//   failure_*, spread_*  the terms
+//   sign_*, spread_*     the signs of the probability of failure and of the covariance
 //   posterior            probability of failure by the modes
 //   homography_share     severity of the problem
 //   nees                 of the covariance without the factor of the check
@@ -41,8 +41,8 @@ namespace {
 
 std::string MakeCheckHeader() {
   std::string header;
-  for (const FitTerm& term : ListFailureTerms(0.5, {})) header += ",failure_" + term.name;
-  for (const FitTerm& term : ListSpreadTerms({})) header += ",spread_" + term.name;
+  for (const FitTerm& x : ListCheckSigns({})) header += ",sign_" + x.name;
+  for (const FitTerm& y : ListCovarianceSigns({})) header += ",spread_" + y.name;
   return header + ",posterior,homography_share,nees,failed\n";
 }
 
@@ -60,9 +60,8 @@ std::string FindCheckRow(const WeightInspection& estimator, const TrialData& dat
   const TrialRecord record = Score(estimate, data, 0.0);
   if (estimate.status != MotionStatus::kOk || !IsScored(record)) return {};
   std::string row = labels;
-  for (const FitTerm& x : ListFailureTerms(verdict.by_modes, verdict.check))
-    row += fmt::format(",{:.9g}", x.value);
-  for (const FitTerm& y : ListSpreadTerms(verdict.check)) row += fmt::format(",{:.9g}", y.value);
+  for (const FitTerm& x : ListCheckSigns(verdict.check)) row += fmt::format(",{:.9g}", x.value);
+  for (const FitTerm& y : ListCovarianceSigns(verdict.check)) row += fmt::format(",{:.9g}", y.value);
   return row + fmt::format(",{:.9g},{:.9g},{:.9g},{:d}\n", verdict.by_modes, data.severity.homography_share,
                            record.nees, HasFailed(record, failure));
 }

@@ -3,8 +3,12 @@
 In two passes, as the check sees the modes as they are weighed: first the weights of the modes (--modes), then, with the program built
 anew, the check.
 
+The check's probability is a logistic regression on products of at most two hinges of its signs, which are chosen forward, one after the
+other (Friedman 1991), each where it adds most to the likelihood by its score; their number is the one from which on cross-validation over
+the conditions of the training gained little. Signs are cut to the range that they had in nearly all trials.
+
 Training: draws of studies/right_calibration.yaml and of studies/any_condition.yaml, and the families of studies/calibrated, with seeds
-of their own; the latter two count less. Where partners are permuted at random every answer is wrong. The covariance is fitted where the calibration is right: errors of the calibration are not for
+of their own; trials of the families count less. Where partners are permuted at random every answer is wrong. The covariance is fitted where the calibration is right: errors of the calibration are not for
 residuals to tell. Reported on draws with other seeds. Each trial's terms come from the program rcme_calibrated_terms, the measures of the
 report with their intervals from rcme_calibrated_measures; regimes are told apart by what was simulated, which the fit does not see.
 """
@@ -22,14 +26,16 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADER = ROOT / "estimator/calibrated/fitted_constants.h"
 FAMILIES = ["indoor", "outdoor", "low_parallax", "planarity", "moving_object", "hard", "few_matches", "noise_laws", "outlier_laws",
             "uniform", "forward", "parallax", "clustered_inliers", "assumed_sigma"]
-LESS = 0.3  # weight of a trial with a wrong calibration, or of a family, which are easy and many
+OF_FAMILY, OF_RANDOM = 0.6, 0.3  # weights of a trial of a family, of one with random partners; they are easy and many
 MODES_OF_FAMILY = 2.0  # the same where the modes' weights are fitted: there the families have few trials with two modes
 RIDGE = 5e-4  # of the standardised terms' weights, per trial
 OUTSIDE = 0.005  # share of the training trials beyond either end of a term's domain
 QUANTILE_95 = 11.0705  # of chi-square with five degrees of freedom
 SURE = 0.05  # the covariance is fitted where the probability of failure is at most this
-LOG_ODDS, SLOPE = "failure_posterior_log_odds", "failure_log_odds_by_"  # the posterior's, and terms that are it times something
-LEAST_SLOPE = 0.02  # of the log-odds (kLeastSlope of checked_probability.cc)
+LEAST_SLOPE, MOST_LOG_ODDS = 0.02, 11.5  # of the posterior (kLeastSlope and kMostLogOdds of checked_probability.cc)
+NUM_PRODUCTS = 30
+KNOTS = (0.1, 0.25, 0.5, 0.75, 0.9)  # quantiles of a sign
+BEST_BY_CURVATURE = 25  # products whose score is computed beside all that are chosen
 DEPENDENT_NOISE = {"correlated", "duplicated", "anisotropic"}
 OF_ALL = {"ECE", "AUC", "Brier"}  # measures that are reported of all regimes together
 COHERENT_OUTLIERS = {"moving_object", "clustered_both", "repeated_texture", "mixture"}
@@ -61,10 +67,10 @@ def sources_of_modes(scale):
 def sources(scale):
     """(training, held out) of the check; `scale` 1 for the committed constants."""
     draws = lambda n: max(20, int(n * scale))
-    training = [Source("studies/right_calibration.yaml", 51, draws(2400), 4), Source("studies/any_condition.yaml", 52, draws(600), 4, LESS, fits_covariance=False)]
-    training += [Source(f"studies/calibrated/{family}.yaml", 53, None, max(2, int(20 * scale)), LESS) for family in FAMILIES]
-    training.append(Source("studies/right_calibration.yaml", 54, draws(300), 4, LESS, fits_covariance=False, listing="permuted"))
-    held_out = [Source("studies/right_calibration.yaml", 61, draws(400), 12), Source("studies/any_condition.yaml", 62, draws(200), 12),
+    training = [Source("studies/right_calibration.yaml", 51, draws(2400), 4), Source("studies/any_condition.yaml", 52, draws(600), 4, fits_covariance=False)]
+    training += [Source(f"studies/calibrated/{family}.yaml", 53, None, max(2, int(20 * scale)), OF_FAMILY) for family in FAMILIES]
+    training.append(Source("studies/right_calibration.yaml", 54, draws(300), 4, OF_RANDOM, fits_covariance=False, listing="permuted"))
+    held_out = [Source("studies/right_calibration.yaml", 61, draws(1200), 4), Source("studies/any_condition.yaml", 62, draws(200), 12),
                 Source("studies/right_calibration.yaml", 64, draws(100), 6, listing="permuted")]
     return training, held_out
 
@@ -106,7 +112,7 @@ class ModePairs:
 
 
 class Trials:
-    """Rows of the sources as arrays: failure and spread terms, posterior, outcome, cluster, regime."""
+    """Rows of the sources as arrays: signs, spread terms, posterior and its log-odds, outcome, cluster, regime."""
 
     def __init__(self, files, sources):
         rows, self.weight, self.cluster, self.fits_covariance, self.is_permuted = [], [], [], [], []
@@ -118,12 +124,14 @@ class Trials:
                     self.fits_covariance.append(source.fits_covariance)
                     self.is_permuted.append(source.listing == "permuted")
                     self.cluster.append((k, row["condition"]))
-        self.names = [key for key in rows[0] if key.startswith("failure_")]
+        self.names = [key for key in rows[0] if key.startswith("sign_")]
         self.spread_names = [key for key in rows[0] if key.startswith("spread_")]
         column = lambda key: np.array([float(row[key]) for row in rows])
         self.x = np.column_stack([column(key) for key in self.names])
         self.spread = np.column_stack([column(key) for key in self.spread_names])
         self.posterior, self.nees, self.failed = column("posterior"), column("nees"), column("failed")
+        with np.errstate(divide="ignore"):
+            self.log_odds = np.clip(np.log(self.posterior / (1 - self.posterior)), -MOST_LOG_ODDS, MOST_LOG_ODDS)
         self.weight, self.fits_covariance, self.is_permuted = (np.array(x) for x in (self.weight, self.fits_covariance, self.is_permuted))
         _, self.cluster = np.unique([f"{k}:{c}" for k, c in self.cluster], return_inverse=True)
         self.regime = np.array([self._regime(row) for row in rows])
@@ -145,32 +153,176 @@ def logistic(x):
     return 1.0 / (1.0 + np.exp(-np.clip(x, -40, 40)))
 
 
-def probability(names, x, b):
-    """P of the terms of these names, as CheckedFailureProbability has it."""
-    of_log_odds, slopes = names.index(LOG_ODDS), np.array([name.startswith(SLOPE) for name in names])
-    log_odds = x[:, of_log_odds]
-    slope = b[of_log_odds] + np.divide(x[:, slopes] @ b[slopes], log_odds, out=np.zeros(len(x)), where=log_odds != 0)
-    rest = ~slopes
-    rest[of_log_odds] = False
-    return logistic(np.maximum(slope, LEAST_SLOPE) * log_odds + x[:, rest] @ b[rest])
+class Hinge:
+    """max(direction (x - knot), 0) of the sign in a column."""
+
+    def __init__(self, column, direction, knot):
+        self.column, self.direction, self.knot = column, direction, knot
+
+    def values(self, x):
+        return np.maximum(self.direction * (x[:, self.column] - self.knot), 0.0)
+
+
+class Product:
+    """One or two hinges; where it tempers, times the log-odds."""
+
+    def __init__(self, tempers, hinges):
+        self.tempers, self.hinges = tempers, hinges
+
+    def values(self, x, log_odds):
+        value = log_odds if self.tempers else np.ones(len(x))
+        for hinge in self.hinges:
+            value = value * hinge.values(x)
+        return value
+
+    def text(self, names):
+        parts = [f"({names[h.column].removeprefix('sign_')} - {h.knot:.3g})+" if h.direction > 0
+                 else f"({h.knot:.3g} - {names[h.column].removeprefix('sign_')})+" for h in self.hinges]
+        return " ".join(["log-odds"] * self.tempers + parts)
+
+
+class Check:
+    """The probability of failure of a fit: ranges of the signs, products, and the weights of 1, the log-odds, the posterior and these."""
+
+    def __init__(self, ranges, products, weights):
+        self.ranges, self.products, self.weights = ranges, products, weights
+
+    def cut(self, x):
+        return np.clip(x, self.ranges[1:, 0], self.ranges[1:, 1])
+
+    def design(self, trials, products=None):
+        x = self.cut(trials.x)
+        columns = [p.values(x, trials.log_odds) for p in (self.products if products is None else products)]
+        return np.column_stack([np.ones(len(x)), trials.log_odds, trials.posterior, *columns])
+
+    def probability(self, trials):
+        """As CheckedFailureProbability has it."""
+        terms = self.design(trials) * self.weights
+        tempers = np.array([False, True, False] + [p.tempers for p in self.products])
+        slope = np.divide(terms[:, tempers].sum(axis=1), trials.log_odds, out=np.zeros(len(terms)), where=trials.log_odds != 0)
+        return logistic(np.maximum(slope, LEAST_SLOPE) * trials.log_odds + terms[:, ~tempers].sum(axis=1))
+
+    def is_in_domain(self, trials):
+        """As IsInDomain has it."""
+        values = np.column_stack([trials.log_odds, trials.x])
+        return ((values >= self.ranges[:, 0]) & (values <= self.ranges[:, 1])).all(axis=1)
 
 
 def fit_failure(x, failed, weight, has_constant=True):
     """Weights of a ridge logistic regression by Newton's method; where there is a constant it is the first column."""
-    scale = np.sqrt((x**2).mean(axis=0)) if not has_constant else x.std(axis=0)
+    mean, scale = x.mean(axis=0), x.std(axis=0)
+    if not has_constant:
+        mean, scale = np.zeros(x.shape[1]), np.sqrt((x**2).mean(axis=0))
+    else:
+        mean[0], scale[0] = 0.0, 1.0
+    scale[scale == 0] = 1.0
+    b = newton((x - mean) / scale, failed, weight, np.zeros(x.shape[1]), has_constant)
+    b /= scale
     if has_constant:
-        scale[0] = 1.0
-    z = x / scale
-    penalty = RIDGE * np.diag([0.0 if has_constant else 1.0] + [1.0] * (x.shape[1] - 1)) * weight.sum()
-    b = np.zeros(x.shape[1])
+        b[0] -= b[1:] @ mean[1:]
+    return b
+
+
+def penalty_of(number, weight, has_constant=True):
+    return RIDGE * np.diag([0.0 if has_constant else 1.0] + [1.0] * (number - 1)) * weight.sum()
+
+
+def newton(z, failed, weight, b, has_constant=True):
+    """Ridge logistic regression on standardised columns, begun at b; a step that does not gain is halved."""
+    penalty = penalty_of(z.shape[1], weight, has_constant)
+
+    def loss(b):
+        return weight @ (np.logaddexp(0, z @ b) - failed * (z @ b)) + 0.5 * b @ penalty @ b
+
+    now = loss(b)
     for _ in range(50):
         p = logistic(z @ b)
         hessian = (z * (weight * np.maximum(p * (1 - p), 1e-6))[:, None]).T @ z + penalty
         step = np.linalg.solve(hessian, z.T @ (weight * (failed - p)) - penalty @ b)
-        b += step
+        while (after := loss(b + step)) > now and np.abs(step).max() > 1e-10:
+            step = step / 2
+        b, now = b + step, after
         if np.abs(step).max() < 1e-8:
             break
-    return b / scale
+    return b
+
+
+def standardised(column):
+    spread = column.std()
+    return (column - column.mean()) / spread if spread > 1e-9 else np.zeros(len(column))
+
+
+def list_hinges(x):
+    """At the quantiles of every sign, either way, but for those that are 0 or linear all over the trials."""
+    hinges = []
+    for column in range(x.shape[1]):
+        for knot in sorted(set(np.quantile(x[:, column], KNOTS))):
+            hinges += [Hinge(column, 1, knot)] if knot < x[:, column].max() else []
+            hinges += [Hinge(column, -1, knot)] if knot > x[:, column].min() else []
+    return hinges
+
+
+def list_candidates(values, parents, residual, curvature):
+    """(score, parent, hinge) of the products that promise most: squared score over the curvature beside a constant."""
+    found = []
+    for k, (_, of_parent) in enumerate(parents):
+        score = (residual * of_parent) @ values
+        mean = (curvature * of_parent) @ values
+        square = (curvature * of_parent**2) @ values**2
+        scores = score**2 / np.maximum(square - mean**2 / curvature.sum(), 1e-3 * square + 1e-9)
+        found += [(scores[j], k, j) for j in np.argsort(-scores)[:5]]
+    return sorted(found, key=lambda candidate: -candidate[0])[:BEST_BY_CURVATURE]
+
+
+def choose_products(x, log_odds, posterior, failed, weight, number):
+    """The products, in the order in which they are chosen: of a hinge, of the log-odds and a hinge, or of a chosen hinge and another."""
+    hinges = list_hinges(x)
+    values = np.column_stack([hinge.values(x) for hinge in hinges])
+    z = np.column_stack([np.ones(len(x)), standardised(log_odds), standardised(posterior)])
+    b, products = newton(z, failed, weight, np.zeros(3)), []
+    while len(products) < number:
+        p = logistic(z @ b)
+        residual, curvature = weight * (failed - p), weight * p * (1 - p)
+        singles = [q.hinges[0] for q in products if not q.tempers and len(q.hinges) == 1]
+        parents = [((False, []), np.ones(len(x))), ((True, []), log_odds)] + [((False, [h]), h.values(x)) for h in singles]
+        inverse = np.linalg.inv((z * curvature[:, None]).T @ z + penalty_of(z.shape[1], weight))
+        best, chosen = 0.0, None
+        for _, k, j in list_candidates(values, parents, residual, curvature):
+            (tempers, before), of_parent = parents[k]
+            if any(h.column == hinges[j].column for h in before) or is_chosen(products, tempers, [*before, hinges[j]]):
+                continue
+            column = standardised(of_parent * values[:, j])
+            across = (z * curvature[:, None]).T @ column
+            score = (residual @ column)**2 / (curvature @ column**2 - across @ inverse @ across + RIDGE * weight.sum())
+            if score > best:
+                best, chosen = score, (Product(tempers, [*before, hinges[j]]), column)
+        products.append(chosen[0])
+        z = np.column_stack([z, chosen[1]])
+        b = newton(z, failed, weight, np.append(b, 0.0))
+    return products
+
+
+def is_chosen(products, tempers, hinges):
+    return any(q.tempers == tempers and q.hinges == hinges for q in products)
+
+
+def fit_of_products(check, train, products):
+    """Weights of 1, the log-odds, the posterior and products; the posterior's is 0 where it would be less, for P grows with it."""
+    design = check.design(train, products)
+    weights = fit_failure(design, train.failed, train.weight)
+    if weights[2] < 0.0:
+        rest = [k for k in range(design.shape[1]) if k != 2]
+        weights[rest], weights[2] = fit_failure(design[:, rest], train.failed, train.weight), 0.0
+    return weights
+
+
+def fit_probability(train):
+    """Random partners are no domain in which P could be verified: the ranges are those of the other trials."""
+    known = np.column_stack([train.log_odds, train.x])[~train.is_permuted]
+    check = Check(np.quantile(known, [OUTSIDE, 1 - OUTSIDE], axis=0).T, [], None)
+    check.products = choose_products(check.cut(train.x), train.log_odds, train.posterior, train.failed, train.weight, NUM_PRODUCTS)
+    check.weights = fit_of_products(check, train, check.products)
+    return check
 
 
 def fit_spread(y, nees, weight, level=0.95):
@@ -188,11 +340,6 @@ def fit_spread(y, nees, weight, level=0.95):
 def log_loss(p, failed, weight):
     p = np.clip(p, 1e-9, 1 - 1e-9)
     return -np.average(failed * np.log(p) + (1 - failed) * np.log(1 - p), weights=weight)
-
-
-def in_domain(x, domain):
-    """Whether all terms lie in the domain that the constants state (IsInDomain)."""
-    return ((x >= domain[:, 0]) & (x <= domain[:, 1])).all(axis=1)
 
 
 def measure(programs, trials, p, covered, here):
@@ -219,58 +366,111 @@ def report(programs, source, trials, p, factor, is_verified):
 
 
 def describe_sources(training):
-    """Comment lines, one per source."""
-    return "".join(f"//   {s.study}, seed {s.seed}, " + (f"{s.number} draws, " if s.number else "") + f"{s.trials} trials of each condition"
-                   + (f", weight {s.weight}" if s.weight != 1 else "") + (", partners permuted" if s.listing == "permuted" else "") + ("" if s.fits_covariance else ", for P alone") + "\n" for s in training)
+    """A line per source."""
+    return [f"{s.study}, seed {s.seed}, " + (f"{s.number} draws, " if s.number else "") + f"{s.trials} trials of each condition"
+            + (f", weight {s.weight}" if s.weight != 1 else "") + (", partners permuted" if s.listing == "permuted" else "") + ("" if s.fits_covariance else ", for P alone") for s in training]
 
 
-def write_constants(name, training, keys, weights, x):
-    """Replaces an array of the header, and above it the trials that it was fitted to."""
-    prefix = keys[0].split("_")[0] + "_"
-    terms = "".join(f'    {{"{key[len(prefix):]}", {weight:.6g}, {least:.6g}, {most:.6g}}},\n'
-                    for key, weight, least, most in zip(keys, weights, *np.quantile(x, [OUTSIDE, 1 - OUTSIDE], axis=0)))
-    made = f"// Fitted to\n//\n{describe_sources(training)}inline constexpr FittedTerm {name}[] = {{\n{terms}}};\n"
-    HEADER.write_text(re.sub(rf"// Fitted to\n(//[^\n]*\n)*inline constexpr FittedTerm {name}\[\] = {{\n(.*?)\n}};\n",
-                             lambda _: made, HEADER.read_text(), flags=re.DOTALL))
+def write_array(name, rows, training=None):
+    """Replaces an array of the header, and where there is one the comment above it: the trials that it was fitted to."""
+    made = "" if training is None else "// Fitted to\n//\n" + "".join(f"//   {line}\n" for line in describe_sources(training))
+    text = HEADER.read_text()
+    old = re.search((r"// Fitted to\n(//[^\n]*\n)*" if training is not None else "") + rf"(inline constexpr \w+ {name}\[\] = {{\n).*?\n}};\n", text, re.DOTALL)
+    head = old.group(old.lastindex)
+    HEADER.write_text(text[:old.start()] + made + head + "".join(f"    {row},\n" for row in rows) + "};\n" + text[old.end():])
 
 
-def read_constants(name):
-    """Rows (weight, least, most) of an array of the header, as they are in the program."""
+def weight_rows(keys, weights):
+    return [f'{{"{key}", {weight:.9g}}}' for key, weight in zip(keys, weights)]
+
+
+def hinge_text(names, hinge):
+    return f'{{"{names[hinge.column].removeprefix("sign_")}", {hinge.direction}, {hinge.knot:.9g}}}'
+
+
+def product_row(names, weight, product):
+    hinges = ", true, ".join(hinge_text(names, hinge) for hinge in product.hinges)
+    return f'{{{weight:.9g}, {"true" if product.tempers else "false"}, {hinges}}}'
+
+
+def write_check(training, train, check, spread):
+    write_array("kFailureTerms", weight_rows(["constant", "posterior_log_odds", "posterior"], check.weights), training)
+    write_array("kFailureProducts", [product_row(train.names, *one) for one in zip(check.weights[3:], check.products)])
+    names = ["posterior_log_odds"] + [name.removeprefix("sign_") for name in train.names]
+    write_array("kSignRanges", [f'{{"{name}", {least:.9g}, {most:.9g}}}' for name, (least, most) in zip(names, check.ranges)])
+    write_array("kSpreadTerms", weight_rows([name.removeprefix("spread_") for name in train.spread_names], spread),
+                [source for source in training if source.fits_covariance])
+
+
+def read_array(name):
+    """Lines of an array of the header, without their braces."""
     array = re.search(rf"{name}\[\] = {{\n(.*?)\n}};", HEADER.read_text(), re.DOTALL)[1]
-    return np.array([[float(x) for x in row.rstrip("},").split(", ")[1:]] for row in array.splitlines()])
+    return [line.strip() for line in array.splitlines()]
 
 
-def read_header():
-    """(b, its domain, a) of the check's constants as they are in the program."""
-    failure, spread = read_constants("kFailureTerms"), read_constants("kSpreadTerms")
-    return failure[:, 0], failure[:, 1:], spread[:, 0]
+def read_numbers(name):
+    """Rows of numbers of an array whose rows begin with a name."""
+    return np.array([[float(x) for x in row.rstrip("},").split(", ")[1:]] for row in read_array(name)])
+
+
+def read_product(row, names):
+    """(weight, product) of a line of kFailureProducts."""
+    weight, tempers = re.match(r"{([^,]+), (true|false)", row).groups()
+    hinges = [Hinge(names.index("sign_" + sign), float(direction), float(knot))
+              for sign, direction, knot in re.findall(r'{"(\w+)", ([^,]+), ([^}]+)}', row)]
+    return float(weight), Product(tempers == "true", hinges)
+
+
+def read_header(names):
+    """(the check, the weights of the covariance's terms) as they are in the program."""
+    products = [read_product(row, names) for row in read_array("kFailureProducts")]
+    weights = np.concatenate([read_numbers("kFailureTerms")[:, 0], [weight for weight, _ in products]])
+    return Check(read_numbers("kSignRanges"), [product for _, product in products], weights), read_numbers("kSpreadTerms")[:, 0]
 
 
 def is_same(now, fitted):
+    now, fitted = np.asarray(now), np.asarray(fitted)
     return now.shape == fitted.shape and np.allclose(now, fitted, rtol=1e-4, atol=1e-6)
 
 
+def is_same_check(now, fitted, names):
+    return is_same(now.weights, fitted.weights) and [p.text(names) for p in now.products] == [p.text(names) for p in fitted.products]
+
+
 def write_tables(programs, folder, train, held_out, tests):
-    b, domain, a = read_header()
+    check, spread = read_header(train.names)
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "held_out.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["population", "regime", "conditions", "quantity", "before", "after"])
         for source, test in zip(held_out, tests):
-            factor = np.maximum(1.0, np.exp(test.spread @ a))
-            p = probability(test.names, test.x, b)
-            table.writerows(report(programs, source, test, p, factor, in_domain(test.x, domain)))
+            factor = np.maximum(1.0, np.exp(test.spread @ spread))
+            table.writerows(report(programs, source, test, check.probability(test), factor, check.is_in_domain(test)))
     with open(folder / "terms.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
-        table.writerow(["term", "weight", "log_loss_more_without"])
-        base = log_loss(logistic(tests[0].x @ b), tests[0].failed, tests[0].weight)
-        for k, name in enumerate(train.names):
-            rest = [j for j in range(len(train.names)) if j != k]
-            without = fit_failure(train.x[:, rest], train.failed, train.weight) if k else None
-            cost = log_loss(logistic(tests[0].x[:, rest] @ without), tests[0].failed, tests[0].weight) - base if k else float("nan")
-            table.writerow([name[len("failure_"):], f"{b[k]:.4g}", f"{cost:.4f}" if k else ""])
-        for name, weight in zip(train.spread_names, a):
-            table.writerow(["covariance: " + name[len("spread_"):], f"{weight:.4g}", ""])
+        table.writerow(["term", "weight"])
+        for name, weight in zip(["constant", "log-odds", "posterior", *(p.text(train.names) for p in check.products)], check.weights):
+            table.writerow([name, f"{weight:.4g}"])
+        for name, weight in zip(train.spread_names, spread):
+            table.writerow(["covariance: " + name[len("spread_"):], f"{weight:.4g}"])
+    write_signs_table(folder, check, train, tests[0])
+
+
+def write_signs_table(folder, check, train, test):
+    """What leaving out a sign costs on held-out trials: the others' products, fitted again. Without its own they are fewer."""
+    def loss(products):
+        less = Check(check.ranges, products, fit_of_products(check, train, products))
+        return log_loss(less.probability(test), test.failed, test.weight)
+
+    base = loss(check.products)
+    with open(folder / "signs.csv", "w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["sign", "products", "log_loss_more_without"])
+        for column, name in enumerate(train.names):
+            rest = [p for p in check.products if all(hinge.column != column for hinge in p.hinges)]
+            number = len(check.products) - len(rest)
+            table.writerow([name.removeprefix("sign_"), number, f"{loss(rest) - base:.4f}" if number else ""])
+        table.writerow(["all", len(check.products), f"{loss([]) - base:.4f}"])
 
 
 def write_modes_table(folder, train, test, b):
@@ -294,26 +494,24 @@ def fit_modes(arguments):
     train = ModePairs(files[:len(training)], training)
     b = fit_failure(train.x, np.ones(len(train.x)), train.weight, has_constant=False)
     if not arguments.report_only:
-        write_constants("kModeTerms", training, train.names, b, train.x)
+        write_array("kModeTerms", weight_rows([name.removeprefix("mode_") for name in train.names], b), training)
     write_modes_table(arguments.out, train, ModePairs(files[len(training):], held_out), b)
-    return is_same(read_constants("kModeTerms")[:, 0], b)
+    return is_same(read_numbers("kModeTerms")[:, 0], b)
 
 
 def fit_check(arguments):
     training, held_out = sources(arguments.scale)
     files = make_all(training + held_out, arguments)
     train = Trials(files[:len(training)], training)
-    b = fit_failure(train.x, train.failed, train.weight)
-    sure = train.fits_covariance & (probability(train.names, train.x, b) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
-    a = fit_spread(train.spread[sure], train.nees[sure], train.weight[sure])
+    check = fit_probability(train)
+    sure = train.fits_covariance & (check.probability(train) <= SURE) & np.isfinite(train.nees) & (train.nees > 0)
+    spread = fit_spread(train.spread[sure], train.nees[sure], train.weight[sure])
     if not arguments.report_only:
-        # Random partners are no domain in which P could be verified.
-        write_constants("kFailureTerms", training, train.names, b, train.x[~train.is_permuted])
-        write_constants("kSpreadTerms", [s for s in training if s.fits_covariance], train.spread_names, a, train.spread[~train.is_permuted])
+        write_check(training, train, check, spread)
     tests = [Trials([path], [source]) for path, source in zip(files[len(training):], held_out)]
     write_tables(arguments.programs, arguments.out, train, held_out, tests)
-    now_b, _, now_a = read_header()
-    return is_same(now_b, b) and is_same(now_a, a)
+    now, now_spread = read_header(train.names)
+    return is_same_check(now, check, train.names) and is_same(now_spread, spread)
 
 
 def make_all(sources, arguments):

@@ -52,7 +52,7 @@ TEST(DescribeAnswer, AnotherMotionThatExplainsNoMoreIsSaidToExplainAsMuch) {
 
 TEST(DescribeAnswer, TheModelsDoubtIsTheOneThatTheCheckFound) {
   ModelCheck check;
-  check.partner_dependence = 5.0;
+  check.partner_dependence.order_z = 5.0;
   EXPECT_THAT(Describe(Doubt::kModel, check), HasSubstr("matches like these"));
   check.planar_share = 0.95;
   EXPECT_THAT(Describe(Doubt::kModel, check), HasSubstr("a plane"));
@@ -64,7 +64,7 @@ TEST(DescribeAnswer, TheModelsDoubtIsTheOneThatTheCheckFound) {
   EXPECT_THAT(Describe(Doubt::kModel, check), HasSubstr("the noise is 3 times the assumed"));
   check.neighbour_z = 6.0;
   EXPECT_THAT(Describe(Doubt::kModel, check), HasSubstr("neighbouring matches err alike"));
-  check.partner_dependence = 1.0;
+  check.partner_dependence = {1.0, -0.5};
   EXPECT_THAT(Describe(Doubt::kModel, check), HasSubstr("as random ones would"));
 }
 

@@ -14,10 +14,13 @@
 namespace rcme {
 namespace {
 
-double FindDependenceOfAll(const MotionProblem& problem, const RelativePose& pose) {
+PartnerDependence FindBothOfAll(const MotionProblem& problem, const RelativePose& pose) {
   std::vector<size_t> all(problem.matches.size());
   std::iota(all.begin(), all.end(), 0);
   return FindPartnerDependence(problem, pose, all);
+}
+double FindDependenceOfAll(const MotionProblem& problem, const RelativePose& pose) {
+  return FindBothOfAll(problem, pose).greater_z();
 }
 
 // Cameras of one pixel per unit, the second a step to the right: a and b are x / sqrt(x^2 + 1) on the middle
@@ -34,6 +37,8 @@ const RelativePose kStepToTheRight{Eigen::Matrix3d::Identity(), Eigen::Vector3d:
 // signs 2, 1 and 0, variances 8/3, 3/3 and 0. Against the order: sums -2, -1, 0; then the ranks, a third of
 // 5/6, 1/2 and 1/6, speak as little: 0.
 TEST(FindPartnerDependence, IsThatOfThreeMatchesByHand) {
+  EXPECT_NEAR(FindBothOfAll(ProblemOnALine({{-3, 3}, {-2, 2}, {-1, 1}}), kStepToTheRight).order_z,
+              -3.0 / std::sqrt(11.0 / 3.0), 1e-12);
   EXPECT_NEAR(FindDependenceOfAll(ProblemOnALine({{-3, 1}, {-2, 2}, {-1, 3}}), kStepToTheRight),
               3.0 / std::sqrt(11.0 / 3.0), 1e-12);
   EXPECT_NEAR(FindDependenceOfAll(ProblemOnALine({{-3, 3}, {-2, 2}, {-1, 1}}), kStepToTheRight), 0.0, 1e-12);
@@ -71,7 +76,7 @@ TEST(FindPartnerDependence, IsSeldomLargeWherePartnersAreRandom) {
       places.emplace_back(rng.Uniform(-0.5, 0.5), rng.Uniform(-0.5, 0.5));
       if (places[i].first < places[i].second) in_front.push_back(i);
     }
-    const double z = FindPartnerDependence(ProblemOnALine(places), kStepToTheRight, in_front);
+    const double z = FindPartnerDependence(ProblemOnALine(places), kStepToTheRight, in_front).greater_z();
     num_large += z > 3.0;
     sum += z;
   }
