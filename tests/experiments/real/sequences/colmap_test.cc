@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "experiments/real/sequences/colmap_camera.h"
+#include "experiments/data/colmap_camera.h"
 #include "experiments/real/sequences/colmap_model.h"
 #include "experiments/real/sequences/listed_pairs.h"
 #include "tests/test_support/dataset_checks.h"

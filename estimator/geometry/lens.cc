@@ -1,4 +1,4 @@
-#include "experiments/real/sequences/lens.h"
+#include "estimator/geometry/lens.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "experiments/real/sequences/colmap_camera.h"
+#include "experiments/data/colmap_camera.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,10 @@
-// Real lenses, against OpenCV, and where a camera was between two known poses.
-#include "experiments/real/sequences/lens.h"
+// Real lenses, against OpenCV.
+#include "estimator/geometry/lens.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "experiments/real/sequences/trajectory.h"
 #include "tests/test_support/expect_input_error.h"
 
 namespace rcme {
@@ -67,24 +66,6 @@ TEST(Lens, UndistortsUpToTenFocalLengths) {
   ASSERT_TRUE(Undistort(fisheye, {146.0, 0.0}).has_value());
   EXPECT_NEAR(Undistort(fisheye, {146.0, 0.0})->x(), 100.0 * std::tan(1.46), 1e-3);
   EXPECT_FALSE(Undistort(fisheye, {150.0, 0.0}).has_value());
-}
-
-TEST(Trajectory, IsTakenBetweenItsPosesAndNowhereElse) {
-  Trajectory trajectory;
-  const CameraPose a{RotationFromVector({0, 0, 0.1}), {0, 0, 0}},
-      b{RotationFromVector({0, 0, 0.3}), {2, 0, 4}};
-  EXPECT_TRUE(trajectory.Add(1.0, a));
-  EXPECT_TRUE(trajectory.Add(2.0, b));
-  EXPECT_FALSE(trajectory.Add(2.0, b));
-  EXPECT_FALSE(trajectory.Add(1.5, b));
-  const std::optional<CameraPose> between = trajectory.At(1.25, 1.0);
-  ASSERT_TRUE(between.has_value());
-  EXPECT_LT((between->center - Eigen::Vector3d(0.5, 0, 1)).norm(), 1e-12);
-  EXPECT_LT((between->R_world_from_cam - RotationFromVector({0, 0, 0.15})).norm(), 1e-12);
-  EXPECT_TRUE(trajectory.At(1.0, 0.5).has_value());
-  EXPECT_TRUE(trajectory.At(2.0, 0.5).has_value());
-  for (const double outside : {0.999, 2.001}) EXPECT_FALSE(trajectory.At(outside, 1.0).has_value());
-  EXPECT_FALSE(trajectory.At(1.5, 0.5).has_value());  // a gap
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/real/sequences/lens.h"
+#include "estimator/geometry/lens.h"
 
 namespace rcme {
 
