@@ -17,7 +17,10 @@ std::optional<UndistortedMatch> UndistortMatch(const Lens& lens1, const Lens& le
   if (!x1_px || !x2_px) return std::nullopt;
   const double area1 = std::abs(UndistortionJacobian(lens1, *x1_px).determinant()),
                area2 = std::abs(UndistortionJacobian(lens2, *x2_px).determinant());
-  return UndistortedMatch{{*x1_px, *x2_px}, std::sqrt(0.5 * (area1 + area2))};
+  const double noise_ratio = std::sqrt(0.5 * (area1 + area2));
+  if (!(noise_ratio > 0.0) || !std::isfinite(noise_ratio))
+    return std::nullopt;  // coefficients beyond all sense
+  return UndistortedMatch{{*x1_px, *x2_px}, noise_ratio};
 }
 
 UndistortedProblem UndistortProblem(const Lens& lens1, const Lens& lens2, MotionProblem distorted) {

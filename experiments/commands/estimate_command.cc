@@ -365,9 +365,10 @@ x1 y1 x2 y2, separated by commas or blanks; give the intrinsics with --K, once f
 images or once for each. A K that does not fit the size of the images or the positions
 of the key points gives a warning; an impossible K is refused.
 
-Images that a lens distorts: --camera MODEL,parameters, or a header line '# camera1: MODEL w h
-parameters', has COLMAP's camera models by name. Matches are undistorted and weighed by how
-much of the noise this magnifies; --sigma is the noise in the images as they were taken.
+For images that a lens distorts, give --camera MODEL,parameters, or a header line
+'# camera1: MODEL w h parameters', with a camera model of COLMAP. Matches are undistorted
+and weighed by how much that magnifies their noise; --sigma is the noise in the images
+as they were taken.
 
 The default estimator, rcme_calibrated, states the probability that its motion is wrong;
 --estimator rcme is that of the paper. An estimator file (YAML) has a name, a label and
