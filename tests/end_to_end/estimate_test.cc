@@ -12,6 +12,7 @@
 
 #include "estimator/geometry/lens.h"
 #include "estimator/geometry/pose.h"
+#include "tests/end_to_end/bad_input.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/paths.h"
