@@ -15,7 +15,9 @@
 #include <vector>
 
 #include "estimator/protection_level.h"
+#include "estimator/undistortion.h"
 #include "experiments/core/work/for_each_index.h"
+#include "experiments/data/colmap_camera.h"
 #include "experiments/real/answer/probabilities_for_bounds.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
@@ -98,8 +100,17 @@ py::object LevelsAt(const MotionEstimate& estimate, double risk) {
   return py::dict("risk"_a = risk, "rotation"_a = levels.rotation_rad, "direction"_a = levels.direction_rad);
 }
 
-Camera MakeCamera(const std::array<double, 4>& k, int width, int height) {
-  return {k[0], k[1], k[2], k[3], width, height};
+Lens MakeCamera(const std::string& model, const std::vector<double>& parameters, int width, int height) {
+  return MakeNamedLens(model, parameters, {width, height}, model);
+}
+
+// The first row at a pixel that no ray reaches.
+std::optional<py::ssize_t> FindUnreached(const Lens& camera, const Array& x_px) {
+  if (camera.model == LensModel::kPinhole) return std::nullopt;
+  for (py::ssize_t i = 0; i < x_px.shape(0); ++i) {
+    if (!Undistort(camera, {x_px.at(i, 0), x_px.at(i, 1)})) return i;
+  }
+  return std::nullopt;
 }
 
 struct ChosenEstimator {
@@ -116,12 +127,13 @@ ChosenEstimator MakeChosen(const std::string& name, const std::string& file, con
   return {specs.front(), Make(specs.front())};
 }
 
-MotionProblem MakeProblem(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
+// Undistorted; every row has rays (FindUnreached).
+MotionProblem MakeProblem(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2,
                           double sigma_px, std::vector<double> noise_scale) {
-  MotionProblem problem{{}, camera1, camera2, sigma_px, std::move(noise_scale)};
+  MotionProblem problem{{}, {}, {}, sigma_px, std::move(noise_scale)};
   for (py::ssize_t i = 0; i < x1.shape(0); ++i)
     problem.matches.push_back({{x1.at(i, 0), x1.at(i, 1)}, {x2.at(i, 0), x2.at(i, 1)}});
-  return problem;
+  return UndistortProblem(camera1, camera2, std::move(problem)).problem;
 }
 
 // Pairs (rotation, direction), deg.
@@ -133,10 +145,10 @@ std::vector<FailureBounds> MakeBounds(const AnglePairs& pairs) {
   return bounds;
 }
 
-py::dict Estimate(const Array& x1, const Array& x2, const Camera& camera1, const Camera& camera2,
-                  double sigma_px, std::vector<double> noise_scale, const std::string& name,
-                  const std::string& file, const Settings& options, std::uint64_t seed, bool allow_process,
-                  const AnglePairs& bounds, double integrity_risk) {
+py::dict Estimate(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2, double sigma_px,
+                  std::vector<double> noise_scale, const std::string& name, const std::string& file,
+                  const Settings& options, std::uint64_t seed, bool allow_process, const AnglePairs& bounds,
+                  double integrity_risk) {
   const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
   const MotionProblem problem = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
   const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
@@ -202,7 +214,7 @@ class AnswerArrays {
 };
 
 // x1, x2, camera1, camera2, noise_scale.
-using GivenPair = std::tuple<Array, Array, Camera, Camera, std::vector<double>>;
+using GivenPair = std::tuple<Array, Array, Lens, Lens, std::vector<double>>;
 
 std::vector<EstimateForBounds> AnswerOnThreads(const MotionEstimator& estimator,
                                                const std::vector<MotionProblem>& problems,
@@ -244,7 +256,7 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
 }  // namespace
 
 void BindEstimate(py::module_& module) {
-  py::class_<Camera>(module, "Camera").def(py::init(&MakeCamera));
+  py::class_<Lens>(module, "Camera").def(py::init(&MakeCamera)).def("find_unreached", &FindUnreached);
   module.def("estimate", &Estimate);
   module.def("estimate_many", &EstimateMany);
 }

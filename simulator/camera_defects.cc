@@ -9,20 +9,25 @@ namespace {
 // that a point moves meanwhile, a tenth or less.
 constexpr int kRounds = 8;
 
-Eigen::Vector2d Distorted(const Camera& camera, double k1, const Eigen::Vector2d& x_px) {
-  const Eigen::Vector2d centre_px(camera.cx, camera.cy);
+Eigen::Vector2d ProjectDistorted(const SceneCamera& camera, double k1, const Eigen::Vector3d& point_in_cam) {
+  if (camera.HasLens()) {  // which bends the rays that are left
+    const double r2 = point_in_cam.head<2>().squaredNorm() / (point_in_cam.z() * point_in_cam.z());
+    const Eigen::Vector2d bent = (1.0 + k1 * r2) * point_in_cam.head<2>();
+    return camera.Project({bent.x(), bent.y(), point_in_cam.z()});
+  }
+  const Eigen::Vector2d x_px = camera.Project(point_in_cam), centre_px(camera.cx, camera.cy);
   const Eigen::Vector2d ray = camera.Ray(x_px).head<2>();
   return centre_px + (1.0 + k1 * ray.squaredNorm()) * (x_px - centre_px);
 }
 
 // The image whose middle row is read at the time `middle`.
-Eigen::Vector2d ImagedPoint(const ViewPair& view, const Camera& camera, double middle,
+Eigen::Vector2d ImagedPoint(const ViewPair& view, const SceneCamera& camera, double middle,
                             const CameraDefects& defects, const Eigen::Vector3d& point_in_cam1) {
   const Eigen::Vector3d w = VectorFromRotation(view.cam2_from_cam1_true.R);
   const Eigen::Vector3d T = view.baseline_m * view.cam2_from_cam1_true.t;
   const auto imaged_at = [&](double time) {
     const Eigen::Vector3d point = RotationFromVector(time * w) * point_in_cam1 + time * T;
-    return Distorted(camera, defects.distortion_k1, camera.Project(point));
+    return ProjectDistorted(camera, defects.distortion_k1, point);
   };
   Eigen::Vector2d x_px = imaged_at(middle);
   if (defects.rolling_shutter == 0.0) return x_px;

@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "estimator/geometry/camera.h"
 #include "parameters/parameter.h"
+#include "simulator/scene_camera.h"
 
 namespace rcme {
 
@@ -13,7 +13,7 @@ class CameraModel {
  public:
   virtual ~CameraModel() = default;
   virtual std::vector<Parameter> Parameters() { return {}; }
-  virtual std::pair<Camera, Camera> Make() const = 0;  // of image 1 and of image 2
+  virtual std::pair<SceneCamera, SceneCamera> Make() const = 0;  // of image 1 and of image 2
 };
 
 }  // namespace rcme

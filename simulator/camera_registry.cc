@@ -10,6 +10,8 @@ const std::vector<CameraEntry>& CameraRegistry() {
       {"two_pinholes", "two different ideal cameras, each with its own size and focal length",
        MakeTwoPinholes},
       {"own_intrinsics", "two user-defined cameras: size, fx, fy, cx, cy of each", MakeOwnIntrinsics},
+      {"radtan", "two equal cameras with the radial and tangential distortion of OpenCV's model", MakeRadtan},
+      {"fisheye", "two equal fisheye cameras: OpenCV's equidistant model", MakeFisheye},
       {"kitti", "KITTI odometry, rectified grey camera, 1241 x 376, f 719 px", MakeKitti},
       {"euroc", "EuRoC MAV cam0, undistorted, 752 x 480, f 458 px", MakeEuroc},
       {"office", "RGB-D camera of an office robot, 640 x 480, f 525 px", MakeOffice},

@@ -53,11 +53,16 @@ inline Parameter MinShiftParameter(double* min_shift_px) {
                          "least distance between the wrong and the true point in image 2, before noise");
 }
 
-// Uniform over the image, whose border runs half a pixel outside the outermost pixel centres.
-inline Eigen::Vector2d DrawPixel(const Camera& camera, RandomStream& rng) {
-  const double x = rng.Uniform(-0.5, camera.width - 0.5);
-  const double y = rng.Uniform(-0.5, camera.height - 0.5);
-  return {x, y};
+// Uniform over the image, whose border runs half a pixel outside the outermost pixel centres; behind a lens
+// over the pixels that a ray reaches, of which an image that shows a point has enough.
+inline Eigen::Vector2d DrawPixel(const SceneCamera& camera, RandomStream& rng) {
+  Eigen::Vector2d x_px;
+  for (int draw = 0; draw < kMaxOutlierDraws; ++draw) {
+    x_px.x() = rng.Uniform(-0.5, camera.width - 0.5);
+    x_px.y() = rng.Uniform(-0.5, camera.height - 0.5);
+    if (!camera.HasLens() || camera.IsInImage(x_px)) break;
+  }
+  return x_px;
 }
 
 }  // namespace rcme

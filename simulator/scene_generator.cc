@@ -149,6 +149,7 @@ Scene SceneGenerator::GenerateWith(const Motion& motion, int num_matches, Random
 
 void SceneGenerator::DrawPart(const World& world, size_t part, size_t num_points, RandomStream& rng,
                               Scene* scene) const {
+  const bool has_lens = scene->camera1.HasLens() || scene->camera2.HasLens();
   const Eigen::Matrix3d clip_from_cam1 = ClipFromCam(scene->camera1),
                         clip_from_cam2 = ClipFromCam(scene->camera2);
   const Eigen::Matrix3d A2 = clip_from_cam2 * scene->cam2_from_cam1_true.R;
@@ -164,11 +165,14 @@ void SceneGenerator::DrawPart(const World& world, size_t part, size_t num_points
   size_t num_draws = 0;
   for (; num_accepted < num_wanted && num_draws < max_draws; num_draws += PointBlock::kSize) {
     world.DrawCandidates(part, num_draws, rng, &candidates);
-    MeasureClearance(clip_from_cam1, Eigen::Vector3d::Zero(), candidates, &clearance1);
-    MeasureClearance(A2, t2, candidates, &clearance2);
+    if (!has_lens) {
+      MeasureClearance(clip_from_cam1, Eigen::Vector3d::Zero(), candidates, &clearance1);
+      MeasureClearance(A2, t2, candidates, &clearance2);
+    }
     for (size_t i = 0; i < PointBlock::kSize; ++i) {
       points[num_accepted] = {candidates.x_m[i], candidates.y_m[i], candidates.z_m[i]};
-      num_accepted += std::min(clearance1[i], clearance2[i]) >= 0.0;
+      num_accepted +=
+          has_lens ? scene->Sees(points[num_accepted]) : std::min(clearance1[i], clearance2[i]) >= 0.0;
     }
   }
   if (num_accepted < num_wanted) {

@@ -2,14 +2,14 @@
 
 #include <Eigen/Core>
 
-#include "estimator/geometry/camera.h"
 #include "estimator/geometry/pose.h"
+#include "simulator/scene_camera.h"
 
 namespace rcme {
 
 // Two cameras and the motion between them, with its length.
 struct ViewPair {
-  Camera camera1, camera2;
+  SceneCamera camera1, camera2;
   RelativePose cam2_from_cam1_true;  // |t| = 1; t means nothing where the baseline is zero
   double baseline_m = 0.0;           // length of the translation
 
@@ -22,9 +22,7 @@ struct ViewPair {
 
   // Whether both images show the point.
   bool Sees(const Eigen::Vector3d& point_in_cam1) const {
-    const Eigen::Vector3d in_cam2 = InCamera2(point_in_cam1);
-    return point_in_cam1.z() > 0.0 && in_cam2.z() > 0.0 &&
-           camera1.IsInImage(camera1.Project(point_in_cam1)) && camera2.IsInImage(camera2.Project(in_cam2));
+    return camera1.Shows(point_in_cam1) && camera2.Shows(InCamera2(point_in_cam1));
   }
 };
 

@@ -17,6 +17,7 @@
 #include "experiments/core/work/make_in_order.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
+#include "experiments/data/colmap_camera.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
 #include "experiments/real/answer/estimate_output.h"
@@ -32,7 +33,7 @@ constexpr const char* kStandardInput = "-";
 
 struct EstimateArguments {
   std::vector<std::string> matches;  // files and folders, or kStandardInput
-  std::vector<std::string> intrinsics;
+  std::vector<std::string> intrinsics, cameras;
   EstimatorChoice estimator;
   double sigma_px = 0.5;
   std::int64_t seed = 1;
@@ -63,7 +64,7 @@ std::vector<FailureBounds> ParseFailureBounds(const std::vector<std::string>& te
   return bounds;
 }
 
-Camera ParseCamera(const std::string& text) {
+Lens ParseIntrinsics(const std::string& text) {
   std::array<double, 4> k{};
   size_t count = 0;
   bool are_numbers = true;
@@ -74,17 +75,34 @@ Camera ParseCamera(const std::string& text) {
     if (!are_numbers) break;
   }
   const Camera camera{k[0], k[1], k[2], k[3], 1, 1};
-  if (are_numbers && count == k.size() && camera.IsValid()) return camera;
+  if (are_numbers && count == k.size() && camera.IsValid()) return {camera};
   throw InputError(
       fmt::format("--K: {} is not allowed; give fx,fy,cx,cy in px, fx and fy > 0", Quoted(text)));
 }
 
+// "OPENCV,fx,fy,cx,cy,k1,k2,p1,p2".
+Lens ParseNamedCamera(const std::string& text) {
+  std::vector<std::string> words;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return LensWithoutSizeFromWords(words, fmt::format("--camera {}", Quoted(text)));
+}
+
 // Of both images, or one each.
-GivenCameras ParseCameras(const std::vector<std::string>& intrinsics) {
-  if (intrinsics.empty()) return std::nullopt;
-  if (intrinsics.size() > 2)
-    throw InputError("--K: given more than twice; give it once for both images, or once for each");
-  return std::array<Camera, 2>{ParseCamera(intrinsics.front()), ParseCamera(intrinsics.back())};
+GivenCameras ParseCameras(const EstimateArguments& arguments) {
+  if (!arguments.intrinsics.empty() && !arguments.cameras.empty())
+    throw InputError("--K and --camera say the same; give one of them");
+  const bool has_lens = !arguments.cameras.empty();
+  const std::vector<std::string>& texts = has_lens ? arguments.cameras : arguments.intrinsics;
+  if (texts.empty()) return std::nullopt;
+  if (texts.size() > 2)
+    throw InputError(fmt::format("{}: given more than twice; give it once for both images, or once for each",
+                                 has_lens ? "--camera" : "--K"));
+  const auto parse = has_lens ? ParseNamedCamera : ParseIntrinsics;
+  return std::array<Lens, 2>{parse(texts.front()), parse(texts.back())};
 }
 
 // What the arguments name, folders opened.
@@ -107,7 +125,7 @@ class Answerer {
  public:
   explicit Answerer(const EstimateArguments& arguments)
       : arguments_(arguments),
-        given_(ParseCameras(arguments.intrinsics)),
+        given_(ParseCameras(arguments)),
         bounds_(ParseFailureBounds(arguments.bounds)),
         spec_(ChosenEstimator(arguments.estimator)),
         estimator_(Make(spec_)) {
@@ -347,6 +365,11 @@ x1 y1 x2 y2, separated by commas or blanks; give the intrinsics with --K, once f
 images or once for each. A K that does not fit the size of the images or the positions
 of the key points gives a warning; an impossible K is refused.
 
+For images that a lens distorts, give --camera MODEL,parameters, or a header line
+'# camera1: MODEL w h parameters', with a camera model of COLMAP. Matches are undistorted
+and weighed by how much that magnifies their noise; --sigma is the noise in the images
+as they were taken.
+
 The default estimator, rcme_calibrated, states the probability that its motion is wrong;
 --estimator rcme is that of the paper. An estimator file (YAML) has a name, a label and
 options, so an estimator that you tuned by simulation runs on real pairs with the same
@@ -361,6 +384,7 @@ Examples:
   rcme estimate pairs/                                  a line per file
   rcme estimate matches.csv.gz --bounds 1,5 --bounds 5,20
   rcme estimate bare.txt --K 800,800,319.5,239.5        four columns, no header
+  rcme estimate raw.txt --camera OPENCV,458.7,457.3,367.2,248.4,-.283,.074,.0002,.00002
   some_matcher a.jpg b.jpg | rcme estimate - --K 800,800,319.5,239.5
   rcme estimate matches.csv.gz --estimator standard --set num_iterations=1000
   rcme estimate matches.csv.gz --estimator-file tuned.yaml --set mu=6
@@ -376,6 +400,13 @@ matches, all matches on a line).)");
   command
       ->add_option("--K", arguments->intrinsics,
                    "fx,fy,cx,cy in px, for files without intrinsics; give it twice if the images differ")
+      ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--camera", arguments->cameras,
+          "MODEL,parameters in px, in place of --K for images that a lens distorts: a camera model of "
+          "COLMAP with its parameters, such as OPENCV,fx,fy,cx,cy,k1,k2,p1,p2; give it twice if the "
+          "images differ")
       ->allow_extra_args(false);
   CLI::Option* estimator =
       command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")

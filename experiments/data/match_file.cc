@@ -11,8 +11,10 @@
 
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
+#include "estimator/undistortion.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/files/gzip_lines.h"
+#include "experiments/data/colmap_camera.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
@@ -26,9 +28,10 @@ constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
 constexpr std::string_view kSigmaColumn = "sigma_px";
 constexpr size_t kMaxColumns = 1000;
 constexpr size_t kMaxSceneBytes = 200;
-constexpr std::array<std::string_view, 13> kHeaderKeys = {
-    "size1",    "size2",       "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit",         "truth_sd",
-    "baseline", "noise_level", "image1",         "image2",         "scene",      "seconds_between"};
+constexpr std::array<std::string_view, 15> kHeaderKeys = {
+    "camera1",        "camera2",    "size1",  "size2",    "K1_fx_fy_cx_cy",
+    "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit", "truth_sd", "baseline",
+    "noise_level",    "image1",     "image2", "scene",    "seconds_between"};
 
 std::string_view Trim(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r");
@@ -132,14 +135,27 @@ std::array<int, 2> LikelySize(const Camera& camera, const std::vector<Correspond
   return {whole(size.x()), whole(size.y())};
 }
 
+// Of the key `camera1` or `camera2`, beside which the others have nothing to say.
+Lens NamedLensFrom(const Header& header, const std::string& camera_key, const std::string& size_key,
+                   const std::string& k_key, const Lens* given) {
+  if (given) header.Fail(camera_key, "the file has its own intrinsics; leave out --K and --camera");
+  for (const std::string& key : {size_key, k_key}) {
+    if (header.Has(key)) header.Fail(key, fmt::format("{} says it already; leave one out", camera_key));
+  }
+  return LensFromWords(SplitAtBlanks(header.Text(camera_key)), header.Place(camera_key));
+}
+
 // Camera 1 or 2. Nothing given: the file has to say it all.
-Camera CameraFrom(const Header& header, const std::string& number, const Camera* given,
-                  const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px) {
-  const std::string size_key = "size" + number, k_key = "K" + number + "_fx_fy_cx_cy";
-  Camera camera;
+Lens CameraFrom(const Header& header, const std::string& number, const Lens* given,
+                const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px) {
+  const std::string size_key = "size" + number, k_key = "K" + number + "_fx_fy_cx_cy",
+                    camera_key = "camera" + number;
+  if (header.Has(camera_key)) return NamedLensFrom(header, camera_key, size_key, k_key, given);
+  Lens lens;
+  Camera& camera = lens.camera;
   if (given) {
     if (header.Has(k_key)) header.Fail(k_key, "the file has its own intrinsics; leave out --K");
-    camera = *given;
+    lens = *given;
   }
   const std::array<int, 2> size =
       given && !header.Has(size_key) ? LikelySize(camera, matches, x_px) : SizeFrom(header, size_key);
@@ -150,17 +166,18 @@ Camera CameraFrom(const Header& header, const std::string& number, const Camera*
   camera.width = size[0];
   camera.height = size[1];
   if (!given && !camera.IsValid()) header.Fail(k_key, "K is singular or mirrored; fx and fy must be > 0");
-  return camera;
+  return lens;
 }
 
 // What is suspicious about the cameras of a file whose K may be given.
 std::vector<CameraDoubt> FindDoubts(const Header& header, const MatchFile& file, bool is_given) {
-  const auto place = [&](const char* key) {
-    return is_given ? fmt::format("{}: --K", file.path) : header.Place(key);
+  const auto has_own = [&](const std::string& number) { return header.Has("camera" + number); };
+  const auto place = [&](const std::string& number) {
+    if (has_own(number)) return header.Place("camera" + number);
+    return is_given ? fmt::format("{}: --K", file.path) : header.Place("K" + number + "_fx_fy_cx_cy");
   };
-  return FindPairDoubts(file.camera1, file.camera2, file.matches,
-                        {place("K1_fx_fy_cx_cy"), place("K2_fx_fy_cx_cy")},
-                        {header.Has("size1"), header.Has("size2")});
+  return FindPairDoubts(file.camera1, file.camera2, file.matches, {place("1"), place("2")},
+                        {header.Has("size1") || has_own("1"), header.Has("size2") || has_own("2")});
 }
 
 std::optional<RelativePose> TruePoseFrom(const Header& header) {
@@ -247,6 +264,9 @@ class Rows {
  public:
   explicit Rows(MatchFile* file) : file_(file) {}
 
+  // "file:12" of a match.
+  std::string Place(size_t match) const { return fmt::format("{}:{}", file_->path, line_numbers_.at(match)); }
+
   void Add(std::string_view line, const GzipLines& lines) {
     const std::vector<std::string> fields =
         line.find(',') == std::string_view::npos ? SplitAtBlanks(line) : SplitAtCommas(line);
@@ -258,6 +278,7 @@ class Rows {
       lines.Fail(fmt::format("too many matches; at most {} are allowed", kMaxMatchesPerFile));
     } else {
       file_->matches.push_back(MatchFrom(fields, lines));
+      line_numbers_.push_back(lines.line_number());
       if (sigma_column_ > 0) file_->sigma_px.push_back(SigmaFrom(fields, lines));
     }
   }
@@ -287,8 +308,29 @@ class Rows {
   }
 
   MatchFile* file_;
-  size_t sigma_column_ = 0;  // 0, where x1 is: none
+  std::vector<int> line_numbers_;  // of the matches
+  size_t sigma_column_ = 0;        // 0, where x1 is: none
 };
+
+// Throws InputError that names the row of a match that has no rays.
+void UndistortMatches(const Lens& lens1, const Lens& lens2, const Rows& rows, MatchFile* file) {
+  if (lens1.model == LensModel::kPinhole && lens2.model == LensModel::kPinhole) return;
+  file->had_lens = true;
+  const size_t n = file->matches.size();
+  UndistortedProblem undistorted = UndistortProblem(
+      lens1, lens2, {file->matches, {}, {}, 1.0, ComputeNoiseScale(std::move(file->sigma_px))});
+  for (size_t i = 0; i < n && undistorted.kept.size() < n; ++i) {
+    if (i < undistorted.kept.size() && undistorted.kept[i] == i) continue;
+    const bool is_first = !Undistort(lens1, file->matches[i].x1_px);
+    const Eigen::Vector2d& x_px = is_first ? file->matches[i].x1_px : file->matches[i].x2_px;
+    throw InputError(fmt::format(
+        "{}: no ray of camera {} reaches ({}, {}) px, by the lens that is stated; leave the match out",
+        rows.Place(i), is_first ? 1 : 2, x_px.x(), x_px.y()));
+  }
+  file->matches = std::move(undistorted.problem.matches);
+  file->sigma_px = std::move(undistorted.problem.noise_scale);
+  file->noise_growth = undistorted.problem.sigma_px;
+}
 
 MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCameras& given) {
   MatchFile file;
@@ -306,11 +348,14 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
       rows.Add(line, lines);
     }
   }
-  file.camera1 =
-      CameraFrom(header, "1", given ? &given->front() : nullptr, file.matches, &Correspondence::x1_px);
-  file.camera2 =
-      CameraFrom(header, "2", given ? &given->back() : nullptr, file.matches, &Correspondence::x2_px);
+  const Lens lens1 = CameraFrom(header, "1", given ? &given->front() : nullptr, file.matches,
+                                &Correspondence::x1_px),
+             lens2 = CameraFrom(header, "2", given ? &given->back() : nullptr, file.matches,
+                                &Correspondence::x2_px);
+  file.camera1 = lens1.camera;
+  file.camera2 = lens2.camera;
   file.doubts = FindDoubts(header, file, given.has_value());
+  UndistortMatches(lens1, lens2, rows, &file);
   file.cam2_from_cam1_true = TruePoseFrom(header);
   file.truth_sd = TruthSdFrom(header);
   file.baseline = BaselineFrom(header);
@@ -333,7 +378,7 @@ MatchFile ReadMatchesFromInput(const GivenCameras& given) {
 }
 
 MotionProblem MakeMotionProblem(MatchFile file, double sigma_px) {
-  return {std::move(file.matches), file.camera1, file.camera2, sigma_px,
+  return {std::move(file.matches), file.camera1, file.camera2, sigma_px * file.noise_growth,
           ComputeNoiseScale(std::move(file.sigma_px))};
 }
 

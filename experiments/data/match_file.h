@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "estimator/geometry/lens.h"
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"
 #include "experiments/data/camera_plausibility.h"
@@ -18,6 +19,11 @@ namespace rcme {
 //   # size2: 1536 1024
 //   # K1_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
 //   # K2_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
+//   # camera1: OPENCV 1536 1024 1379.7 1382.1 760.1 503.2 -.2 .05 0 0    in place of size1 and K1, of an
+//   image
+//                                          that a lens distorts: a camera model of COLMAP, width, height and
+//                                          its parameters (colmap_camera.h), in the pixels of this file;
+//                                          camera2 likewise
 //   # R_rowmajor: ... (9)                    optional, with t_unit: the true motion X2 = R X1 + t
 //   # t_unit: ... (3)
 //   # truth_sd: 0.01 0.01 0.01 2e-3 2e-3 2e-3   optional: that motion's own standard deviations, along the
@@ -46,6 +52,9 @@ struct MatchFile {
   std::optional<TruthSd> truth_sd;
   std::string image1, image2;    // empty: not said
   std::vector<double> sigma_px;  // per match; empty: the file has no such column
+  bool had_lens = false;  // matches are undistorted; camera1 and camera2 are what is left of the lenses
+  // Noise of the median match over what it was in the images as they were taken, before undistortion.
+  double noise_growth = 1.0;
   double baseline = std::numeric_limits<double>::quiet_NaN();         // NaN: the file does not say
   double noise_level = 1.0;                                           // of a template
   double seconds_between = std::numeric_limits<double>::quiet_NaN();  // NaN: the file does not say
@@ -54,8 +63,8 @@ struct MatchFile {
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
 
-// The intrinsics of files that have none, camera 1 first; width and height do not count.
-using GivenCameras = std::optional<std::array<Camera, 2>>;
+// The cameras of files that have none, camera 1 first; width and height do not count.
+using GivenCameras = std::optional<std::array<Lens, 2>>;
 
 // Reads line by line; memory is that of the matches. Throws InputError that names the file, the line, what is
 // wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible or cannot be
@@ -63,14 +72,18 @@ using GivenCameras = std::optional<std::array<Camera, 2>>;
 // is not finite, a sigma_px that is not positive, more than kMaxMatchesPerFile matches, 1,000 columns or what
 // GzipLines allows. Columns are separated by commas or, in a line without one, by blanks.
 //
+// Matches of images that a lens distorts are undistorted: the file has those of the pinhole cameras with the
+// same K, and sigma_px says how noisy each is beside the others there (estimator/undistortion.h). A row whose
+// pixel no ray reaches throws as the others do.
+//
 // Where the intrinsics are given the file must have none; where it does not say the size of the images
 // either, it is twice the principal point, or what holds all points if that is more.
 MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given = std::nullopt);
 // The same from standard input, which is also the path of the result.
 MatchFile ReadMatchesFromInput(const GivenCameras& given = std::nullopt);
 
-// What an estimator is given of a file: its matches and cameras, the noise level that is assumed, and of a
-// column sigma_px each one's share of the median (noise_scale).
+// What an estimator is given of a file: its matches and cameras, the noise level that is assumed of the
+// images as they were taken, and of a column sigma_px each one's share of the median (noise_scale).
 MotionProblem MakeMotionProblem(MatchFile file, double sigma_px);
 
 // Writes the same format, plain. Throws InputError if the path cannot be written; never leaves half a file.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "estimator/noise_scale.h"
+#include "estimator/undistortion.h"
 #include "simulator/noise_registry.h"
 #include "simulator/outlier_registry.h"
 #include "stats/median_ratio.h"
@@ -45,6 +46,14 @@ auto Simulate(const Make& make) {
   } catch (const InputError& error) {
     throw NotSimulated(error.what());
   }
+}
+
+template <typename T>
+std::vector<T> Select(const std::vector<T>& all, const std::vector<size_t>& which) {
+  std::vector<T> selected;
+  selected.reserve(which.size());
+  for (const size_t i : which) selected.push_back(all[i]);
+  return selected;
 }
 
 }  // namespace
@@ -142,18 +151,30 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, std::span<const double> no
   return Give(scene, Simulate([&] { return Observe(scene, noise, outliers_, unused, outlier_rng); }));
 }
 
+Lens SimulatedData::AssumedLens(const SceneCamera& camera_true) const {
+  Lens lens = camera_true.AsLens();
+  lens.camera = assumed_.AssumedCamera(lens.camera);
+  return lens;
+}
+
 TrialData SimulatedData::Give(const Scene& scene, Observation observation) const {
   TrialData data;
   // sigma_px is that of the median match where single ones are told apart.
   const double median = observation.noise_scale.empty() ? 1.0 : ComputeMedian(observation.noise_scale);
-  data.problem = {std::move(observation.matches), assumed_.AssumedCamera(scene.camera1),
-                  assumed_.AssumedCamera(scene.camera2), assumed_.AssumedSigma(median * noise_->sigma_px()),
-                  ComputeNoiseScale(std::move(observation.noise_scale))};
-  data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(), std::move(observation.is_inlier_true),
-                std::move(observation.is_undetectable)};
+  MotionProblem as_taken = {std::move(observation.matches),
+                            {},
+                            {},
+                            assumed_.AssumedSigma(median * noise_->sigma_px()),
+                            ComputeNoiseScale(std::move(observation.noise_scale))};
+  UndistortedProblem undistorted =
+      UndistortProblem(AssumedLens(scene.camera1), AssumedLens(scene.camera2), std::move(as_taken));
+  data.problem = std::move(undistorted.problem);
+  data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(),
+                Select(observation.is_inlier_true, undistorted.kept),
+                Select(observation.is_undetectable, undistorted.kept)};
   data.origin = "simulated";
   data.weight = observation.weight;
-  data.scene_point = std::move(observation.point);
+  data.scene_point = Select(observation.point, undistorted.kept);
   return data;
 }
 

@@ -64,6 +64,9 @@ class SimulatedData : public DataSource {
   TrialData MakeFrom(const Scene& scene, std::span<const double> normals, RandomStream& outlier_rng) const;
 
  private:
+  Lens AssumedLens(const SceneCamera& camera_true) const;
+  // Matches are undistorted; those at a pixel that no ray reaches, by noise or in the eyes of who assumes
+  // another K, are left out, as `rcme pairs` leaves out key points.
   TrialData Give(const Scene& scene, Observation observation) const;
 
   Choices choices_;                // none empty

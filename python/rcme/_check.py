@@ -15,8 +15,12 @@ from rcme import _rcme
 MAX_COORDINATE_PX = 1e6
 MAX_MATCHES = 1_000_000
 MAX_NOISE_SCALE = 1e6
-# How many parameters each model has, with the places of fx, fy, cx and cy among them.
-CAMERA_MODELS = {"PINHOLE": (4, (0, 1, 2, 3)), "SIMPLE_PINHOLE": (3, (0, 0, 1, 2))}
+# COLMAP's models: how many parameters each has, with the places of fx, fy, cx and cy among them.
+ONE_FOCAL_LENGTH, TWO_FOCAL_LENGTHS = (0, 0, 1, 2), (0, 1, 2, 3)
+CAMERA_MODELS = {"PINHOLE": (4, TWO_FOCAL_LENGTHS), "SIMPLE_PINHOLE": (3, ONE_FOCAL_LENGTH), "SIMPLE_RADIAL": (4, ONE_FOCAL_LENGTH),
+                 "RADIAL": (5, ONE_FOCAL_LENGTH), "OPENCV": (8, TWO_FOCAL_LENGTHS), "FULL_OPENCV": (12, TWO_FOCAL_LENGTHS),
+                 "OPENCV_FISHEYE": (8, TWO_FOCAL_LENGTHS), "SIMPLE_RADIAL_FISHEYE": (4, ONE_FOCAL_LENGTH),
+                 "RADIAL_FISHEYE": (5, ONE_FOCAL_LENGTH)}
 
 
 def words(value: Any) -> str:
@@ -180,7 +184,7 @@ def camera(name: str, value: Any) -> _rcme.Camera:
                          "without skew")
     # No size is known: one with the principal point in its centre.
     width, height = (max(1, min(1_000_000, round(2 * c + 1))) for c in (K[0, 2], K[1, 2]))
-    return _pinhole(name, [K[0, 0], K[1, 1], K[0, 2], K[1, 2]], width, height)
+    return _camera_of_model(name, "PINHOLE", np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2]]), width, height)
 
 
 def _camera_of_dict(name: str, value: Mapping[str, Any]) -> _rcme.Camera:
@@ -191,14 +195,21 @@ def _camera_of_dict(name: str, value: Mapping[str, Any]) -> _rcme.Camera:
     if not isinstance(model, str) or model not in CAMERA_MODELS:
         raise ValueError(f"{name}: model {words(model)} is not allowed; expected one of: {', '.join(CAMERA_MODELS)} "
                          "(undistort the points of others first)")
-    count, places = CAMERA_MODELS[model]
-    params = shaped(f"{name}: params", value["params"], (count,), f"the parameters of {model}")
+    params = shaped(f"{name}: params", value["params"], (CAMERA_MODELS[model][0],), f"the parameters of {model}")
     width, height = (whole(f"{name}: {key}", value[key], 1, 1_000_000) for key in ("width", "height"))
-    return _pinhole(name, [params[place] for place in places], width, height)
+    return _camera_of_model(name, model, params, width, height)
 
 
-def _pinhole(name: str, k: list[float], width: int, height: int) -> _rcme.Camera:
+def _camera_of_model(name: str, model: str, params: np.ndarray, width: int, height: int) -> _rcme.Camera:
+    k = [params[place] for place in CAMERA_MODELS[model][1]]
     if not (k[0] > 0 and k[1] > 0 and max(map(abs, k)) <= 1e9 and min(k[:2]) >= 1e-9):
         raise ValueError(f"{name}: fx = {k[0]:g}, fy = {k[1]:g}, cx = {k[2]:g}, cy = {k[3]:g} are not allowed; expected "
                          "focal lengths > 0 px, and none beyond 1e9 px")
-    return _rcme.Camera([float(x) for x in k], width, height)
+    return _rcme.Camera(model, params.tolist(), width, height)
+
+
+def reached(name: str, array: np.ndarray, camera: _rcme.Camera) -> None:
+    """That a ray of the camera reaches every pixel."""
+    row = camera.find_unreached(array)
+    if row is not None:
+        raise ValueError(f"{name}: row {row} is {array[row].tolist()}, where its camera's lens sends no ray; leave the match out")

@@ -44,10 +44,12 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     Parameters
     ----------
     x1, x2 : array (N, 2)
-        Matches: row i of both is the same point, seen in image 1 and in image 2 (px, without distortion).
+        Matches: row i of both is the same point, seen in image 1 and in image 2 (px).
     camera1, camera2 : dict {model, width, height, params}, or array (3, 3)
-        model PINHOLE (params fx, fy, cx, cy) or SIMPLE_PINHOLE (f, cx, cy), sizes in px; or K, whose image is taken to have
-        its principal point in its centre.
+        A camera model of COLMAP with its params, sizes in px: PINHOLE (fx, fy, cx, cy), SIMPLE_PINHOLE (f, cx, cy), OPENCV (fx,
+        fy, cx, cy, k1, k2, p1, p2), OPENCV_FISHEYE (fx, fy, cx, cy, k1, k2, k3, k4), SIMPLE_RADIAL, RADIAL, FULL_OPENCV,
+        SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE; or K of a pinhole, whose image is taken to have its principal point in its centre.
+        Behind a lens, matches are undistorted and weighed by how much of their noise that magnifies.
     options : dict
         estimator (its name; default rcme_calibrated) or estimator_file (a path); allow_process (bool; default False), whether
         the command of an estimator file may run (docs/threat_model.md); sigma_px, the standard deviation of the
@@ -176,7 +178,10 @@ def _pair(place: str, x1: Any, x2: Any, camera1: Any, camera2: Any) -> tuple[Any
     x1, x2 = _check.points(f"{place}x1", x1), _check.points(f"{place}x2", x2)
     if len(x1) != len(x2):
         raise ValueError(f"{place}x2: its shape is {x2.shape}; expected that of x1, {x1.shape}: row i of both is one match")
-    return x1, x2, _check.camera(f"{place}camera1", camera1), _check.camera(f"{place}camera2", camera2)
+    cameras = _check.camera(f"{place}camera1", camera1), _check.camera(f"{place}camera2", camera2)
+    _check.reached(f"{place}x1", x1, cameras[0])
+    _check.reached(f"{place}x2", x2, cameras[1])
+    return x1, x2, *cameras
 
 
 def _numbered_pair(place: int, pair: Any) -> tuple[Any, ...]:

@@ -11,7 +11,8 @@ Functions = dict[str, tuple[Callable[..., Any], str]]
 Settings = list[tuple[str, str]]
 
 class Camera:
-    def __init__(self, k: list[float], width: int, height: int) -> None: ...
+    def __init__(self, model: str, parameters: list[float], width: int, height: int) -> None: ...
+    def find_unreached(self, points: np.ndarray) -> int | None: ...
 
 class StudySource:
     def __init__(self, path: str, text: str, overrides: Settings, seed: int, trials: int,

@@ -13,6 +13,11 @@ std::unique_ptr<CameraModel> MakePinhole();
 std::unique_ptr<CameraModel> MakeTwoPinholes();
 std::unique_ptr<CameraModel> MakeOwnIntrinsics();
 
+// Two equal cameras with a lens (estimator/geometry/lens.h), the principal point in the middle. Their images
+// are those that the lens distorts.
+std::unique_ptr<CameraModel> MakeRadtan();
+std::unique_ptr<CameraModel> MakeFisheye();
+
 // Published calibrations of real cameras (after rectification or undistortion).
 std::unique_ptr<CameraModel> MakeKitti();
 std::unique_ptr<CameraModel> MakeEuroc();

@@ -30,7 +30,7 @@ class PinholePair : public CameraModel {
             HeightParameter("image_height", &camera_.height, "both images"),
             FocalParameter("focal_px", &camera_.focal_px, "both cameras")};
   }
-  std::pair<Camera, Camera> Make() const override { return {camera_.Make(), camera_.Make()}; }
+  std::pair<SceneCamera, SceneCamera> Make() const override { return {camera_.Make(), camera_.Make()}; }
 
  private:
   Pinhole camera_;
@@ -46,7 +46,7 @@ class TwoPinholes : public CameraModel {
             HeightParameter("image2_height", &camera2_.height, "image 2"),
             FocalParameter("focal2_px", &camera2_.focal_px, "camera 2")};
   }
-  std::pair<Camera, Camera> Make() const override { return {camera1_.Make(), camera2_.Make()}; }
+  std::pair<SceneCamera, SceneCamera> Make() const override { return {camera1_.Make(), camera2_.Make()}; }
 
  private:
   Pinhole camera1_, camera2_{1280, 720, 1000.0};
@@ -91,7 +91,7 @@ class OwnIntrinsics : public CameraModel {
     all.insert(all.end(), more.begin(), more.end());
     return all;
   }
-  std::pair<Camera, Camera> Make() const override { return {camera1_.Make(), camera2_.Make()}; }
+  std::pair<SceneCamera, SceneCamera> Make() const override { return {camera1_.Make(), camera2_.Make()}; }
 
  private:
   Intrinsics camera1_, camera2_;

@@ -14,10 +14,10 @@ const Camera kOffice = {525.0, 525.0, 319.5, 239.5, 640, 480};
 class FixedCameras : public CameraModel {
  public:
   FixedCameras(const Camera& camera1, const Camera& camera2) : cameras_(camera1, camera2) {}
-  std::pair<Camera, Camera> Make() const override { return cameras_; }
+  std::pair<SceneCamera, SceneCamera> Make() const override { return cameras_; }
 
  private:
-  std::pair<Camera, Camera> cameras_;
+  std::pair<SceneCamera, SceneCamera> cameras_;
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ class DisplacedOutliers : public OutlierLaw {
   }
 
  private:
-  Eigen::Vector2d DrawShiftInside(const Camera& camera2, const Eigen::Vector2d& from_px,
+  Eigen::Vector2d DrawShiftInside(const SceneCamera& camera2, const Eigen::Vector2d& from_px,
                                   RandomStream& rng) const {
     for (int draw = 0; draw < kMaxOutlierDraws; ++draw) {
       const Eigen::Vector2d shift_px = DrawShift(rng);

@@ -57,6 +57,42 @@ VisibleRay ClipToImage2(const ViewPair& view, const Eigen::Vector2d& x1_px) {
   return ray;
 }
 
+// Behind a lens the image of a ray is a curve, which may leave image 2 and come back. A point uniform along
+// it, but for the places within min_shift_px of the true one; nothing where that leaves no place. The curve
+// is a polygon whose sides count if both their ends do: the directions of its corners are (1 - s) P + s Q,
+// P and Q of unit length, s = 0, 1 / 256, ... 1, which are points of the ray as above.
+std::optional<Eigen::Vector2d> DrawOnCurve(const ViewPair& view, const Correspondence& exact,
+                                           double min_shift_px, RandomStream& rng) {
+  constexpr int kSides = 256;
+  const SceneCamera& camera2 = view.camera2;
+  const Eigen::Vector3d P = (view.cam2_from_cam1_true.R * view.camera1.Ray(exact.x1_px)).normalized();
+  const auto direction = [&](double s) {
+    return Eigen::Vector3d((1.0 - s) * P + s * view.cam2_from_cam1_true.t);
+  };
+  const auto is_place = [&](double s) {
+    return camera2.Shows(direction(s)) &&
+           (camera2.Project(direction(s)) - exact.x2_px).norm() >= min_shift_px;
+  };
+  std::array<double, kSides + 1> up_to_px{};  // length of what counts, up to each corner
+  bool was_place = is_place(0.0);
+  for (size_t i = 1; i <= kSides; ++i) {
+    const double s = 1.0 * static_cast<double>(i) / kSides, before = s - 1.0 / kSides;
+    const bool is_now = is_place(s);
+    up_to_px[i] = up_to_px[i - 1];
+    if (was_place && is_now)
+      up_to_px[i] += (camera2.Project(direction(s)) - camera2.Project(direction(before))).norm();
+    was_place = is_now;
+  }
+  if (!(up_to_px[kSides] > 0.0)) return std::nullopt;
+  const double place_px = rng.Uniform(0.0, up_to_px[kSides]);
+  const auto end = std::ranges::upper_bound(up_to_px, place_px);
+  if (end == up_to_px.end()) return std::nullopt;
+  const double side = static_cast<double>(end - up_to_px.begin() - 1);
+  const double s = (side + (place_px - *(end - 1)) / (*end - *(end - 1))) / kSides;
+  if (!is_place(s)) return std::nullopt;  // a side that runs out of the image between its ends
+  return camera2.Project(direction(s));
+}
+
 // The point in image 2 is that of another point on the viewing ray of the exact x1. What image 2 shows of the
 // ray is a segment; the point is uniform on it, but for the places less than outlier_min_shift_px from the
 // true one. (Without rotation, sideways, this is uniform in inverse depth.) The match's noise stays.
@@ -97,6 +133,7 @@ class EpipolarOutliers : public OutlierLaw {
   // Nothing where the visible ray leaves no place.
   std::optional<Eigen::Vector2d> DrawOnRay(const Scene& scene, std::uint32_t point, RandomStream& rng) const {
     const Correspondence exact = ExactMatch(scene, scene.points_in_cam1[point]);
+    if (scene.camera2.HasLens()) return DrawOnCurve(scene, exact, min_shift_px_, rng);
     const VisibleRay ray = ClipToImage2(scene, exact.x1_px);
     const double length_px = ray.Length(), true_px = (exact.x2_px - ray.far_px).norm();
     const double before_px = std::max(0.0, true_px - min_shift_px_);

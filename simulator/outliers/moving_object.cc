@@ -66,10 +66,8 @@ class MovingObject : public OutlierLaw {
     const double x = rng.Normal(), y = rng.Normal(), z = rng.Normal();
     const Eigen::Vector3d before = body.centre_in_cam1 + size_m_ * Eigen::Vector3d(x, y, z);
     const Eigen::Vector3d after_in_cam2 = view.InCamera2(body.Moved(before));
-    if (before.z() <= 0.0 || after_in_cam2.z() <= 0.0) return std::nullopt;
-    const Correspondence match{view.camera1.Project(before), view.camera2.Project(after_in_cam2)};
-    if (!view.camera1.IsInImage(match.x1_px) || !view.camera2.IsInImage(match.x2_px)) return std::nullopt;
-    return match;
+    if (!view.camera1.Shows(before) || !view.camera2.Shows(after_in_cam2)) return std::nullopt;
+    return Correspondence{view.camera1.Project(before), view.camera2.Project(after_in_cam2)};
   }
 
   // The exact matches of one object: the first of 200 objects of whose points at least one in 20 or so is

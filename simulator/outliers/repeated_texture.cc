@@ -65,8 +65,7 @@ class RepeatedTexture : public OutlierLaw {
     for (int draw = 0; draw < kMaxOutlierDraws; ++draw) {
       const Eigen::Vector3d shift_m = DrawShift(steps_m, rng);
       const Eigen::Vector3d in_cam2 = view.InCamera2(from_in_cam1 + shift_m);
-      const bool is_seen = in_cam2.z() > 0.0 && view.camera2.IsInImage(view.camera2.Project(in_cam2));
-      if (is_seen && !shift_m.isZero(0.0)) return shift_m;
+      if (view.camera2.Shows(in_cam2) && !shift_m.isZero(0.0)) return shift_m;
     }
     throw InputError(
         fmt::format("max_repeat_steps: {}: none of {} other repetitions of a point lies in image 2; "

@@ -15,8 +15,8 @@ constexpr int kMaxTriesPerCentre = 10'000;
 // Part 0: the background, a uniform volume. Part k: the points around centre k - 1, Gaussian.
 class ClustersWorld : public World {
  public:
-  ClustersWorld(const Camera& camera1, const DepthRange& depths, double spread_m, std::vector<double> shares,
-                std::vector<Eigen::Vector3d> centres_in_cam1)
+  ClustersWorld(const SceneCamera& camera1, const DepthRange& depths, double spread_m,
+                std::vector<double> shares, std::vector<Eigen::Vector3d> centres_in_cam1)
       : camera_(camera1),
         depths_(depths),
         spread_m_(spread_m),
@@ -36,7 +36,7 @@ class ClustersWorld : public World {
   }
 
  private:
-  Camera camera_;
+  SceneCamera camera_;
   DepthRange depths_;
   double spread_m_;
   std::vector<double> shares_;

@@ -13,7 +13,7 @@ constexpr double kFarSpan = 10.0;
 // Part 0: a uniform volume near by. Part 1: the same far away.
 class FarPointsWorld : public World {
  public:
-  FarPointsWorld(const Camera& camera1, const DepthRange& near, const DepthRange& far, double far_share)
+  FarPointsWorld(const SceneCamera& camera1, const DepthRange& near, const DepthRange& far, double far_share)
       : camera_(camera1), near_(near), far_(far), far_share_(far_share) {}
 
   std::vector<double> PartShares() const override { return {1.0 - far_share_, far_share_}; }
@@ -23,7 +23,7 @@ class FarPointsWorld : public World {
   }
 
  private:
-  Camera camera_;
+  SceneCamera camera_;
   DepthRange near_, far_;
   double far_share_;
 };

@@ -28,8 +28,8 @@ Eigen::Vector2d DrawOffset(ClusterShape shape, RandomStream& rng) {
 // Part 0: the background, a uniform volume. Part 1: offspring, each of a parent drawn with equal chances.
 class ImageClustersWorld : public World {
  public:
-  ImageClustersWorld(const Camera& camera1, const DepthRange& depths, ClusterShape shape, double spread_px,
-                     double clustered_share, std::vector<Eigen::Vector2d> parents_px)
+  ImageClustersWorld(const SceneCamera& camera1, const DepthRange& depths, ClusterShape shape,
+                     double spread_px, double clustered_share, std::vector<Eigen::Vector2d> parents_px)
       : camera_(camera1),
         depths_(depths),
         shape_(shape),
@@ -49,7 +49,7 @@ class ImageClustersWorld : public World {
   }
 
  private:
-  Camera camera_;
+  SceneCamera camera_;
   DepthRange depths_;
   ClusterShape shape_;
   double spread_px_, clustered_share_;

@@ -46,7 +46,7 @@ double UsualShare(Region region) {
 
 class ImageRegionWorld : public PointwiseWorld {
  public:
-  ImageRegionWorld(const Camera& camera1, const ImagePart& part, const DepthRange& depths)
+  ImageRegionWorld(const SceneCamera& camera1, const ImagePart& part, const DepthRange& depths)
       : camera_(camera1), part_(part), depths_(depths) {}
 
  private:
@@ -56,7 +56,7 @@ class ImageRegionWorld : public PointwiseWorld {
     return depths_.Draw(rng) * camera_.Ray({x_px, y_px});
   }
 
-  Camera camera_;
+  SceneCamera camera_;
   ImagePart part_;
   DepthRange depths_;
 };

@@ -16,7 +16,7 @@ struct Plane {
 // Part 0: on the plane. Part 1: off it.
 class PlaneWorld : public PointwiseWorld {
  public:
-  PlaneWorld(const Camera& camera1, const Plane& plane, double off_plane_share, double off_plane_m)
+  PlaneWorld(const SceneCamera& camera1, const Plane& plane, double off_plane_share, double off_plane_m)
       : camera_(camera1), plane_(plane), off_plane_share_(off_plane_share), off_plane_m_(off_plane_m) {}
 
   std::vector<double> PartShares() const override { return {1.0 - off_plane_share_, off_plane_share_}; }
@@ -31,7 +31,7 @@ class PlaneWorld : public PointwiseWorld {
     return plane_.distance_m / cos_incidence * ray + offset_m * plane_.normal;
   }
 
-  Camera camera_;
+  SceneCamera camera_;
   Plane plane_;
   double off_plane_share_, off_plane_m_;
 };

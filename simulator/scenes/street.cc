@@ -17,7 +17,7 @@ struct StreetSize {
 // Part 0: the road, 1: the facades, 2: what is far away. The street is convex: nothing hides anything.
 class StreetWorld : public PointwiseWorld {
  public:
-  StreetWorld(const Camera& camera1, double turn, const StreetSize& size, std::vector<double> shares)
+  StreetWorld(const SceneCamera& camera1, double turn, const StreetSize& size, std::vector<double> shares)
       : camera_(camera1),
         size_(size),
         upright_(camera1, Eigen::Vector3d::Zero(), turn),
@@ -43,7 +43,7 @@ class StreetWorld : public PointwiseWorld {
     return {depth_m * DrawRay(camera_, rng).x(), size_.camera_height_m - height_m, depth_m};
   }
 
-  Camera camera_;
+  SceneCamera camera_;
   StreetSize size_;
   UprightCamera upright_;
   std::vector<Rectangle> road_, facades_;

@@ -28,7 +28,8 @@ double MultipleAt(const Rectangle& rectangle, const Eigen::Vector3d& start,
 
 }  // namespace
 
-UprightCamera::UprightCamera(const Camera& camera, const Eigen::Vector3d& centre_in_building, double turn)
+UprightCamera::UprightCamera(const SceneCamera& camera, const Eigen::Vector3d& centre_in_building,
+                             double turn)
     : camera_(camera), centre_(centre_in_building) {
   const CosSin angle = PortableCosSinOfTurn(std::abs(turn));
   cos_turn_ = angle.cos;

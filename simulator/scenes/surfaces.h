@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "estimator/geometry/camera.h"
+#include "simulator/scene_camera.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -23,7 +23,7 @@ struct Rectangle {
 // those of the building.
 class UprightCamera {
  public:
-  UprightCamera(const Camera& camera, const Eigen::Vector3d& centre_in_building, double turn);
+  UprightCamera(const SceneCamera& camera, const Eigen::Vector3d& centre_in_building, double turn);
 
   // A viewing ray, given in camera axes, in the axes of the building.
   Eigen::Vector3d InBuildingAxes(const Eigen::Vector3d& ray) const;
@@ -35,7 +35,7 @@ class UprightCamera {
   Eigen::Vector3d DrawPoint(std::span<const Rectangle> rectangles, RandomStream& rng) const;
 
  private:
-  Camera camera_;
+  SceneCamera camera_;
   Eigen::Vector3d centre_;
   double cos_turn_, sin_turn_;
 };

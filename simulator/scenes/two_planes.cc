@@ -17,7 +17,7 @@ namespace {
 // camera.
 class TwoPlanesWorld : public PointwiseWorld {
  public:
-  TwoPlanesWorld(const Camera& camera1, double edge_depth_m, const std::array<CosSin, 2>& angles,
+  TwoPlanesWorld(const SceneCamera& camera1, double edge_depth_m, const std::array<CosSin, 2>& angles,
                  double first_plane_share)
       : camera_(camera1),
         edge_depth_m_(edge_depth_m),
@@ -37,7 +37,7 @@ class TwoPlanesWorld : public PointwiseWorld {
     return edge_depth_m_ * angles_[part].sin / denominator * ray;
   }
 
-  Camera camera_;
+  SceneCamera camera_;
   double edge_depth_m_;
   std::array<CosSin, 2> angles_;
   double first_plane_share_;

@@ -6,14 +6,15 @@ namespace {
 
 class UniformVolumeWorld : public World {
  public:
-  UniformVolumeWorld(const Camera& camera1, const DepthRange& depths) : camera_(camera1), depths_(depths) {}
+  UniformVolumeWorld(const SceneCamera& camera1, const DepthRange& depths)
+      : camera_(camera1), depths_(depths) {}
 
   void DrawCandidates(size_t, size_t, RandomStream& rng, PointBlock* block) const override {
     DrawInViewVolume(camera_, depths_, rng, block);
   }
 
  private:
-  Camera camera_;
+  SceneCamera camera_;
   DepthRange depths_;
 };
 

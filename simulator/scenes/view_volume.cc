@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -18,15 +20,39 @@ std::vector<Parameter> Parameters(DepthRange& depths) {
       Parameter::Real("max_depth_m", &depths.max_depth_m, {1e-6, 1e9}, "m", "greatest depth in camera 1")};
 }
 
-Eigen::Vector3d DrawRay(const Camera& camera, RandomStream& rng) {
-  const double y_px = -0.5 + camera.height * rng.Uniform();
-  const double x_px = -0.5 + camera.width * rng.Uniform();
-  return camera.Ray({x_px, y_px});
+Eigen::Vector3d DrawRay(const SceneCamera& camera, RandomStream& rng) {
+  constexpr int kMaxDraws = 10'000;
+  for (int draw = 0; draw < kMaxDraws; ++draw) {
+    const double y_px = -0.5 + camera.height * rng.Uniform();
+    const double x_px = -0.5 + camera.width * rng.Uniform();
+    const Eigen::Vector3d ray = camera.Ray({x_px, y_px});
+    if (!std::isnan(ray.x())) return ray;
+  }
+  throw InputError(
+      fmt::format("cameras: of {} x {} px the lens shows next to nothing; give another focal_px, image size "
+                  "or coefficients of the lens",
+                  camera.width, camera.height));
 }
+
+namespace {
+
+void DrawBehindLens(const SceneCamera& camera1, const DepthRange& depths, RandomStream& rng,
+                    PointBlock* block) {
+  for (size_t i = 0; i < PointBlock::kSize; ++i) {
+    const double y_px = -0.5 + camera1.height * rng.Uniform();
+    const double x_px = -0.5 + camera1.width * rng.Uniform();
+    const Eigen::Vector3d point = depths.Draw(rng) * camera1.Ray({x_px, y_px});
+    block->Set(i, std::isnan(point.x()) ? UnseenPoint() : point);
+  }
+}
+
+}  // namespace
 
 // Three uniforms a point: its y in image 1, x in image 1, depth. A plain loop over arrays, which the compiler
 // turns into vectors.
-void DrawInViewVolume(const Camera& camera1, const DepthRange& depths, RandomStream& rng, PointBlock* block) {
+void DrawInViewVolume(const SceneCamera& camera1, const DepthRange& depths, RandomStream& rng,
+                      PointBlock* block) {
+  if (camera1.HasLens()) return DrawBehindLens(camera1, depths, rng, block);
   std::array<double, 3 * PointBlock::kSize> uniforms;
   rng.FillUniform(uniforms);
   const Camera camera = camera1;  // a copy: the block is no alias of it

@@ -4,8 +4,8 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "estimator/geometry/camera.h"
 #include "parameters/parameter.h"
+#include "simulator/scene_camera.h"
 #include "simulator/scene_model.h"
 #include "stats/random.h"
 
@@ -22,10 +22,17 @@ struct DepthRange {
 };
 std::vector<Parameter> Parameters(DepthRange& depths);
 
-// The viewing ray (third component 1) of a pixel uniform over the image; two uniforms, y first.
-Eigen::Vector3d DrawRay(const Camera& camera, RandomStream& rng);
+// The viewing ray (third component 1) of a pixel uniform over the image; two uniforms, y first. Behind a lens
+// uniform over the pixels that a ray reaches; throws InputError if these are less than about one in a
+// thousand.
+Eigen::Vector3d DrawRay(const SceneCamera& camera, RandomStream& rng);
+Eigen::Vector3d DrawRay(const Camera& without_its_lens, RandomStream& rng) = delete;
 
-// Points whose first image is uniform over image 1 and whose depth is uniform in the range.
-void DrawInViewVolume(const Camera& camera1, const DepthRange& depths, RandomStream& rng, PointBlock* block);
+// Points whose first image is uniform over image 1 and whose depth is uniform in the range; UnseenPoint() at
+// a pixel that no ray reaches.
+void DrawInViewVolume(const SceneCamera& camera1, const DepthRange& depths, RandomStream& rng,
+                      PointBlock* block);
+void DrawInViewVolume(const Camera& without_its_lens, const DepthRange& depths, RandomStream& rng,
+                      PointBlock* block) = delete;
 
 }  // namespace rcme

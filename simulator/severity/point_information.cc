@@ -6,17 +6,26 @@ namespace rcme {
 namespace {
 
 // d pixel / d point, 2x3.
-Eigen::Matrix<double, 2, 3> ProjectionJacobian(const Camera& camera, const Eigen::Vector3d& point) {
+Eigen::Matrix<double, 2, 3> ProjectionJacobian(const SceneCamera& camera, const Eigen::Vector3d& point) {
   const double z = point.z();
   Eigen::Matrix<double, 2, 3> J;
+  if (camera.HasLens()) {
+    const Eigen::Vector2d ray = point.head<2>() / z;
+    J << Eigen::Matrix2d::Identity(), -ray;
+    return camera.RayJacobian(ray) / z * J;
+  }
   J << camera.fx / z, 0.0, -camera.fx * point.x() / (z * z), 0.0, camera.fy / z,
       -camera.fy * point.y() / (z * z);
   return J;
 }
 
 // n1 such that n1' (d x1 / d X) = -g', for a g with g' X = 0.
-Eigen::Vector2d CancelInImage1(const Camera& camera1, const Eigen::Vector3d& point,
+Eigen::Vector2d CancelInImage1(const SceneCamera& camera1, const Eigen::Vector3d& point,
                                const Eigen::Vector3d& g) {
+  if (camera1.HasLens()) {
+    const Eigen::Matrix2d A = camera1.RayJacobian(point.head<2>() / point.z());
+    return -point.z() * A.inverse().transpose() * g.head<2>();
+  }
   return {-g.x() * point.z() / camera1.fx, -g.y() * point.z() / camera1.fy};
 }
 

@@ -54,7 +54,8 @@ double Planarity(const Points& points) {
   return std::sqrt(std::max(0.0, eigenvalues(0)) / eigenvalues.sum());
 }
 
-// Share of image 2 that lies within 1.96 standard deviations of a point's epipolar line.
+// Share of image 2 that lies within 1.96 standard deviations of a point's epipolar line; behind a lens, of
+// the tangent of its curve.
 double ShareNearLine(const Camera& camera2, const PointConstraint& constraint, const Eigen::Vector2d& x2_px,
                      double sigma_px) {
   const Eigen::Vector2d d = constraint.line_direction.normalized();

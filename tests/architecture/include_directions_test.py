@@ -20,6 +20,7 @@ ALLOWED = {
     "simulator": [
         "simulator/", "stats/", "parameters/",
         "estimator/geometry/pose.h", "estimator/geometry/camera.h", "estimator/geometry/correspondence.h",
+        "estimator/geometry/lens.h",
     ],
     "peers": ["peers/", "estimator/", "stats/", "parameters/"],
     "experiments": ["experiments/", "simulator/", "peers/", "estimator/", "stats/", "parameters/"],

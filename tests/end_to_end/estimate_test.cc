@@ -10,7 +10,9 @@
 #include <sstream>
 #include <string>
 
+#include "estimator/geometry/lens.h"
 #include "estimator/geometry/pose.h"
+#include "tests/end_to_end/bad_input.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/paths.h"
@@ -70,6 +72,43 @@ TEST_P(EstimateTest, MatchesWithoutNoise) {
   EXPECT_NEAR(json["t"][0].get<double>(), 0.8, 1e-8);
   EXPECT_NEAR(json["t"][1].get<double>(), 0.6, 1e-8);
   EXPECT_NEAR(json["R"][0].get<double>(), 1.0, 1e-9);
+}
+
+// Matches without noise through a lens: --camera undoes it, for one that was another camera's the error is
+// large, and the header line says the same.
+TEST(EstimateLens, IsUndone) {
+  const TempFolder folder;
+  const std::string parameters = "600,600,319.5,239.5,-0.3,0.1,0.001,0.002";
+  const Lens lens =
+      MakeLens({600, 600, 319.5, 239.5, 640, 480}, LensModel::kRadtan, {-0.3, 0.1, 0.001, 0.002}, "");
+  std::istringstream ideal(MatchRows(80));
+  std::string rows;
+  for (std::string line; std::getline(ideal, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream numbers(line);
+    Eigen::Vector2d x1, x2;
+    numbers >> x1.x() >> x1.y() >> x2.x() >> x2.y();
+    const Eigen::Vector2d d1 = ProjectThrough(lens, lens.camera.Ray(x1).head<2>()),
+                          d2 = ProjectThrough(lens, lens.camera.Ray(x2).head<2>());
+    rows += fmt::format("{} {} {} {}\n", d1.x(), d1.y(), d2.x(), d2.y());
+  }
+  const std::string bare = folder.Write("bare.txt", TruePoseHeader() + rows);
+  const auto error_deg = [](const nlohmann::json& json) { return json["direction_error_deg"].get<double>(); };
+  const nlohmann::json undone = Estimate(bare, "rcme_calibrated", {"--camera", "OPENCV," + parameters});
+  EXPECT_LT(error_deg(undone), 1e-4) << undone;
+  EXPECT_GT(error_deg(Estimate(bare, "rcme_calibrated", {"--K", "600,600,319.5,239.5"})), 0.1);
+  std::string words = parameters;
+  std::replace(words.begin(), words.end(), ',', ' ');
+  const std::string header =
+      "# camera1: OPENCV 640 480 " + words + "\n# camera2: OPENCV 640 480 " + words + "\n";
+  const std::string named = folder.Write("named.txt", header + TruePoseHeader() + rows);
+  EXPECT_EQ(Estimate(named, "rcme_calibrated")["R"], undone["R"]);
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", bare, "--camera", "OPENCV,600,600"}),
+                        {"--camera 'OPENCV,600,600': 2 parameters; OPENCV has 8"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", bare, "--camera", "OPENCV," + parameters, "--K", "1,1,0,0"}),
+                        {"--K and --camera say the same"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", named, "--camera", "OPENCV," + parameters}),
+                        {"camera1: the file has its own intrinsics"}));
 }
 
 // From one fit: nothing else changes, the default bounds give the stated probability, narrow ones 1.

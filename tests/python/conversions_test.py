@@ -15,18 +15,22 @@ class Cameras(unittest.TestCase):
     def setUp(self):
         self.given = []
         self.original = _check._rcme.Camera
-        _check._rcme.Camera = lambda k, width, height: self.given.append((k, width, height))
+        _check._rcme.Camera = lambda model, params, width, height: self.given.append((model, params, width, height))
         self.addCleanup(setattr, _check._rcme, "Camera", self.original)
 
     def test_of_every_form(self):
         K = np.array([[500.0, 0, 320.0], [0, 600.0, 200.0], [0, 0, 1]])
         _check.camera("camera1", K)
         _check.camera("camera1", 2 * K)  # of any scale
-        self.assertEqual(self.given, [([500.0, 600.0, 320.0, 200.0], 641, 401)] * 2)
+        self.assertEqual(self.given, [("PINHOLE", [500.0, 600.0, 320.0, 200.0], 641, 401)] * 2)
         sizes = {"width": 640, "height": 480}
         _check.camera("camera1", {"model": "PINHOLE", "params": [1.0, 2.0, 3.0, 4.0], **sizes})
         _check.camera("camera1", {"model": "SIMPLE_PINHOLE", "params": [7.0, 3.0, 4.0], **sizes})
-        self.assertEqual(self.given[2:], [([1.0, 2.0, 3.0, 4.0], 640, 480), ([7.0, 7.0, 3.0, 4.0], 640, 480)])
+        _check.camera("camera1", {"model": "RADIAL", "params": [7.0, 3.0, 4.0, -0.1, 0.2], **sizes})
+        self.assertEqual(self.given[2:], [("PINHOLE", [1.0, 2.0, 3.0, 4.0], 640, 480), ("SIMPLE_PINHOLE", [7.0, 3.0, 4.0], 640, 480),
+                                          ("RADIAL", [7.0, 3.0, 4.0, -0.1, 0.2], 640, 480)])
+        with self.assertRaisesRegex(ValueError, "camera1: fx = 7, fy = -1"):  # the second number of an OPENCV is fy
+            _check.camera("camera1", {"model": "OPENCV", "params": [7.0, -1.0, 4.0, 5.0, 0, 0, 0, 0], **sizes})
 
 
 class Points(unittest.TestCase):

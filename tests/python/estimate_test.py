@@ -162,6 +162,35 @@ class Estimate(unittest.TestCase):
             pose, info = rcme.estimate_relative_pose(*self.arguments[:2], camera, camera, {"estimator": "standard"})
             np.testing.assert_array_equal(pose.R, first.R)
 
+    def test_lenses_are_undone(self):
+        """Matches through OpenCV's fisheye model, written out: those of the pinhole come back, and the pixels that have no ray
+        are errors."""
+        fx, fy, cx, cy = self.trial["camera1"]["params"]
+        size = {key: self.trial["camera1"][key] for key in ("width", "height")}
+
+        def distorted(points, coefficients):
+            rays = (np.asarray(points) - [cx, cy]) / [fx, fy]
+            r = np.linalg.norm(rays, axis=1, keepdims=True)
+            theta = np.arctan(r)
+            return theta * (1 + coefficients[0] * theta**2 + coefficients[1] * theta**4) / r * rays * [fx, fy] + [cx, cy]
+
+        coefficients = [0.02, -0.01, 0.0, 0.0]
+        lens = {"model": "OPENCV_FISHEYE", "params": [fx, fy, cx, cy, *coefficients], **size}
+        images = [distorted(points, coefficients) for points in self.arguments[:2]]
+        first, _ = rcme.estimate_relative_pose(*self.arguments)
+        pose, info = rcme.estimate_relative_pose(*images, lens, lens)
+        self.assertEqual(info["status"], "ok")
+        self.assertLess(np.linalg.norm(pose.R - first.R), 2e-3)  # noise is weighed in another way
+        together = rcme.estimate_relative_poses([(*images, lens, lens)])
+        np.testing.assert_array_equal(together.R[0], pose.R)
+        wrong, _ = rcme.estimate_relative_pose(*images, *self.arguments[2:])
+        self.assertGreater(np.linalg.norm(wrong.R - first.R), np.linalg.norm(pose.R - first.R))
+        folding = {"model": "SIMPLE_RADIAL", "params": [fx, cx, cy, -3.0], **size}
+        with self.assertRaisesRegex(ValueError, r"x2: row \d+ is \[.*sends no ray"):
+            rcme.estimate_relative_pose(*images, self.arguments[2], folding)
+        with self.assertRaisesRegex(ValueError, r"pairs\[0\]\.x1: row \d+ is"):
+            rcme.estimate_relative_poses([(*images, folding, lens)])
+
     def test_every_estimator_with_its_options(self):
         known = rcme.estimators()
         self.assertIn("rcme_calibrated", known)

@@ -1,6 +1,7 @@
 #include "experiments/audit/claims/cramer_rao.h"
 
 #include "estimator/uncertainty/motion_covariance.h"
+#include "simulator/exact_match.h"
 
 namespace rcme {
 
@@ -10,8 +11,7 @@ std::optional<Matrix5d> CramerRaoBound(const Case& made) {
   for (size_t i = 0; i < made.data.scene_point.size(); ++i) {
     if (!made.data.truth.is_inlier_true[i]) continue;
     const Eigen::Vector3d& point = made.scene.points_in_cam1[made.data.scene_point[i]];
-    exact.push_back(
-        {made.scene.camera1.Project(point), made.scene.camera2.Project(made.scene.InCamera2(point))});
+    exact.push_back(PinholeMatch(made.scene, point));
   }
   if (exact.size() < 5) return std::nullopt;
   return FirstOrderMotionCovariance(made.pose_true(), problem.camera1, problem.camera2, exact,

@@ -44,7 +44,7 @@ KindMeasures MeasureKind(const Scene& scene, std::span<const Eigen::Vector3d> po
                         .plane_share = 0.0};
   if (measures.num_points < kLeastRightMatches) return measures;
   MotionProblem exact{{}, scene.camera1, scene.camera2, sigma_px};
-  for (const Eigen::Vector3d& point : points_in_cam1) exact.matches.push_back(ExactMatch(scene, point));
+  for (const Eigen::Vector3d& point : points_in_cam1) exact.matches.push_back(PinholeMatch(scene, point));
   measures.parallax_share =
       ExpectedParallaxShare(exact, scene.cam2_from_cam1_true.R, parallax_significance_level);
   measures.plane_share = HomographyShare(scene, points_in_cam1, std::numbers::sqrt2 * sigma_px, rng);

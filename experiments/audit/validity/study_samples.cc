@@ -70,8 +70,8 @@ MapSample MakeMapSample(const Case& made, int num_points) {
   sample.exact.problem.noise_scale.clear();
   sample.exact.problem.matches.clear();
   const auto point = [&](size_t k) { return made.scene.points_in_cam1[data.scene_point[k]]; };
-  for (size_t k = 0; k < n; ++k) sample.exact.problem.matches.push_back(ExactMatch(made.scene, point(k)));
-  sample.exact.fresh_match = ExactMatch(made.scene, point(n));
+  for (size_t k = 0; k < n; ++k) sample.exact.problem.matches.push_back(PinholeMatch(made.scene, point(k)));
+  sample.exact.fresh_match = PinholeMatch(made.scene, point(n));
   sample.parallax_rad = ParallaxRad(made.scene, point(n));
   return sample;
 }

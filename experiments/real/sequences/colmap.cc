@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "experiments/core/files/database.h"
+#include "experiments/data/colmap_camera.h"
 #include "experiments/real/images/features.h"
-#include "experiments/real/sequences/colmap_camera.h"
 #include "experiments/real/sequences/colmap_model.h"
 #include "experiments/real/sequences/layout_files.h"
 #include "experiments/real/sequences/listed_pairs.h"

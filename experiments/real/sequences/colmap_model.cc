@@ -8,7 +8,7 @@
 #include <cstring>
 #include <fstream>
 
-#include "experiments/real/sequences/colmap_camera.h"
+#include "experiments/data/colmap_camera.h"
 #include "experiments/real/sequences/layout_files.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"

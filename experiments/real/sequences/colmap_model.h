@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "experiments/real/sequences/lens.h"
+#include "estimator/geometry/lens.h"
 #include "experiments/real/sequences/trajectory.h"
 
 namespace rcme {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/core/work/isolated_call.h"
-#include "experiments/real/sequences/colmap_camera.h"
+#include "experiments/data/colmap_camera.h"
 #include "experiments/real/sequences/layout_files.h"
 #include "experiments/real/sequences/listed_pairs.h"
 #include "experiments/real/sequences/posebench_file.h"

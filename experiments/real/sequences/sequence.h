@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/real/sequences/lens.h"
+#include "estimator/geometry/lens.h"
 #include "experiments/real/sequences/trajectory.h"
 
 namespace rcme {

@@ -1,13 +1,17 @@
 #include "experiments/data/match_file.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "estimator/undistortion.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/gzip.h"
 #include "tests/test_support/match_text.h"
@@ -293,6 +297,91 @@ TEST_F(MatchFileTest, BadRows) {
   EXPECT_TRUE(Refuses(Edited("-0.5,1e2,0,3", "-0.5,1e2,0"), {":12:", "3 columns; x1,y1,x2,y2 are needed"}));
   EXPECT_TRUE(Refuses(Edited("-0.5,1e2,0,3", "hello"), {":12:", "1 columns"}));
   EXPECT_TRUE(Refuses(std::string("\0\1\2\xFF\xFE", 5), {":1:"}));
+}
+
+// The same points as a pinhole and a lens see them: reading undoes the lens and says how noisy each is.
+TEST_F(MatchFileTest, ALensIsUndone) {
+  const Lens radtan =
+      MakeLens({600, 610, 319.5, 239.5, 640, 480}, LensModel::kRadtan, {-0.2, 0.05, 1e-3, 0}, "");
+  const Lens fisheye = MakeLens({300, 300, 399.5, 299.5, 800, 600}, LensModel::kFisheye, {0.01, 0, 0, 0}, "");
+  const std::string header =
+      "# camera1: OPENCV 640 480 600 610 319.5 239.5 -0.2 0.05 1e-3 0\n"
+      "# camera2: OPENCV_FISHEYE 800 600 300 300 399.5 299.5 0.01 0 0 0\n";
+  const std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> rays = {
+      {{0.1, 0.2}, {0.3, -0.2}}, {{-0.4, 0.3}, {1.0, 0.5}}, {{0.0, 0.0}, {-0.6, 0.1}}};
+  std::string rows;
+  for (const auto& [ray1, ray2] : rays) {
+    const Eigen::Vector2d x1_px = ProjectThrough(radtan, ray1), x2_px = ProjectThrough(fisheye, ray2);
+    rows += fmt::format("{},{},{},{}\n", x1_px.x(), x1_px.y(), x2_px.x(), x2_px.y());
+  }
+  const MatchFile file = Read(header + rows);
+  EXPECT_TRUE(file.had_lens);
+  EXPECT_EQ(file.camera1.fy, 610.0);
+  EXPECT_EQ(file.camera2.height, 600);
+  const MotionProblem problem = MakeMotionProblem(file, 0.4);
+  ASSERT_EQ(problem.noise_scale.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_LT((problem.matches[i].x1_px - radtan.camera.Project(rays[i].first.homogeneous())).norm(), 1e-8);
+    EXPECT_LT((problem.matches[i].x2_px - fisheye.camera.Project(rays[i].second.homogeneous())).norm(), 1e-8);
+    const Correspondence distorted{ProjectThrough(radtan, rays[i].first),
+                                   ProjectThrough(fisheye, rays[i].second)};
+    EXPECT_NEAR(problem.sigma_px * problem.noise_scale[i],
+                0.4 * UndistortMatch(radtan, fisheye, distorted)->noise_ratio, 1e-9);
+  }
+  // The same by --camera, with the size of the header and without one.
+  const GivenCameras given = std::array<Lens, 2>{radtan, fisheye};
+  for (const char* sizes : {"", "# size1: 640 480\n# size2: 800 600\n"}) {
+    const MatchFile bare = ReadMatchFile(folder_.Write("bare.csv", sizes + rows), given);
+    EXPECT_EQ(bare.matches[1].x2_px, file.matches[1].x2_px);
+    EXPECT_EQ(bare.sigma_px, file.sigma_px);
+    EXPECT_EQ(bare.camera2.width, 800);
+  }
+  // Written, it is a file of pinhole cameras.
+  const std::string copy = folder_.Path("copy.csv");
+  WriteMatchFile(file, copy);
+  EXPECT_FALSE(ReadMatchFile(copy).had_lens);
+  EXPECT_EQ(ReadMatchFile(copy).matches[1].x2_px, file.matches[1].x2_px);
+  EXPECT_EQ(ReadMatchFile(copy).sigma_px, file.sigma_px);
+}
+
+TEST_F(MatchFileTest, PinholesByNameAreThoseOfK) {
+  const MatchFile file = Read(
+      "# camera1: PINHOLE 640 480 600 610 320 240\n# size2: 800 600\n# K2_fx_fy_cx_cy: 700 710 400 300\n"
+      "14.5,496.25,192.5,795.125\n");
+  EXPECT_FALSE(file.had_lens);
+  EXPECT_TRUE(file.sigma_px.empty());
+  EXPECT_EQ(file.matches[0].x1_px, Eigen::Vector2d(14.5, 496.25));
+  EXPECT_EQ(file.camera1.cx, 320.0);
+  EXPECT_EQ(file.camera2.fx, 700.0);
+}
+
+TEST_F(MatchFileTest, BadLenses) {
+  const auto with = [](const std::string& camera1) {
+    return "# camera1: " + camera1 +
+           "\n# camera2: PINHOLE 640 480 600 600 319.5 239.5\n1,2,3,4\n320,240,1,2\n";
+  };
+  EXPECT_TRUE(
+      Refuses(with("MAGIC 640 480 600 600 319.5 239.5"), {":1: camera1: ", "'MAGIC' is not supported"}));
+  EXPECT_TRUE(
+      Refuses(with("OPENCV 640 480 600 600 319.5 239.5"), {":1: camera1: ", "4 parameters; OPENCV has 8"}));
+  EXPECT_TRUE(
+      Refuses(with("PINHOLE 640 480 600 x 319.5 239.5"), {":1: camera1: ", "'x' is not a finite number"}));
+  EXPECT_TRUE(Refuses(with("PINHOLE 640.5 480 600 600 319.5 239.5"), {":1: camera1: ", "640.5 x 480 px"}));
+  EXPECT_TRUE(Refuses(with("PINHOLE 0 480 600 600 319.5 239.5"), {":1: camera1: ", "0 x 480 px"}));
+  EXPECT_TRUE(Refuses(with("PINHOLE 640"), {":1: camera1: ", "give a model, width and height"}));
+  EXPECT_TRUE(Refuses(with("PINHOLE 640 480 -600 600 319.5 239.5"), {":1: camera1: ", "fx -600"}));
+  EXPECT_TRUE(Refuses(with("PINHOLE 640 480 600 600 319.5 239.5\n# size1: 640 480"),
+                      {":2: size1: ", "camera1 says it already"}));
+  EXPECT_TRUE(Refuses(with("PINHOLE 640 480 600 600 319.5 239.5\n# K1_fx_fy_cx_cy: 600 600 319.5 239.5"),
+                      {":2: K1_fx_fy_cx_cy: ", "camera1 says it already"}));
+  // r (1 - r^2) is .385 at most, 231 px: the first row is 398 px from the centre.
+  EXPECT_TRUE(Refuses(with("SIMPLE_RADIAL 640 480 600 319.5 239.5 -1"),
+                      {":3: no ray of camera 1 reaches (1, 2) px", "leave the match out"}));
+  const std::string named = folder_.Write("named.csv", with("PINHOLE 640 480 600 600 319.5 239.5"));
+  const GivenCameras given =
+      std::array<Lens, 2>{Lens{{600, 600, 319.5, 239.5}}, Lens{{600, 600, 319.5, 239.5}}};
+  EXPECT_TRUE(ThrowsInputError([&] { ReadMatchFile(named, given); },
+                               {":1: camera1: ", "leave out --K and --camera"}));
 }
 
 TEST_F(MatchFileTest, WriteRoundTrip) {

@@ -1,6 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "estimator/undistortion.h"
 #include "experiments/data/make_data.h"
+#include "simulator/exact_match.h"
 #include "simulator/noise/noise_laws.h"
 
 namespace rcme {
@@ -70,6 +75,68 @@ TEST(SimulatedData, CamerasHaveTheDefectsThatTheStudyGivesThem) {
     EXPECT_GT(greatest_px, 0.05) << key;
     EXPECT_LT(greatest_px, 50.0) << key;
   }
+}
+
+// Estimators get pinhole cameras and undistorted matches, and how noisy each is: without noise and wrong
+// matches they satisfy the true motion, and scales are those of the two images.
+TEST(SimulatedData, BehindALensEstimatorsGetUndistortedMatches) {
+  for (const char* cameras : {"radtan", "fisheye"}) {
+    const auto data = DataWith({{"cameras", cameras}, {"sigma_px", "1e-9"}, {"outlier_ratio", "0"}});
+    const Scene scene = data->DrawScene(kName);
+    const TrialData made = data->MakeFrom(scene, kName);
+    ASSERT_EQ(made.problem.matches.size(), 40u);
+    ASSERT_EQ(made.problem.noise_scale.size(), 40u);
+    EXPECT_EQ(made.problem.camera1.fx, scene.camera1.fx);
+    const Lens lens1 = scene.camera1.AsLens(), lens2 = scene.camera2.AsLens();
+    for (size_t i = 0; i < 40; ++i) {
+      const Eigen::Vector3d& point = scene.points_in_cam1[made.scene_point[i]];
+      const Correspondence expected = PinholeMatch(scene, point);
+      EXPECT_LT((made.problem.matches[i].x1_px - expected.x1_px).norm(), 1e-4);
+      EXPECT_LT((made.problem.matches[i].x2_px - expected.x2_px).norm(), 1e-4);
+      EXPECT_NEAR(made.problem.sigma_px * made.problem.noise_scale[i],
+                  1e-9 * UndistortMatch(lens1, lens2, ExactMatch(scene, point))->noise_ratio, 1e-13);
+    }
+  }
+}
+
+// What the noise of the detector says and what undistortion does multiply.
+TEST(SimulatedData, ScalesOfDetectorAndLensMultiply) {
+  const Settings octaves = {{"noise", "octave"}, {"stated_growth", "1"}, {"outlier_ratio", "0"}};
+  Settings with_lens = octaves;
+  with_lens.push_back({"cameras", "radtan"});
+  const auto data = DataWith(with_lens);
+  const Scene scene = data->DrawScene(kName);
+  const TrialData made = data->MakeFrom(scene, kName);
+  std::vector<double> levels;
+  for (size_t i = 0; i < made.problem.matches.size(); ++i) {
+    const Correspondence exact = ExactMatch(scene, scene.points_in_cam1[made.scene_point[i]]);
+    const double ratio = UndistortMatch(scene.camera1.AsLens(), scene.camera2.AsLens(), exact)->noise_ratio;
+    const double level =
+        std::log(made.problem.sigma_px * made.problem.noise_scale[i] / ratio) / std::log(1.2);
+    levels.push_back(level - std::floor(level + 0.5));
+  }
+  // Sigmas without the lens are those of the pyramid's levels, which differ by powers of 1.2; noise has moved
+  // the points, and so the ratio, by next to nothing.
+  const auto [least, greatest] = std::ranges::minmax(levels);
+  EXPECT_TRUE(greatest - least < 0.1 || greatest - least > 0.9) << least << " " << greatest;
+}
+
+// Matches at pixels that no ray reaches are left out, with all that is known of them.
+TEST(SimulatedData, WhatNoRayReachesIsLeftOut) {
+  const auto data = DataWith({{"cameras", "radtan"},
+                              {"num_matches", "400"},
+                              {"lens_k1", "-0.5"},
+                              {"lens_k2", "0"},
+                              {"focal_px", "300"},
+                              {"sigma_px", "3"}});
+  const TrialData made = data->Make(kName);
+  const size_t n = made.problem.matches.size();
+  EXPECT_LT(n, 400u);
+  EXPECT_GT(n, 350u);
+  EXPECT_EQ(made.truth.is_inlier_true.size(), n);
+  EXPECT_EQ(made.truth.is_undetectable.size(), n);
+  EXPECT_EQ(made.scene_point.size(), n);
+  EXPECT_EQ(made.problem.noise_scale.size(), n);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <Eigen/Geometry>
 
-#include "experiments/real/sequences/colmap_camera.h"
+#include "experiments/data/colmap_camera.h"
 #include "experiments/real/sequences/colmap_model.h"
 #include "experiments/real/sequences/listed_pairs.h"
 #include "tests/test_support/dataset_checks.h"
@@ -253,44 +253,6 @@ TEST_F(Colmap, ABrokenReconstructionIsNamedByPath) {
   EXPECT_TRUE(RefusesModel("images.txt", " 4 frames/0", "", {"images.txt:2: is not IMAGE_ID QW"}));
   EXPECT_TRUE(
       RefusesModel("images.txt", "1 ", "1 2", {"images.txt:2: a pose is damaged: a quaternion of length"}));
-}
-
-// COLMAP's models by number and name: where each has its parameters.
-TEST(ColmapCamera, ParametersOfEveryModel) {
-  struct Known {
-    std::int64_t number;
-    const char* name;
-    bool has_one_focal_length;
-    LensModel model;
-    std::vector<double> k;  // of parameters 11, 12, 13, ... behind the principal point
-  };
-  const std::vector<Known> all = {
-      {0, "SIMPLE_PINHOLE", true, LensModel::kPinhole, {}},
-      {1, "PINHOLE", false, LensModel::kPinhole, {}},
-      {2, "SIMPLE_RADIAL", true, LensModel::kRadtan, {11}},
-      {3, "RADIAL", true, LensModel::kRadtan, {11, 12}},
-      {4, "OPENCV", false, LensModel::kRadtan, {11, 12, 13, 14}},
-      {5, "OPENCV_FISHEYE", false, LensModel::kFisheye, {11, 12, 13, 14}},
-      {6, "FULL_OPENCV", false, LensModel::kRadtan, {11, 12, 13, 14, 15, 16, 17, 18}},
-      {8, "SIMPLE_RADIAL_FISHEYE", true, LensModel::kFisheye, {11}},
-      {9, "RADIAL_FISHEYE", true, LensModel::kFisheye, {11, 12}}};
-  for (const Known& known : all) {
-    std::vector<double> p = {500.0, 510.0, 320.0, 240.0};
-    if (known.has_one_focal_length) p.erase(p.begin() + 1);
-    p.insert(p.end(), known.k.begin(), known.k.end());
-    EXPECT_EQ(ColmapModelNumber(known.name, ""), known.number);
-    EXPECT_EQ(NumColmapParameters(known.number, ""), p.size()) << known.name;
-    const Lens lens = LensOfColmapCamera({known.number, 640, 480, p}, "");
-    EXPECT_EQ(lens.model, known.model) << known.name;
-    EXPECT_EQ(lens.camera.fx, 500.0);
-    EXPECT_EQ(lens.camera.fy, known.has_one_focal_length ? 500.0 : 510.0) << known.name;
-    EXPECT_EQ(lens.camera.cx, 319.5);
-    EXPECT_EQ(lens.camera.cy, 239.5);
-    for (size_t i = 0; i < lens.k.size(); ++i)
-      EXPECT_EQ(lens.k[i], i < known.k.size() ? known.k[i] : 0.0) << known.name << " " << i;
-  }
-  EXPECT_TRUE(
-      ThrowsInputError([] { NumColmapParameters(7, "db: camera 3"); }, {"db: camera 3: model 7 is not"}));
 }
 
 TEST_F(Colmap, ABrokenDatabaseIsNamedByPath) {

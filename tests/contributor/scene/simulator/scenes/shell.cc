@@ -7,7 +7,7 @@ namespace {
 // On the viewing ray of a pixel uniform over image 1, at a distance uniform within the shell.
 class ShellWorld : public PointwiseWorld {
  public:
-  ShellWorld(const Camera& camera1, double radius_m, double thickness_m)
+  ShellWorld(const SceneCamera& camera1, double radius_m, double thickness_m)
       : camera_(camera1), radius_m_(radius_m), thickness_m_(thickness_m) {}
 
  private:
@@ -16,7 +16,7 @@ class ShellWorld : public PointwiseWorld {
     return rng.Uniform(radius_m_, radius_m_ + thickness_m_) * ray.normalized();
   }
 
-  Camera camera_;
+  SceneCamera camera_;
   double radius_m_, thickness_m_;
 };
 

@@ -33,11 +33,21 @@ struct Lens {
 Lens MakeLens(const Camera& camera, LensModel model, const std::vector<double>& coefficients,
               const std::string& place);
 
-// Pixel of the ray (x, y, 1).
+// Pixel of the ray (x, y, 1), and its derivative by (x, y), px.
 Eigen::Vector2d ProjectThrough(const Lens& lens, const Eigen::Vector2d& ray);
+Eigen::Matrix2d ProjectThroughJacobian(const Lens& lens, const Eigen::Vector2d& ray);
+
+// Whether the lens shows this ray where it projects it: not beyond where distortion folds the image back, and
+// less than ten focal lengths (84.3 deg) from the axis.
+bool IsImaged(const Lens& lens, const Eigen::Vector2d& ray);
 
 // Pixel of the same ray in a pinhole camera with the lens's K. Nothing where the lens sends no ray to this
 // pixel, or more than one: beyond where distortion folds the image back.
 std::optional<Eigen::Vector2d> Undistort(const Lens& lens, const Eigen::Vector2d& x_px);
+
+// d undistorted pixel / d distorted pixel, at the undistorted one: by the inverse function theorem that of
+// the projection, inverted. Noise of covariance C in the image as it was taken has J C J' in that of the
+// pinhole.
+Eigen::Matrix2d UndistortionJacobian(const Lens& lens, const Eigen::Vector2d& ideal_px);
 
 }  // namespace rcme
