@@ -23,6 +23,7 @@
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
+#include "parameters/probability_text.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -194,8 +195,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     const bool is_contradicted = p_value < kPriorLevel;
     if (is_contradicted) {
       estimate = std::move(alone);
-      estimate.message +=
-          fmt::format("; the prior contradicts the matches (p = {:.1g}) and is not used", p_value);
+      estimate.message += fmt::format("; the prior contradicts the matches (probability {}) and is not used",
+                                      ProbabilityText(p_value));
       if (posterior != nullptr) *posterior = std::move(posterior_of_matches);
     }
     estimate.prior = is_contradicted ? PriorUse::kContradicted : PriorUse::kUsed;

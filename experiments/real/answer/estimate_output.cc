@@ -135,15 +135,15 @@ std::string PriorText(const MotionEstimate& estimate) {
     case PriorUse::kNone:
       return "  prior      none used: this estimator takes none; rcme_calibrated does\n";
     case PriorUse::kUsed:
-      return fmt::format("  prior      used: it is as far from the matches with probability {:.2g}\n",
-                         estimate.prior_p_value);
+      return fmt::format("  prior      used: a right one is as far from the matches with probability {}\n",
+                         ProbabilityText(estimate.prior_p_value));
     case PriorUse::kContradicted:
       break;
   }
   return fmt::format(
-      "  prior      contradicted: it would be as far from the matches with probability {:.1g};\n"
+      "  prior      contradicted: a right one is as far from the matches with probability {};\n"
       "             the answer is of the matches alone\n",
-      estimate.prior_p_value);
+      ProbabilityText(estimate.prior_p_value));
 }
 
 std::string EvidenceText(const MotionEvidence& e) {
