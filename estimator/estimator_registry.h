@@ -23,6 +23,8 @@ struct EstimatorEntry {
   bool uses_noise_scale = false;
   // Whether it gets the options of the robust covariance and of the gate of model choice beside its own.
   bool takes_common_options = true;
+  // Whether it uses what is known of the motion beside the matches (MotionProblem::prior).
+  bool uses_motion_prior = false;
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 

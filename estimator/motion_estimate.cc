@@ -62,4 +62,16 @@ const char* Name(ProbabilityDomain domain) {
   return "not_stated";
 }
 
+const char* Name(PriorUse use) {
+  switch (use) {
+    case PriorUse::kNone:
+      break;
+    case PriorUse::kUsed:
+      return "used";
+    case PriorUse::kContradicted:
+      return "contradicted";
+  }
+  return "none";
+}
+
 }  // namespace rcme

@@ -74,6 +74,15 @@ enum class ProbabilityDomain {
 // "not_stated", "verified", "extrapolated".
 const char* Name(ProbabilityDomain domain);
 
+// What became of the prior of the motion (MotionProblem::prior).
+enum class PriorUse {
+  kNone,          // there is none, or the estimator takes none
+  kUsed,          // the answer is of the matches and of the prior
+  kContradicted,  // the matches speak against it: the answer is of the matches alone
+};
+// "none", "used", "contradicted".
+const char* Name(PriorUse use);
+
 // Another motion that explains the matches, with what speaks for it.
 struct MotionMode {
   RelativePose cam2_from_cam1;
@@ -119,6 +128,10 @@ struct MotionEstimate {
   std::vector<MotionMode> other_modes;       // the most likely first
   Doubt doubt = Doubt::kNone;
   ProbabilityDomain probability_domain = ProbabilityDomain::kNotStated;
+
+  PriorUse prior = PriorUse::kNone;
+  // That a right prior is as far from the motion of the matches alone; NaN: not asked.
+  double prior_p_value = std::numeric_limits<double>::quiet_NaN();
 
   // Time of the part of the call that ran in another process or on another machine, s; NaN: none did.
   double seconds_elsewhere = std::numeric_limits<double>::quiet_NaN();

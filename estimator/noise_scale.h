@@ -23,7 +23,7 @@ std::vector<double> ComputeNoiseScale(std::vector<double> sigmas);
 // The problem with these of its matches, in this order; `which` holds indices.
 template <typename Indices>
 MotionProblem SelectPart(const MotionProblem& problem, const Indices& which) {
-  MotionProblem part{{}, problem.camera1, problem.camera2, problem.sigma_px};
+  MotionProblem part{{}, problem.camera1, problem.camera2, problem.sigma_px, {}, problem.prior};
   for (const auto index : which) {
     const auto i = static_cast<size_t>(index);
     part.matches.push_back(problem.matches[i]);

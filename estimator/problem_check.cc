@@ -85,6 +85,8 @@ std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int
     }
   }
   if (std::optional<MotionEstimate> refusal = RefuseNoiseScale(problem)) return refusal;
+  if (const std::string fault = problem.prior ? FindPriorFault(*problem.prior) : ""; !fault.empty())
+    return Refusal(MotionStatus::kInvalidInput, fault);
   const int num_distinct = CountDistinct(problem.matches, min_matches);
   if (num_distinct < min_matches) {
     return Refusal(MotionStatus::kTooFewMatches,

@@ -11,8 +11,8 @@ namespace rcme {
 inline constexpr double kMaxCoordinatePx = 1e6;
 
 // What makes a problem unsolvable before any hypothesis is drawn: bad numbers (among them a
-// noise_scale of another length than the matches), fewer than `min_matches` distinct matches, or points of
-// one image on one line within the noise. Nothing: go ahead.
+// noise_scale of another length than the matches, and what FindPriorFault finds), fewer than `min_matches`
+// distinct matches, or points of one image on one line within the noise. Nothing: go ahead.
 std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int min_matches);
 
 }  // namespace rcme

@@ -46,6 +46,7 @@ UndistortedProblem UndistortProblem(const Lens& lens1, const Lens& lens2, Motion
   }
   problem.sigma_px = distorted.sigma_px * (ratios.empty() ? 1.0 : ComputeMedian(ratios));
   problem.noise_scale = ComputeNoiseScale(std::move(ratios));
+  problem.prior = std::move(distorted.prior);
   return undistorted;
 }
 

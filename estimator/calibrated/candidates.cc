@@ -114,10 +114,11 @@ std::vector<Mode> RefineALittle(const MatchBlocks& matches, const MixturePrior& 
 }
 
 // The same modes at another scale.
-std::vector<Mode> AtScale(const MatchBlocks& matches, std::vector<Mode> modes, double scale) {
+std::vector<Mode> AtScale(const MatchBlocks& matches, const MixturePrior& prior, std::vector<Mode> modes,
+                          double scale) {
   for (Mode& mode : modes) {
     mode.mixture.scale = scale;
-    mode.log_likelihood = SumMixture(matches, mode.used, mode.pose, mode.mixture).log_likelihood;
+    mode.log_likelihood = SumPosterior(matches, mode.used, prior, mode.pose, mode.mixture).log_likelihood;
   }
   return modes;
 }
@@ -145,7 +146,7 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
   const std::vector<Mode> refined = RefineALittle(matches, prior, candidates);
   const double assumed_scale = NoiseLaw().scale_of_gaussian;
   std::vector<Mode> optima;
-  for (Mode& mode : Distinct(AtScale(matches, refined, assumed_scale), (num_modes + 1) / 2)) {
+  for (Mode& mode : Distinct(AtScale(matches, prior, refined, assumed_scale), (num_modes + 1) / 2)) {
     AddOptimum(matches, prior, std::move(mode), &optima);
   }
   for (Mode& mode : Distinct(refined, prior.estimates_scale ? num_modes / 2 : 0)) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include "estimator/noise_scale.h"
 #include "stats/order_statistic.h"
@@ -32,7 +33,26 @@ struct DisplacementSet {
   std::vector<Displacement> matches;
   double all_over_used = 1.0;  // of the matches
   double image_rad = 1.0;      // extent of image 2, which a wrong match's displacement is uniform over
+  // What a prior says of w, x = (w, m): cost |r + J w|^2 / 2, r and J at the mode's rotation; nothing without
+  // one. And what it says of the direction.
+  std::optional<PriorResiduals> of_rotation = {};
+  std::optional<DirectionPrior> of_direction = {};
 };
+
+// The prior of the problem; its direction aside, at the mode's rotation.
+void AddPrior(const MotionProblem& problem, const RelativePose& pose, DisplacementSet* set) {
+  if (!problem.prior) return;
+  MotionPrior prior = *problem.prior;
+  set->of_direction = prior.direction;
+  prior.direction.reset();
+  if (CountPriorFreedom(prior) > 0) set->of_rotation = ComputePriorResiduals(prior, pose);
+}
+
+// Of a direction by the prior, over its greatest value.
+double PriorDensity(const Eigen::Vector3d& direction, const DisplacementSet& set) {
+  const double away = AngleBetween(direction, set.of_direction->t) / set.of_direction->sd_rad;
+  return std::exp(-0.5 * away * away);
+}
 
 DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode& mode) {
   const MixtureParameters& m = mode.mode.mixture;
@@ -53,6 +73,7 @@ DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode&
   const auto used = static_cast<double>(set.matches.size());
   set.all_over_used = std::max(mode.explanation.num_explained / std::max(used, 1.0), 1.0);
   set.image_rad = std::sqrt(problem.camera2.width * problem.camera2.height * inverse_f2);
+  AddPrior(problem, mode.mode.pose, &set);
   return set;
 }
 
@@ -159,13 +180,22 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
     squares += share * (rest.along * rest.along - noise);
     fourths += share * sin2;
   }
+  double prior_cost = 0.0;
+  if (set.of_rotation) {
+    // As much of the prior as of the matches: all_over_used multiplies both, below.
+    const auto J = set.of_rotation->jacobian.leftCols<3>();
+    const auto& r = set.of_rotation->residual;
+    information.topLeftCorner<3, 3>() += J.transpose() * J / set.all_over_used;
+    moment.head<3>() -= J.transpose() * r / set.all_over_used;
+    prior_cost = 0.5 * (r + J * old.x.head<3>()).squaredNorm();
+  }
   const Eigen::LDLT<Eigen::Matrix4d> ldlt(information);
   fit.x = ldlt.solve(moment);
   if (!fit.x.allFinite()) return {};
   fit.variance = fourths > 0.0 ? std::max(squares / fourths, 0.0) : 0.0;
   fit.near = std::clamp(sum_near / static_cast<double>(parts.size()), kLeastNear, 1.0 - 2.0 * kShareWrong);
   const double log_det = ldlt.vectorD().array().max(1e-300).log().sum();
-  fit.log_likelihood = set.all_over_used * likelihood.Log() - 0.5 * log_det;
+  fit.log_likelihood = set.all_over_used * likelihood.Log() - prior_cost - 0.5 * log_det;
   const double variance_of_mean = ldlt.solve(Eigen::Vector4d::Unit(3))(3) / set.all_over_used;
   fit.mean_in_sd = fit.x(3) / std::sqrt(std::max(variance_of_mean, 1e-300));
   fit.information = information;
@@ -184,6 +214,17 @@ AxisFit FitAxis(const DisplacementSet& set, const Eigen::Vector3d& direction) {
 }
 
 double NormalCdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
+// What a weight of an axis is for its direction, for the opposite one, and in all.
+struct TwoWays {
+  double ahead, behind, both;
+};
+TwoWays DivideWeight(double weight, const AxisFit& fit, const DisplacementSet& set) {
+  const double ahead = NormalCdf(fit.mean_in_sd) * weight, behind = weight - ahead;
+  if (!set.of_direction) return {ahead, behind, weight};
+  const double a = ahead * PriorDensity(fit.direction, set), b = behind * PriorDensity(-fit.direction, set);
+  return {a, b, a + b};
+}
 
 struct WeightedAxis {
   double angle;               // from the centre to the axis, rad, at most pi / 2
@@ -238,14 +279,15 @@ std::vector<DirectionCell> ComputeDirectionCells(const MotionProblem& problem, c
     const double weight = std::exp(axis.fit.log_likelihood - greatest + axis.log_area);
     if (!(weight > 0.0)) continue;
     const Eigen::Matrix4d covariance = axis.fit.information.inverse() / set.all_over_used;
-    const double ahead = NormalCdf(axis.fit.mean_in_sd) * weight, half = kPi / kAzimuths;
+    const TwoWays ways = DivideWeight(weight, axis.fit, set);
+    const double half = kPi / kAzimuths;
     const Eigen::Vector3d rotation = axis.fit.x.head<3>();
     const Eigen::Matrix3d rotation_cov = covariance.topLeftCorner<3, 3>();
     cells.push_back(
-        {axis.low, axis.high, axis.azimuth - half, axis.azimuth + half, ahead, rotation, rotation_cov});
+        {axis.low, axis.high, axis.azimuth - half, axis.azimuth + half, ways.ahead, rotation, rotation_cov});
     cells.push_back({kPi - axis.high, kPi - axis.low, axis.azimuth + kPi - half, axis.azimuth + kPi + half,
-                     weight - ahead, rotation, rotation_cov});
-    total += weight;
+                     ways.behind, rotation, rotation_cov});
+    total += ways.both;
   }
   for (DirectionCell& cell : cells) cell.weight /= total;
   return cells;
@@ -263,18 +305,27 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
                                         const Eigen::Vector3d& centre, double angle_rad) {
   const DisplacementSet set = Displacements(problem, mode);
   const std::vector<WeightedAxis> axes = FitAxes(set, centre, EdgeAt(angle_rad));
-  const AxisFit& best = MostLikely(axes).fit;
-  double within = 0.0, total = 0.0;
+  const AxisFit& greatest = MostLikely(axes).fit;
+  AxisFit best = greatest;
+  bool is_behind = best.x(3) < 0.0;
+  double within = 0.0, total = 0.0, most = 0.0;
   for (const WeightedAxis& axis : axes) {
-    const double weight = std::exp(axis.fit.log_likelihood - best.log_likelihood + axis.log_area);
-    const double ahead = weight * NormalCdf(axis.fit.mean_in_sd);
-    total += weight;
-    if (axis.angle <= angle_rad) within += ahead;
-    if (std::numbers::pi - axis.angle <= angle_rad) within += weight - ahead;
+    const double density = std::exp(axis.fit.log_likelihood - greatest.log_likelihood);
+    const double weight = std::exp(axis.fit.log_likelihood - greatest.log_likelihood + axis.log_area);
+    const TwoWays ways = DivideWeight(weight, axis.fit, set);
+    total += ways.both;
+    if (axis.angle <= angle_rad) within += ways.ahead;
+    if (std::numbers::pi - axis.angle <= angle_rad) within += ways.behind;
+    // With a prior of the direction the most likely of both ways of all axes.
+    const TwoWays densities = DivideWeight(density, axis.fit, set);
+    if (!set.of_direction || !(std::max(densities.ahead, densities.behind) > most)) continue;
+    most = std::max(densities.ahead, densities.behind);
+    best = axis.fit;
+    is_behind = densities.behind > densities.ahead;
   }
   DirectionPosterior posterior{total > 0.0 ? within / total : 0.0, mode.mode};
   posterior.best.pose = {RotationFromVector(best.x.head<3>()) * mode.mode.pose.R,
-                         best.x(3) < 0.0 ? Eigen::Vector3d(-best.direction) : best.direction};
+                         is_behind ? Eigen::Vector3d(-best.direction) : best.direction};
   for (const Displacement& match : set.matches) {
     const Rest rest = ComputeRest(set, ComputeParts(best.direction, match), match.noise_variance, best);
     if (rest.far + rest.near > rest.wrong) continue;

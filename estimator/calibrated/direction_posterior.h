@@ -15,7 +15,9 @@
 // between two rays. Without parallax (m = v = 0) this is the same for all directions. A share of the matches,
 // found by expectation-maximisation, may have a displacement of any size along the line (near points), and a
 // small one is wrong, so that one wrong match does not decide. w and m are integrated out (uniform priors);
-// m > 0, so that t and -t have the parts Phi(m / sd) and Phi(-m / sd) of their axis.
+// m > 0, so that t and -t have the parts Phi(m / sd) and Phi(-m / sd) of their axis. A prior of the motion
+// (MotionProblem::prior) adds its density to that of the matches: of the rotation and of gravity as a normal
+// law of w, of the direction to the parts of t and -t.
 #pragma once
 
 #include <vector>

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/geometry/essential_matrix.h"
 #include "estimator/kernels/block_source.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -13,6 +15,9 @@ constexpr int kModelsOfSample = 5;       // about, to reserve room for
 constexpr size_t kLeastFullScores = 40;  // of a round; a quarter of it where that is more
 // Two hypotheses are the same motion, or near to each other, by |<E_a, E_b>| / 2.
 constexpr double kSame = 0.9999, kNear = 0.98;
+// Of the motion of a minimal sample, per coordinate of the tangent; and the tail of the prior below which it
+// is not near.
+constexpr double kSampleSdRad = 3.0 * kRadPerDeg, kLeastTail = 1e-3;
 
 struct RankedModel {
   double F[9];  // whitened
@@ -102,33 +107,42 @@ double Likeness(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 
 // The best distinct ones, then those far from all that were taken.
 std::vector<ScoredEssential> SelectDistinct(const std::vector<RankedModel>& models, const RayScale& scale,
-                                            size_t count) {
+                                            size_t count, const MotionPrior* prior) {
   std::vector<const RankedModel*> order;
   for (const RankedModel& model : models) order.push_back(&model);
   std::stable_sort(order.begin(), order.end(),
                    [](const RankedModel* a, const RankedModel* b) { return a->score > b->score; });
   std::vector<ScoredEssential> taken;
-  const auto take = [&](size_t up_to, double too_like) {
+  const auto take = [&](size_t up_to, double too_like, const MotionPrior* near) {
     for (const RankedModel*& model : order) {
       if (taken.size() >= up_to) return;
       if (model == nullptr) continue;
       const ScoredEssential next{EssentialFromWhitened(model->F, scale), model->score};
       const bool is_new = std::ranges::all_of(
           taken, [&](const ScoredEssential& other) { return Likeness(next.E, other.E) < too_like; });
-      if (!is_new) continue;
+      if (!is_new || (near != nullptr && !IsNearPrior(*near, next.E))) continue;
       taken.push_back(next);
       model = nullptr;
     }
   };
-  take((count + 1) / 2, kSame);
-  take(count, kNear);
+  take((count + 1) / 2, kSame, nullptr);
+  take(count, kNear, nullptr);
+  if (prior != nullptr) take(taken.size() + (count + 1) / 2, kSame, prior);
   return taken;
 }
 
 }  // namespace
 
+bool IsNearPrior(const MotionPrior& prior, const Eigen::Matrix3d& E) {
+  const Matrix5d spread = kSampleSdRad * kSampleSdRad * Matrix5d::Identity();
+  return std::ranges::any_of(PosesFromEssential(ProjectToEssential(E)), [&](const RelativePose& pose) {
+    return ComputePriorTail(prior, pose, spread) > kLeastTail;
+  });
+}
+
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
-                                  const CalibratedOptions& options, RandomStream& rng, double soft_scale) {
+                                  const CalibratedOptions& options, RandomStream& rng, double soft_scale,
+                                  const MotionPrior* prior) {
   Rounds rounds(matches, score_matches, soft_scale, rng);
   for (int num_samples = options.min_samples;;) {
     rounds.Draw(num_samples);
@@ -137,7 +151,8 @@ HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches
     if (num_samples >= enough) break;
     num_samples = std::min(enough, 2 * num_samples);
   }
-  return {SelectDistinct(rounds.scored(), matches.ray_scale(), static_cast<size_t>(options.num_candidates)),
+  return {SelectDistinct(rounds.scored(), matches.ray_scale(), static_cast<size_t>(options.num_candidates),
+                         prior),
           rounds.counts()};
 }
 

@@ -8,6 +8,7 @@
 #include "estimator/kernels/match_blocks.h"
 #include "estimator/kernels/soft_score.h"
 #include "estimator/motion_estimate.h"
+#include "estimator/motion_prior.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -29,9 +30,15 @@ struct HypothesisSearch {
 // Draws between options.min_samples and options.max_samples samples, in rounds that double: as many as give a
 // sample of right matches alone with probability 0.999. Every hypothesis is scored on the first kFirstMatches
 // matches, whose order must not mean anything, and the best of a round on all. Returned are the best
-// `options.num_candidates` distinct ones, half of them far from all others.
+// `options.num_candidates` distinct ones, half of them far from all others. Where a prior is given, half as
+// many more: the best that are near it (IsNearPrior), as the camera's motion may explain fewer matches than
+// another one. The samples are the same with it and without.
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
                                   const CalibratedOptions& options, RandomStream& rng,
-                                  double soft_scale = kSoftScale);
+                                  double soft_scale = kSoftScale, const MotionPrior* prior = nullptr);
+
+// Whether one of the poses of E is where the prior has the motion, as far as the motion of a minimal sample
+// shows that: it is off by some degrees.
+bool IsNearPrior(const MotionPrior& prior, const Eigen::Matrix3d& E);
 
 }  // namespace rcme

@@ -46,9 +46,20 @@ MixtureParameters FirstGuess(const MixturePrior& prior, double scale, double inl
   return guess;
 }
 
+MixtureSums SumPosterior(const MatchBlocks& matches, const MatchMask& mask, const MixturePrior& prior,
+                         const RelativePose& pose, const MixtureParameters& parameters) {
+  MixtureSums sums = SumMixture(matches, mask, pose, parameters);
+  if (prior.motion == nullptr) return sums;
+  const PriorTerms terms = EvaluatePrior(*prior.motion, pose);
+  sums.log_likelihood -= terms.cost;
+  sums.gradient += terms.gradient;
+  sums.hessian += terms.hessian;
+  return sums;
+}
+
 ModeFit::ModeFit(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode, MixtureUpdate update)
     : matches_(matches), prior_(prior), mode_(mode), update_(update), num_used_(CountIn(mode->used)) {
-  at_ = SumMixture(matches_, mode->used, mode->pose, mode->mixture);
+  at_ = SumPosterior(matches_, mode->used, prior_, mode->pose, mode->mixture);
 }
 
 bool ModeFit::Step() {
@@ -59,13 +70,13 @@ bool ModeFit::Step() {
   const RelativePose pose = Retract(mode_->pose, move);
   MixtureParameters mixture = mode_->mixture;
   if (update_ == MixtureUpdate::kAll) mixture = Updated(mixture, at_, num_used_, prior_);
-  const MixtureSums there = SumMixture(matches_, mode_->used, pose, mixture);
+  const MixtureSums there = SumPosterior(matches_, mode_->used, prior_, pose, mixture);
   if (!std::isfinite(there.log_likelihood)) return false;
   if (there.log_likelihood < at_.log_likelihood - kTolerance) {
     // The motion's step or the mixture's? The density of wrong matches has no normalisation, so that its
     // update may lower the likelihood.
     mode_->mixture = mixture;
-    at_ = SumMixture(matches_, mode_->used, mode_->pose, mode_->mixture);
+    at_ = SumPosterior(matches_, mode_->used, prior_, mode_->pose, mode_->mixture);
     if (there.log_likelihood < at_.log_likelihood - kTolerance) {
       damping_ = std::max(10.0 * damping_, 0.1);
       return damping_ <= 1e6;

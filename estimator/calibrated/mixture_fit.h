@@ -7,6 +7,7 @@
 
 #include "estimator/calibrated/mode.h"
 #include "estimator/kernels/mixture_sums.h"
+#include "estimator/motion_prior.h"
 
 namespace rcme {
 
@@ -14,7 +15,13 @@ namespace rcme {
 struct MixturePrior {
   double uniform_density = 1e-3;  // 1 / L, L half the diagonal of image 2 in units of the assumed sigma
   bool estimates_scale = true;
+  const MotionPrior* motion = nullptr;  // null: nothing is known of the motion
 };
+
+// SumMixture of the matches, and what is known of the motion: log_likelihood, gradient and hessian have the
+// part of the motion's prior, where there is one.
+MixtureSums SumPosterior(const MatchBlocks& matches, const MatchMask& mask, const MixturePrior& prior,
+                         const RelativePose& pose, const MixtureParameters& parameters);
 
 // What a fit may change beside the motion: what the prior says, or nothing.
 enum class MixtureUpdate { kNone, kAll };

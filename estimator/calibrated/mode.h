@@ -14,7 +14,8 @@ enum class ModeOrigin {
   kOppositeWay,  // the same E, the other way
 };
 
-// One explanation of the matches: a motion at an optimum of the mixture likelihood.
+// One explanation of the matches: a motion at an optimum of the mixture likelihood, or of the posterior where
+// a prior of the motion is given: then log_likelihood and the Hessian have its part.
 struct Mode {
   RelativePose pose;
   MixtureParameters mixture;

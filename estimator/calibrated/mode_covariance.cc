@@ -53,14 +53,16 @@ Matrix5d WidenedForFew(const Matrix5d& root, const Matrix5d& inverse, const Mode
 
 }  // namespace
 
-Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode) {
+Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode, const MixturePrior& prior) {
+  const auto gradient_at = [&](const Vector5d& step) {
+    return SumPosterior(matches, mode.used, prior, Retract(mode.pose, step), mode.mixture).gradient;
+  };
   const Matrix5d root = mode.inverse_hessian.llt().matrixL();
   Matrix5d whitened;
   constexpr double kStep = 0.1;
   for (int k = 0; k < 5; ++k) {
     const Vector5d step = kStep * root.col(k);
-    const Vector5d ahead = SumMixture(matches, mode.used, Retract(mode.pose, step), mode.mixture).gradient;
-    const Vector5d behind = SumMixture(matches, mode.used, Retract(mode.pose, -step), mode.mixture).gradient;
+    const Vector5d ahead = gradient_at(step), behind = gradient_at(-step);
     whitened.col(k) = root.transpose() * (ahead - behind) / (2.0 * kStep);
   }
   const Matrix5d symmetric = 0.5 * (whitened + whitened.transpose());
@@ -111,6 +113,19 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
       inverse * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   const Matrix5d covariance = WidenedForFew(root, inverse, mode, e, freedom);
   return covariance.allFinite() ? covariance : mode.inverse_hessian;
+}
+
+Matrix5d PriorCovariance(const Mode& mode, const MixturePrior& prior, const Matrix5d& inverse) {
+  if (prior.motion == nullptr) return Matrix5d::Zero();
+  return inverse * EvaluatePrior(*prior.motion, mode.pose).hessian * inverse;
+}
+
+Matrix5d CovarianceWithPrior(const Matrix5d& covariance_of_matches, const Mode& mode,
+                             const MixturePrior& prior) {
+  if (prior.motion == nullptr) return covariance_of_matches;
+  const Matrix5d of_prior = EvaluatePrior(*prior.motion, mode.pose).hessian;
+  const Matrix5d kept = mode.inverse_hessian * (mode.hessian - of_prior);
+  return kept * covariance_of_matches * kept.transpose() + PriorCovariance(mode, prior, mode.inverse_hessian);
 }
 
 Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,

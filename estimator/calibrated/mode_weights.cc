@@ -1,5 +1,6 @@
 #include "estimator/calibrated/mode_weights.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -42,6 +43,21 @@ double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixtur
   for (size_t i = 0; i < mode.left_out_density.size(); ++i)
     evidence += std::log(w * mode.left_out_density[i] / WrongDensity(mode, i, background) + (1.0 - w));
   return evidence;
+}
+
+Matrix5d FindMatchInformation(const MotionPrior* prior, const Mode& mode) {
+  if (prior == nullptr) return mode.hessian;
+  return mode.hessian - EvaluatePrior(*prior, mode.pose).hessian;
+}
+
+double ComputePriorEvidence(const MotionPrior& prior, const Mode& mode) {
+  const Eigen::LLT<Matrix5d> of_matches(FindMatchInformation(&prior, mode)), of_both(mode.hessian);
+  const auto half_log_det = [](const Eigen::LLT<Matrix5d>& llt) {
+    return llt.matrixLLT().diagonal().array().log().sum();
+  };
+  const double evidence = LogPeakOverUniform(prior) - EvaluatePrior(prior, mode.pose).cost;
+  if (of_matches.info() != Eigen::Success || of_both.info() != Eigen::Success) return evidence;
+  return evidence - (half_log_det(of_both) - half_log_det(of_matches));
 }
 
 bool IsSecondMotion(const Contrast& contrast) {

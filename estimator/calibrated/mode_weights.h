@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "estimator/calibrated/contrast.h"
+#include "estimator/calibrated/mode.h"
+#include "estimator/motion_prior.h"
 
 namespace rcme {
 
@@ -52,6 +54,23 @@ double ModeLogOdds(const Contrast& a_against_b, const ModeTraits& a, const ModeT
 // nothing where there are more right ones).
 double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixture, double background);
 inline constexpr double kSearchNats = 22.0;
+
+// What a prior of the motion (motion_prior.h) says of a mode, nats: the logarithm of the density of its
+// measurements given that the mode is the camera's motion, over that of measurements which know nothing of
+// it.
+//
+// By Laplace's approximation about the optimum p of likelihood L times density q, with H and Q their
+// Hessians, the integral of L q over the mode is L(p) q(p) |H + Q|^(-1/2) up to powers of 2 pi, where that of
+// L alone is L(p) |H|^(-1/2). The likelihood and |H| are what ModeLogOdds weighs, as without a prior; what
+// remains is
+//
+//   log q(p) - (log|H + Q| - log|H|) / 2,   log q(p) = LogPeakOverUniform - cost
+//
+// It counts in full beside evidence that the regression has tempered: the noise of the prior is independent
+// of that of the matches, and stated.
+double ComputePriorEvidence(const MotionPrior& prior, const Mode& mode);
+// Of the mode's likelihood alone: its Hessian without the prior's part.
+Matrix5d FindMatchInformation(const MotionPrior* prior, const Mode& mode);
 
 // Whether the two are motions of their own, the camera's and an object's: either explains a dozen matches
 // clearly better than the other.

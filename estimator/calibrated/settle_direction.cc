@@ -20,6 +20,8 @@ std::optional<ExplainedMode> MovedTo(const MatchBlocks& matches, const MixturePr
 std::optional<double> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
                                       const MixturePrior& prior, double angle_rad, ExplainedMode* answer) {
   if (UsualDepthInNoise(answer->explanation) > kLowParallax) return std::nullopt;
+  if (problem.prior && problem.prior->direction && problem.prior->direction->sd_rad < 0.5 * angle_rad)
+    return std::nullopt;
   const DirectionPosterior posterior = PosteriorOfDirection(problem, *answer, answer->mode.pose.t, angle_rad);
   if (posterior.mass_within > kSettled) return posterior.mass_within;
   std::optional<ExplainedMode> moved = MovedTo(matches, prior, posterior.best);

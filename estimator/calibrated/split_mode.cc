@@ -91,6 +91,7 @@ std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, con
                                                RandomStream& rng) {
   MixturePrior fixed = prior;
   fixed.estimates_scale = false;
+  fixed.motion = nullptr;  // one of the two is not the camera's
   std::vector<size_t> all(problem.matches.size());
   std::iota(all.begin(), all.end(), size_t{0});
   std::optional<Mode> first = SearchMotion(problem, matches, fixed, all, rng);
@@ -101,7 +102,8 @@ std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, con
   std::optional<Mode> second = SearchMotion(problem, matches, fixed, rest, rng);
   if (!second) return std::nullopt;
   const TwoMotions mix = Mix(by_first, Explain(matches, *second), prior.uniform_density);
-  if (mix.log_likelihood < mode.log_likelihood + kLeastSplitGain) return std::nullopt;
+  const double of_prior = prior.motion != nullptr ? EvaluatePrior(*prior.motion, mode.pose).cost : 0.0;
+  if (mix.log_likelihood < mode.log_likelihood + of_prior + kLeastSplitGain) return std::nullopt;
   Leave(mix.not_of_second, &first->used);
   Leave(mix.not_of_first, &second->used);
   for (Mode* found : {&*first, &*second}) {

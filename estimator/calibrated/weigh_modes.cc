@@ -11,20 +11,23 @@ namespace {
 
 // Of the information in units of the mode's own noise: how well the geometry of its matches determines the
 // motion.
-double LogDetGeometry(const Mode& mode) {
-  const Eigen::LLT<Matrix5d> llt(mode.mixture.scale * mode.mixture.scale * mode.hessian);
+double LogDetGeometry(const Mode& mode, const MotionPrior* prior) {
+  const Eigen::LLT<Matrix5d> llt(mode.mixture.scale * mode.mixture.scale * FindMatchInformation(prior, mode));
   return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
 }
 
-ModeTraits FindTraits(const ExplainedMode& mode) {
-  return {mode.explanation.num_explained, mode.mode.mixture.scale, LogDetGeometry(mode.mode),
+ModeTraits FindTraits(const ExplainedMode& mode, const MotionPrior* prior) {
+  return {mode.explanation.num_explained, mode.mode.mixture.scale, LogDetGeometry(mode.mode, prior),
           UsualDepthInNoise(mode.explanation)};
 }
 
 class ModeComparison {
  public:
-  explicit ModeComparison(const std::vector<ExplainedMode>& modes) : modes_(modes) {
-    for (const ExplainedMode& mode : modes) traits_.push_back(FindTraits(mode));
+  explicit ModeComparison(const std::vector<ExplainedMode>& modes, const MotionPrior* prior = nullptr)
+      : modes_(modes), prior_evidence_(modes.size(), 0.0) {
+    for (const ExplainedMode& mode : modes) traits_.push_back(FindTraits(mode, prior));
+    for (size_t i = 0; prior != nullptr && i < modes.size(); ++i)
+      prior_evidence_[i] = ComputePriorEvidence(*prior, modes[i].mode);
   }
   Contrast Compare(size_t a, size_t b) const {
     const double background =
@@ -33,9 +36,11 @@ class ModeComparison {
   }
   double LogOdds(size_t a, size_t b, const Contrast& contrast) const {
     if (IsSecondMotion(contrast))
-      return -SecondMotionLogOdds(1.0, contrast.num_better_a, contrast.num_better_b);
-    return ModeLogOdds(contrast, traits_[a], traits_[b]);
+      return PriorLogOdds(a, b) - SecondMotionLogOdds(1.0, contrast.num_better_a, contrast.num_better_b);
+    return PriorLogOdds(a, b) + ModeLogOdds(contrast, traits_[a], traits_[b]);
   }
+  double PriorLogOdds(size_t a, size_t b) const { return prior_evidence_[a] - prior_evidence_[b]; }
+  double PriorEvidence(size_t i) const { return prior_evidence_[i]; }
   ModePair Pair(size_t a, size_t b) const {
     const Contrast contrast = Compare(a, b);
     return {a, b, ComputeModeTerms(contrast, traits_[a], traits_[b]), IsSecondMotion(contrast)};
@@ -45,6 +50,7 @@ class ModeComparison {
  private:
   const std::vector<ExplainedMode>& modes_;
   std::vector<ModeTraits> traits_;
+  std::vector<double> prior_evidence_;  // nats
 };
 
 constexpr size_t kWeighingRounds = 3;
@@ -97,7 +103,7 @@ std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t ans
 
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
                        const MixturePrior& prior, const CalibratedOptions& options) {
-  const ModeComparison comparison(modes);
+  const ModeComparison comparison(modes, prior.motion);
   ModeWeights weights;
   weights.answer = ChooseAnswer(modes, comparison);
   weights.is_rival = FindRivals(modes, weights.answer, bounds);
@@ -108,13 +114,15 @@ ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBoun
     double log_odds = i == weights.answer ? 0.0 : -comparison.LogOdds(weights.answer, i, contrast);
     if (is_second)
       log_odds =
-          SecondMotionLogOdds(options.second_motion_odds, contrast.num_better_a, contrast.num_better_b);
+          SecondMotionLogOdds(options.second_motion_odds, contrast.num_better_a, contrast.num_better_b) +
+          comparison.PriorLogOdds(i, weights.answer);
     weights.is_second_motion.push_back(is_second);
     weights.of_modes.push_back(std::exp(std::min(log_odds, 0.0)));
   }
   ScaleOdds(weights.is_rival, &weights.of_modes);
   const double background = std::max(prior.uniform_density, answer.mode.mixture.outlier_density);
-  const double evidence = EvidenceOfMotion(answer.explanation, answer.mode.mixture, background);
+  const double evidence = EvidenceOfMotion(answer.explanation, answer.mode.mixture, background) +
+                          comparison.PriorEvidence(weights.answer);
   weights.of_no_motion = std::exp(std::min(-evidence, kGreatestNoneLogOdds));
   double total = weights.of_no_motion;
   for (const double weight : weights.of_modes) total += weight;

@@ -24,7 +24,9 @@ struct ModeWeights {
 // own (IsSecondMotion), by the number of matches that either explains better; begun at the greatest
 // likelihood. Modes within `bounds` of it are the same motion found more than once: together they weigh as
 // much as it. The others are alike among themselves, too, so that their odds add up to less than their sum:
-// to (sum odds^2.5)^(1/2.5), the exponent from a regression of failure on all rivals of an answer.
+// to (sum odds^2.5)^(1/2.5), the exponent from a regression of failure on all rivals of an answer. A prior of
+// the motion adds what it says of each mode (ComputePriorEvidence) to its log-odds, and takes what it says of
+// the answer from those of no motion, of which its measurements would know nothing.
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
                        const MixturePrior& prior, const CalibratedOptions& options);
 

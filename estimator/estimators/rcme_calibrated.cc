@@ -1,7 +1,11 @@
 #include "estimator/estimators/rcme_calibrated.h"
 
+#include <fmt/format.h>
+
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "estimator/calibrated/candidates.h"
@@ -11,6 +15,7 @@
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/calibrated/mode_covariance.h"
 #include "estimator/calibrated/noise_choice.h"
+#include "estimator/calibrated/prior_check.h"
 #include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
 #include "estimator/calibrated/verdict.h"
@@ -18,6 +23,7 @@
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
+#include "parameters/probability_text.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -38,7 +44,45 @@ MotionProblem Shuffled(const MotionProblem& problem, RandomStream& rng, std::vec
 
 MixturePrior MakePrior(const MotionProblem& problem, const CalibratedOptions& options) {
   const double diagonal = std::hypot(problem.camera2.width, problem.camera2.height) / problem.sigma_px;
-  return {2.0 / diagonal, options.sigma == SigmaKnowledge::kEstimated};
+  return {2.0 / diagonal, options.sigma == SigmaKnowledge::kEstimated,
+          problem.prior ? &*problem.prior : nullptr};
+}
+
+// What an estimate is made of.
+struct Workings {
+  MotionProblem problem;  // its matches in the order that masks and lists of the modes have
+  std::vector<ExplainedMode> modes;
+  ModeWeights weights;
+  std::optional<double> direction_mass;
+  CheckedVerdict checked;
+};
+
+// Adds the optimum that is reached from a mode, unless it is known.
+void AddOptimumFrom(Mode mode, const MatchBlocks& matches, const MixturePrior& prior,
+                    std::vector<ExplainedMode>* modes) {
+  constexpr int kSteps = 20;
+  if (!FitMode(matches, prior, kSteps, &mode)) return;
+  const bool is_known = std::ranges::any_of(
+      *modes, [&](const ExplainedMode& known) { return IsSameMode(known.mode, mode, 1.0); });
+  if (!is_known) modes->push_back({mode, Explain(matches, mode)});
+}
+
+// Of a motion whose direction may be any of these cells: the rotation's second moment about the centre, and
+// of the direction that nothing is known.
+Matrix5d SpreadOverCells(const std::vector<DirectionCell>& cells) {
+  Matrix5d spread = Matrix5d::Zero();
+  for (const DirectionCell& cell : cells)
+    spread.topLeftCorner<3, 3>() +=
+        cell.weight * (cell.rotation_cov + cell.rotation * cell.rotation.transpose());
+  spread.bottomRightCorner<2, 2>() = std::numbers::pi * std::numbers::pi * Eigen::Matrix2d::Identity();
+  return spread;
+}
+
+// The sandwich of a mode as if it were an optimum of the matches alone.
+Matrix5d OwnCovarianceOfMatches(const MatchBlocks& matches, const MixturePrior& prior, Mode mode) {
+  mode.hessian = FindMatchInformation(prior.motion, mode);
+  mode.inverse_hessian = mode.hessian.inverse();
+  return SandwichCovariance(mode, Explain(matches, mode), InverseOfObserved(matches, mode));
 }
 
 void FillMotion(const ExplainedMode& answer, const Verdict& verdict, double assumed_sigma_px,
@@ -94,7 +138,11 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
 
   MotionEstimate EstimateChecked(const MotionProblem& problem, RandomStream& rng,
                                  CheckedVerdict* checked) const override {
-    return EstimateAndTell(problem, rng, checked, nullptr);
+    Workings workings;
+    workings.checked = *checked;
+    MotionEstimate estimate = EstimateAndTell(problem, rng, &workings, nullptr);
+    *checked = workings.checked;
+    return estimate;
   }
 
   MotionEstimate EstimateWithPosterior(const MotionProblem& problem, RandomStream& rng,
@@ -129,14 +177,65 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   }
 
  private:
-  // Estimate; `checked` and `posterior`, where they are given, are what it is made of.
-  MotionEstimate EstimateAndTell(const MotionProblem& problem, RandomStream& rng, CheckedVerdict* checked,
+  // Estimate; `workings` and `posterior`, where they are given, are what it is made of. A prior that the
+  // answer of the matches alone contradicts (prior_check.h) is left out.
+  MotionEstimate EstimateAndTell(const MotionProblem& problem, RandomStream& rng, Workings* workings,
                                  std::optional<MotionPosterior>* posterior) const {
+    if (!problem.prior || RefuseUnsolvable(problem, 6))
+      return EstimateOnce(problem, rng, workings, posterior);
+    MotionProblem without = problem;
+    without.prior.reset();
+    RandomStream same = rng;
+    Workings of_matches, of_both;
+    std::optional<MotionPosterior> posterior_of_matches;
+    std::optional<MotionPosterior>* const wanted = posterior != nullptr ? &posterior_of_matches : nullptr;
+    MotionEstimate alone = EstimateOnce(without, same, &of_matches, wanted);
+    MotionEstimate estimate = EstimateOnce(problem, rng, &of_both, posterior);
+    const double p_value = ComputePriorPValue(*problem.prior, ListBeliefs(of_matches, of_both));
+    const bool is_contradicted = p_value < kPriorLevel;
+    if (is_contradicted) {
+      estimate = std::move(alone);
+      estimate.message += fmt::format("; the prior contradicts the matches (probability {}) and is not used",
+                                      ProbabilityText(p_value));
+      if (posterior != nullptr) *posterior = std::move(posterior_of_matches);
+    }
+    estimate.prior = is_contradicted ? PriorUse::kContradicted : PriorUse::kUsed;
+    estimate.prior_p_value = p_value;
+    if (workings != nullptr) *workings = std::move(is_contradicted ? of_matches : of_both);
+    return estimate;
+  }
+
+  // The motions that the matches alone leave: those that were found without the prior, and the optimum of the
+  // matches near the answer with it, which the search without it may have missed.
+  std::vector<MotionBelief> ListBeliefs(const Workings& of_matches, const Workings& of_both) const {
+    const MotionProblem& problem = of_matches.problem;
+    const MatchBlocks matches(problem);
+    const MixturePrior prior = MakePrior(problem, options_);
+    std::vector<ExplainedMode> modes = of_matches.modes;
+    if (!of_both.modes.empty())
+      AddOptimumFrom(of_both.modes[of_both.weights.answer].mode, matches, prior, &modes);
+    if (modes.empty()) return {};
+    const ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
+    std::vector<MotionBelief> beliefs;
+    for (size_t i = 0; i < modes.size(); ++i) {
+      if (weights.of_modes[i] < kNegligibleWeight) continue;
+      const Matrix5d curvature = InverseOfObserved(matches, modes[i].mode);
+      Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, of_matches.checked.check, prior);
+      if (of_matches.direction_mass && !weights.is_second_motion[i])
+        covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
+      beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i]});
+    }
+    return beliefs;
+  }
+
+  // Estimate by the matches and the prior that the problem has.
+  MotionEstimate EstimateOnce(const MotionProblem& problem, RandomStream& rng, Workings* workings,
+                              std::optional<MotionPosterior>* posterior) const {
     if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, 6)) return *refusal;
     std::vector<int> order;
-    const MotionProblem shuffled = Shuffled(problem, rng, &order);
+    MotionProblem shuffled = Shuffled(problem, rng, &order);
     const MatchBlocks matches(shuffled);
-    const MixturePrior prior = MakePrior(problem, options_);
+    const MixturePrior prior = MakePrior(shuffled, options_);
     MotionEstimate estimate;
     std::vector<ExplainedMode> modes = FindExplained(shuffled, matches, prior, rng, &estimate.counts);
     const int num_solved = estimate.counts.num_hypotheses - estimate.counts.num_degenerate_samples;
@@ -159,11 +258,11 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
     const ModelCheck check = CheckModel(shuffled, modes, weights);
     std::vector<Matrix5d> spreads;
-    Verdict verdict = Judge(shuffled, matches, modes, weights, direction_mass, check, rng,
+    Verdict verdict = Judge(shuffled, matches, prior, modes, weights, direction_mass, check, rng,
                             posterior != nullptr ? &spreads : nullptr);
-    if (checked != nullptr) *checked = {check, verdict.by_modes};
+    if (workings != nullptr) workings->checked = {check, verdict.by_modes};
     if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
-    if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check);
+    if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check, prior);
     FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
     FillMatches(modes[weights.answer].explanation, order, &estimate);
     const ModeWeights reweighed = ReweighModes(weights, verdict);
@@ -175,10 +274,20 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     } else if (options_.covariance == CovarianceKind::kRobust) {
       RobustCovarianceOptions robust = options_.robust;
       robust.calibration = options_.calibration;
-      MakeCovarianceRobust(problem, robust, verdict.pose_cov, &estimate);
+      const Mode& answer = modes[weights.answer].mode;
+      MakeCovarianceRobust(problem, robust,
+                           prior.motion ? OwnCovarianceOfMatches(matches, prior, answer) : verdict.pose_cov,
+                           &estimate);
+      if (estimate.status == MotionStatus::kOk)
+        estimate.pose_cov = CovarianceWithPrior(estimate.pose_cov, answer, prior);
     }
     if (posterior != nullptr)
       *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, direction_mass.has_value(), estimate);
+    if (workings == nullptr) return estimate;
+    workings->weights = std::move(weights);
+    workings->direction_mass = direction_mass;
+    workings->modes = std::move(modes);
+    workings->problem = std::move(shuffled);
     return estimate;
   }
 
@@ -190,7 +299,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   std::vector<ExplainedMode> FindExplained(const MotionProblem& problem, const MatchBlocks& matches,
                                            const MixturePrior& prior, RandomStream& rng,
                                            LoopCounts* counts) const {
-    const HypothesisSearch search = SearchHypotheses(matches, ScoreMatches(matches), options_, rng);
+    const HypothesisSearch search =
+        SearchHypotheses(matches, ScoreMatches(matches), options_, rng, kSoftScale, prior.motion);
     *counts = search.counts;
     std::vector<Mode> found =
         FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));
@@ -198,14 +308,14 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     return ExplainMatches(problem, matches, prior, options_, std::move(found));
   }
 
-  // The constants of the check were fitted to the default options.
-  ProbabilityDomain Domain(double by_modes, const ModelCheck& check) const {
+  // The constants of the check were fitted to the default options, without priors.
+  ProbabilityDomain Domain(double by_modes, const ModelCheck& check, const MixturePrior& prior) const {
     const CalibratedOptions usual;
     const bool is_usual = options_.max_rotation_error_deg == usual.max_rotation_error_deg &&
                           options_.max_direction_error_deg == usual.max_direction_error_deg &&
                           options_.num_modes == usual.num_modes && options_.sigma == usual.sigma &&
                           options_.second_motion_odds == usual.second_motion_odds &&
-                          options_.leave_out == usual.leave_out;
+                          options_.leave_out == usual.leave_out && prior.motion == nullptr;
     return is_usual && IsInDomain(by_modes, check) ? ProbabilityDomain::kVerified
                                                    : ProbabilityDomain::kExtrapolated;
   }
@@ -235,7 +345,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   // The covariance is the second moment, about the answer, of the modes within the bounds. `spreads`, where
   // it is given: per mode its covariance, or how far its likelihood reaches if it is beyond the bounds; zero
   // where the weight is negligible.
-  Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches,
+  Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
                 const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
                 const std::optional<double>& direction_mass, const ModelCheck& check, RandomStream& rng,
                 std::vector<Matrix5d>* spreads) const {
@@ -249,7 +359,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       const Mode& mode = modes[i].mode;
       if (weight < kNegligibleWeight && i != weights.answer) continue;
       const bool is_exact = weight > kSmallWeight || i == weights.answer;
-      const Matrix5d curvature = is_exact ? InverseOfObserved(matches, mode) : mode.inverse_hessian;
+      const Matrix5d curvature = is_exact ? InverseOfObserved(matches, mode, prior) : mode.inverse_hessian;
       // Along a direction that the noise seems to determine (the observed curvature is below that of the
       // residuals' first derivatives), the score varies as the latter says: H_obs^-1 H H_obs^-1.
       const Matrix5d reach = curvature * mode.hessian * curvature;
@@ -259,7 +369,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (spreads != nullptr) (*spreads)[i] = reach;
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, mode.pose);
-      const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check);
+      const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check, prior);
       if (spreads != nullptr) (*spreads)[i] = covariance;
       verdict.pose_cov += weight * (covariance + away * away.transpose());
       within += weight;
@@ -271,15 +381,19 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   }
 
   Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mode,
-                             const Matrix5d& curvature, const ModelCheck& check) const {
+                             const Matrix5d& curvature, const ModelCheck& check,
+                             const MixturePrior& prior) const {
+    Matrix5d of_prior = Matrix5d::Zero();  // the inverse information has both
     Matrix5d of_matches = options_.covariance == CovarianceKind::kInformation
                               ? mode.mode.inverse_hessian
                               : SandwichCovariance(mode.mode, mode.explanation, curvature);
+    if (prior.motion != nullptr && options_.covariance != CovarianceKind::kInformation)
+      of_prior = PriorCovariance(mode.mode, prior, curvature);
     if (options_.covariance == CovarianceKind::kRobust)
-      return of_matches;  // adds what is shared to the whole
+      return of_matches + of_prior;  // adds what is shared to the whole
     if (options_.covariance == CovarianceKind::kSandwich && options_.leave_out != CalibratedStep::kModelCheck)
       of_matches *= CovarianceFactor(check);
-    return of_matches + IntrinsicsCovariance(problem, options_, mode.mode, curvature);
+    return of_matches + of_prior + IntrinsicsCovariance(problem, options_, mode.mode, curvature);
   }
 
   CalibratedOptions options_;

@@ -1,6 +1,8 @@
 // rcme_calibrated: RCME with what its propagated uncertainty is for, the probability that the answer is
 // wrong.
 //
+//   0  prior         motion_prior.h                    of the motion, if the problem has one: in all steps
+//                    calibrated/prior_check.h          left out where the matches contradict it
 //   1  hypotheses    calibrated/hypothesis_search.h    five-point samples, ranked by a soft score
 //   2  modes         calibrated/candidates.h           optima of a mixture likelihood (mixture_fit.h)
 //                    calibrated/split_mode.h           two motions in place of a compromise between them
@@ -52,7 +54,8 @@ class WeightInspection {
  public:
   virtual ~WeightInspection() = default;
   // What it would make of these motions, had its search found them and nothing else: the optima that are
-  // reached from them, and the others that follow from these (steps 3 to 6).
+  // reached from them, and the others that follow from these (steps 3 to 6). A prior of the motion counts
+  // unchecked.
   virtual std::vector<WeighedMotion> WeighMotions(const MotionProblem& problem,
                                                   const std::vector<RelativePose>& starts) const = 0;
   // Estimate, and what its probability is made of; that stays as it is where there is no motion.

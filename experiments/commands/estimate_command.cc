@@ -157,6 +157,7 @@ class Answerer {
     answer.for_bounds = std::move(found.probabilities);
     answer.record = Score(answer.estimate, data, 0.0);
     answer.has_truth_sd = data.truth.sd.has_value();
+    answer.has_prior = data.problem.prior.has_value();
     if (answer.estimate.status != MotionStatus::kOk) return answer;
     answer.evidence = ComputeEvidence(data.problem, answer.estimate);
     if (const std::optional<double> risk = arguments_.integrity_risk)

@@ -60,6 +60,7 @@ void ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_
   for (const double scale : data.problem.noise_scale) file.sigma_px.push_back(scale * data.problem.sigma_px);
   file.camera1 = data.problem.camera1;
   file.camera2 = data.problem.camera2;
+  file.prior = data.problem.prior;
   WriteMatchFile(file, (folder / "matches" / (id + ".csv")).string());
 }
 

@@ -28,7 +28,8 @@ enum class StreamPurpose : std::uint32_t {
   kSeverity = 7,
   kPilotScene = 8,
   kTrueKind = 9,
-  kPopulation = 10
+  kPopulation = 10,
+  kPrior = 11
 };
 
 // The stream of a trial for a purpose.

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
+#include <numbers>
 #include <string_view>
 
 #include "estimator/noise_scale.h"
@@ -28,10 +30,28 @@ constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
 constexpr std::string_view kSigmaColumn = "sigma_px";
 constexpr size_t kMaxColumns = 1000;
 constexpr size_t kMaxSceneBytes = 200;
-constexpr std::array<std::string_view, 15> kHeaderKeys = {
-    "camera1",        "camera2",    "size1",  "size2",    "K1_fx_fy_cx_cy",
-    "K2_fx_fy_cx_cy", "R_rowmajor", "t_unit", "truth_sd", "baseline",
-    "noise_level",    "image1",     "image2", "scene",    "seconds_between"};
+constexpr std::array<std::string_view, 22> kHeaderKeys = {"camera1",
+                                                          "camera2",
+                                                          "size1",
+                                                          "size2",
+                                                          "K1_fx_fy_cx_cy",
+                                                          "K2_fx_fy_cx_cy",
+                                                          "R_rowmajor",
+                                                          "t_unit",
+                                                          "truth_sd",
+                                                          "baseline",
+                                                          "noise_level",
+                                                          "image1",
+                                                          "image2",
+                                                          "scene",
+                                                          "seconds_between",
+                                                          "prior_rotation_rowmajor",
+                                                          "prior_rotation_sd_deg",
+                                                          "gravity1",
+                                                          "gravity2",
+                                                          "gravity_sd_deg",
+                                                          "prior_direction",
+                                                          "prior_direction_sd_deg"};
 
 std::string_view Trim(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r");
@@ -180,15 +200,21 @@ std::vector<CameraDoubt> FindDoubts(const Header& header, const MatchFile& file,
                         {header.Has("size1") || has_own("1"), header.Has("size2") || has_own("2")});
 }
 
+Eigen::Matrix3d RotationFrom(const Header& header, const std::string& key) {
+  const std::vector<double> r = header.Numbers(key, 9);
+  Eigen::Matrix3d R;
+  R << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
+  const double misfit = (R * R.transpose() - Eigen::Matrix3d::Identity()).norm();
+  if (!(misfit < 1e-4) || R.determinant() < 0.0) header.Fail(key, "is not a rotation matrix");
+  return R;
+}
+
 std::optional<RelativePose> TruePoseFrom(const Header& header) {
   if (!header.Has("R_rowmajor") && !header.Has("t_unit")) return std::nullopt;
-  const std::vector<double> r = header.Numbers("R_rowmajor", 9);
-  const std::vector<double> t = header.Numbers("t_unit", 3);
   RelativePose pose;
-  pose.R << r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8];
+  pose.R = RotationFrom(header, "R_rowmajor");
+  const std::vector<double> t = header.Numbers("t_unit", 3);
   pose.t << t[0], t[1], t[2];
-  const double misfit = (pose.R * pose.R.transpose() - Eigen::Matrix3d::Identity()).norm();
-  if (!(misfit < 1e-4) || pose.R.determinant() < 0.0) header.Fail("R_rowmajor", "is not a rotation matrix");
   if (!(std::abs(pose.t.norm() - 1.0) < 1e-4)) header.Fail("t_unit", "is not of unit length");
   pose.t.normalize();
   return pose;
@@ -202,6 +228,56 @@ std::optional<TruthSd> TruthSdFrom(const Header& header) {
   if (std::ranges::any_of(sd, [](double x) { return x < 0.0; }))
     header.Fail("truth_sd", "standard deviations must be >= 0");
   return TruthSd{kRadPerDeg * Eigen::Vector3d(sd[0], sd[1], sd[2]), {sd[3], sd[4], sd[5]}};
+}
+
+// A direction, of any length.
+Eigen::Vector3d DirectionFrom(const Header& header, const std::string& key) {
+  const std::vector<double> v = header.Numbers(key, 3);
+  const Eigen::Vector3d direction(v[0], v[1], v[2]);
+  const double length = direction.stableNorm();
+  if (!(length > 1e-9) || !(length < 1e9)) header.Fail(key, "must have a length in (1e-9, 1e9)");
+  return direction.normalized();
+}
+
+double PriorSdFrom(const Header& header, const std::string& key, double sd_deg) {
+  constexpr double kLeastDeg = 1e-4, kGreatestDeg = 180.0;
+  if (!(sd_deg >= kLeastDeg && sd_deg <= kGreatestDeg))
+    header.Fail(key, fmt::format("{} is not in [{:g}, {:g}] deg", sd_deg, kLeastDeg, kGreatestDeg));
+  return kRadPerDeg * sd_deg;
+}
+
+RotationPrior RotationPriorFrom(const Header& header) {
+  const std::string key = "prior_rotation_sd_deg";
+  RotationPrior prior;
+  prior.R = RotationFrom(header, "prior_rotation_rowmajor");
+  const bool is_one = header.Has(key) && SplitAtBlanks(header.Text(key)).size() == 1;
+  const std::vector<double> sd_deg = header.Numbers(key, is_one ? 1 : 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double sd = PriorSdFrom(header, key, sd_deg[is_one ? 0 : static_cast<size_t>(axis)]);
+    prior.cov(axis, axis) = sd * sd;
+  }
+  return prior;
+}
+
+// What sensors say; of each measurement every key must be there, or none.
+std::optional<MotionPrior> PriorFrom(const Header& header) {
+  const auto has_any = [&](std::initializer_list<const char*> keys) {
+    return std::ranges::any_of(keys, [&](const char* key) { return header.Has(key); });
+  };
+  MotionPrior prior;
+  if (has_any({"prior_rotation_rowmajor", "prior_rotation_sd_deg"}))
+    prior.rotation = RotationPriorFrom(header);
+  if (has_any({"gravity1", "gravity2", "gravity_sd_deg"})) {
+    const double sd = PriorSdFrom(header, "gravity_sd_deg", header.Numbers("gravity_sd_deg", 1).front());
+    prior.gravity = {DirectionFrom(header, "gravity1"), DirectionFrom(header, "gravity2"), sd, sd};
+  }
+  if (has_any({"prior_direction", "prior_direction_sd_deg"})) {
+    const double sd =
+        PriorSdFrom(header, "prior_direction_sd_deg", header.Numbers("prior_direction_sd_deg", 1).front());
+    prior.direction = {DirectionFrom(header, "prior_direction"), sd};
+  }
+  if (CountPriorFreedom(prior) == 0) return std::nullopt;
+  return prior;
 }
 
 // The number that stands first; NaN without one that is positive.
@@ -361,6 +437,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.baseline = BaselineFrom(header);
   file.noise_level = NoiseLevelFrom(header);
   file.seconds_between = SecondsBetweenFrom(header);
+  file.prior = PriorFrom(header);
   file.scene = SceneFrom(header);
   if (header.Has("image1")) file.image1 = header.Text("image1");
   if (header.Has("image2")) file.image2 = header.Text("image2");
@@ -378,9 +455,41 @@ MatchFile ReadMatchesFromInput(const GivenCameras& given) {
 }
 
 MotionProblem MakeMotionProblem(MatchFile file, double sigma_px) {
-  return {std::move(file.matches), file.camera1, file.camera2, sigma_px * file.noise_growth,
-          ComputeNoiseScale(std::move(file.sigma_px))};
+  return {std::move(file.matches),
+          file.camera1,
+          file.camera2,
+          sigma_px * file.noise_growth,
+          ComputeNoiseScale(std::move(file.sigma_px)),
+          file.prior};
 }
+
+namespace {
+
+// The header lines of a prior; a covariance by the standard deviations on its diagonal, of gravity the noise
+// of both as that of each.
+std::string PriorText(const MotionPrior& prior) {
+  const auto numbers = [](const Eigen::MatrixXd& values) {
+    return fmt::format("{}", fmt::join(values.data(), values.data() + values.size(), " "));
+  };
+  std::string text;
+  if (const std::optional<RotationPrior>& rotation = prior.rotation) {
+    text += fmt::format("# prior_rotation_rowmajor: {}\n", numbers(rotation->R.transpose()));
+    text += fmt::format("# prior_rotation_sd_deg: {}\n",
+                        numbers(kDegPerRad * rotation->cov.diagonal().cwiseSqrt()));
+  }
+  if (const std::optional<GravityPrior>& gravity = prior.gravity) {
+    text += fmt::format("# gravity1: {}\n# gravity2: {}\n# gravity_sd_deg: {}\n", numbers(gravity->in_cam1),
+                        numbers(gravity->in_cam2),
+                        kDegPerRad * std::hypot(gravity->sd1_rad, gravity->sd2_rad) / std::numbers::sqrt2);
+  }
+  if (const std::optional<DirectionPrior>& direction = prior.direction) {
+    text += fmt::format("# prior_direction: {}\n# prior_direction_sd_deg: {}\n", numbers(direction->t),
+                        kDegPerRad * direction->sd_rad);
+  }
+  return text;
+}
+
+}  // namespace
 
 void WriteMatchFile(const MatchFile& file, const std::string& path) {
   std::string text = fmt::format("# scene: {}\n", file.scene);
@@ -405,6 +514,7 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
   if (file.baseline > 0.0) text += fmt::format("# baseline: {}\n", file.baseline);
   if (file.noise_level != 1.0) text += fmt::format("# noise_level: {}\n", file.noise_level);
   if (file.seconds_between > 0.0) text += fmt::format("# seconds_between: {}\n", file.seconds_between);
+  if (file.prior) text += PriorText(*file.prior);
   const bool has_sigma = !file.sigma_px.empty();
   text +=
       fmt::format("{}{}{}\n", fmt::join(kColumns, ","), has_sigma ? "," : "", has_sigma ? kSigmaColumn : "");

@@ -36,6 +36,13 @@ namespace rcme {
 //   # image2: frames/0002.png                that share an image say so
 //   # seconds_between: 0.1                 optional: time from image 1 to image 2, of one moving camera
 //   # scene: name                            optional, groups pairs in a study
+//   # prior_rotation_rowmajor: ... (9)       optional, as the next five: what sensors say of the motion
+//   # prior_rotation_sd_deg: 0.5 0.5 0.5       about the axes of camera 2, or one number for all
+//   # gravity1: 0.01 0.999 0.02              its direction in camera 1, of any length
+//   # gravity2: 0.03 0.998 0.05              and in camera 2
+//   # gravity_sd_deg: 1                      of each of them
+//   # prior_direction: 0.1 0 0.99            of t, of any length
+//   # prior_direction_sd_deg: 5
 //   # key: value                             any further one is skipped
 //   x1,y1,x2,y2[,...]                        column names, optional, before the first match
 //   14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre of the top-left pixel
@@ -59,6 +66,7 @@ struct MatchFile {
   double noise_level = 1.0;                                           // of a template
   double seconds_between = std::numeric_limits<double>::quiet_NaN();  // NaN: the file does not say
   std::vector<CameraDoubt> doubts = {};                               // about K, as the reader found them
+  std::optional<MotionPrior> prior = {};
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;

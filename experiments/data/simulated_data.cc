@@ -8,6 +8,7 @@
 #include "estimator/undistortion.h"
 #include "simulator/noise_registry.h"
 #include "simulator/outlier_registry.h"
+#include "stats/constants.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
@@ -37,6 +38,21 @@ class GivenNoise : public NoiseModel {
   double sigma_px_;
   std::span<const double> normals_;
 };
+
+// What the sensors measure, as estimators get it; nothing without a measurement.
+std::optional<MotionPrior> MakePrior(const Scene& scene, const MotionSensors& sensors, RandomStream& rng) {
+  if (sensors.IsNone()) return std::nullopt;
+  const MeasuredMotion measured = sensors.Measure(scene, rng);
+  MotionPrior prior;
+  const double rotation_sd = kRadPerDeg * sensors.rotation_sd_deg,
+               gravity_sd = kRadPerDeg * sensors.gravity_sd_deg;
+  if (measured.R) prior.rotation = {*measured.R, rotation_sd * rotation_sd * Eigen::Matrix3d::Identity()};
+  if (measured.gravity)
+    prior.gravity = {measured.gravity->front(), measured.gravity->back(), gravity_sd, gravity_sd};
+  if (measured.t) prior.direction = {*measured.t, kRadPerDeg * sensors.direction_sd_deg};
+  if (CountPriorFreedom(prior) == 0) return std::nullopt;
+  return prior;
+}
 
 // What `make` returns. What a simulation cannot do with its settings is NotSimulated.
 template <typename Make>
@@ -69,8 +85,9 @@ SimulatedData::SimulatedData(const Choices& choices)
 
 std::vector<Parameter> SimulatedData::Parameters() {
   std::vector<Parameter> all = SceneParameters();
-  for (const std::vector<Parameter>& more : {noise_->Parameters(), rcme::Parameters(outliers_),
-                                             rcme::Parameters(defects_), rcme::Parameters(assumed_)}) {
+  for (const std::vector<Parameter>& more :
+       {noise_->Parameters(), rcme::Parameters(outliers_), rcme::Parameters(defects_),
+        rcme::Parameters(assumed_), rcme::Parameters(sensors_)}) {
     all.insert(all.end(), more.begin(), more.end());
   }
   all.push_back(Parameter::Choice<bool>("severity", &measures_severity_,
@@ -139,7 +156,8 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, const StreamName& trial_na
     RandomStream severity_rng = StreamFor(trial_name, StreamPurpose::kSeverity);
     severity = MeasureSeverity(scene, observation, noise_->sigma_px(), severity_rng);
   }
-  TrialData data = Give(scene, std::move(observation));
+  RandomStream prior_rng = StreamFor(trial_name, StreamPurpose::kPrior);
+  TrialData data = Give(scene, std::move(observation), prior_rng);
   data.severity = severity;
   return data;
 }
@@ -148,7 +166,8 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, std::span<const double> no
                                   RandomStream& outlier_rng) const {
   RandomStream unused = StreamFor({}, StreamPurpose::kNoise);
   const GivenNoise noise(noise_->sigma_px(), normals);
-  return Give(scene, Simulate([&] { return Observe(scene, noise, outliers_, unused, outlier_rng); }));
+  Observation observation = Simulate([&] { return Observe(scene, noise, outliers_, unused, outlier_rng); });
+  return Give(scene, std::move(observation), outlier_rng);
 }
 
 Lens SimulatedData::AssumedLens(const SceneCamera& camera_true) const {
@@ -157,7 +176,7 @@ Lens SimulatedData::AssumedLens(const SceneCamera& camera_true) const {
   return lens;
 }
 
-TrialData SimulatedData::Give(const Scene& scene, Observation observation) const {
+TrialData SimulatedData::Give(const Scene& scene, Observation observation, RandomStream& prior_rng) const {
   TrialData data;
   // sigma_px is that of the median match where single ones are told apart.
   const double median = observation.noise_scale.empty() ? 1.0 : ComputeMedian(observation.noise_scale);
@@ -165,7 +184,8 @@ TrialData SimulatedData::Give(const Scene& scene, Observation observation) const
                             {},
                             {},
                             assumed_.AssumedSigma(median * noise_->sigma_px()),
-                            ComputeNoiseScale(std::move(observation.noise_scale))};
+                            ComputeNoiseScale(std::move(observation.noise_scale)),
+                            MakePrior(scene, sensors_, prior_rng)};
   UndistortedProblem undistorted =
       UndistortProblem(AssumedLens(scene.camera1), AssumedLens(scene.camera2), std::move(as_taken));
   data.problem = std::move(undistorted.problem);

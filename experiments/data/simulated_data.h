@@ -8,6 +8,7 @@
 #include "experiments/data/data_source.h"
 #include "simulator/calibration_error.h"
 #include "simulator/camera_defects.h"
+#include "simulator/motion_sensors.h"
 #include "simulator/noise_model.h"
 #include "simulator/observe.h"
 #include "simulator/outlier_model.h"
@@ -60,14 +61,15 @@ class SimulatedData : public DataSource {
   // Whether the noise is sigma_px times standard normal numbers (`noise: gaussian`).
   bool HasNormalNoise() const { return choices_.noise == "gaussian"; }
   // The second half with these numbers, four for each point of the scene (x1, y1, x2, y2), and outliers from
-  // a stream of one's own. Severity is not measured.
+  // a stream of one's own, then the noise of priors. Severity is not measured.
   TrialData MakeFrom(const Scene& scene, std::span<const double> normals, RandomStream& outlier_rng) const;
 
  private:
   Lens AssumedLens(const SceneCamera& camera_true) const;
   // Matches are undistorted; those at a pixel that no ray reaches, by noise or in the eyes of who assumes
   // another K, are left out, as `rcme pairs` leaves out key points.
-  TrialData Give(const Scene& scene, Observation observation) const;
+  // prior_rng: of the sensors, which draw nothing where there are none.
+  TrialData Give(const Scene& scene, Observation observation, RandomStream& prior_rng) const;
 
   Choices choices_;                // none empty
   mutable SceneGenerator scenes_;  // FixBaseline
@@ -77,6 +79,7 @@ class SimulatedData : public DataSource {
   OutlierModel outliers_;
   CameraDefects defects_;
   CalibrationError assumed_;
+  MotionSensors sensors_;
   bool measures_severity_ = true;
 };
 

@@ -134,6 +134,31 @@ TEST(EstimateBounds, AreOfTheSameFit) {
   EXPECT_THAT(table.out, testing::HasSubstr("P(>1,5)"));
 }
 
+// A right rotation is used, one of 90 deg is not and the answer is as without it; who takes none says so.
+TEST(EstimatePrior, IsUsedContradictedOrNone) {
+  const TempFolder folder;
+  const std::string sd = "# prior_rotation_sd_deg: 0.5\n", rows = MatchRows(80);
+  const auto write = [&](const char* name, const std::string& prior) {
+    return folder.Write(name, MatchHeader() + prior + rows);
+  };
+  const std::string right = write("right.csv", sd + "# prior_rotation_rowmajor: 1 0 0 0 1 0 0 0 1\n"),
+                    wrong = write("wrong.csv", sd + "# prior_rotation_rowmajor: 0 -1 0 1 0 0 0 0 1\n"),
+                    none = write("none.csv", "");
+  const nlohmann::json used = Estimate(right, "rcme_calibrated"), off = Estimate(wrong, "rcme_calibrated"),
+                       alone = Estimate(none, "rcme_calibrated"), other = Estimate(right, "standard");
+  EXPECT_EQ(used["prior"], "used");
+  EXPECT_GT(used["prior_p_value"].get<double>(), 1e-3);
+  EXPECT_EQ(used["failure_probability_domain"], "extrapolated");
+  EXPECT_EQ(off["prior"], "contradicted");
+  EXPECT_LT(off["prior_p_value"].get<double>(), 1e-3);
+  EXPECT_EQ(off["R"], alone["R"]);
+  EXPECT_EQ(off["pose_cov"], alone["pose_cov"]);
+  EXPECT_FALSE(alone.contains("prior"));
+  EXPECT_EQ(other["prior"], "none");
+  EXPECT_THAT(RunRcme({"estimate", right}).out, testing::HasSubstr("prior      used"));
+  EXPECT_THAT(RunRcme({"estimate", wrong}).out, testing::HasSubstr("prior      contradicted"));
+}
+
 // Answers and their order are the same for any number of threads; a file that cannot be read is named, and
 // the others are answered.
 TEST(EstimateMany, DoesNotDependOnThreads) {

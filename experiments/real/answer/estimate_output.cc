@@ -129,6 +129,23 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
   return text;
 }
 
+// What became of the prior that the file states.
+std::string PriorText(const MotionEstimate& estimate) {
+  switch (estimate.prior) {
+    case PriorUse::kNone:
+      return "  prior      none used: this estimator takes none; rcme_calibrated does\n";
+    case PriorUse::kUsed:
+      return fmt::format("  prior      used: a right one is as far from the matches with probability {}\n",
+                         ProbabilityText(estimate.prior_p_value));
+    case PriorUse::kContradicted:
+      break;
+  }
+  return fmt::format(
+      "  prior      contradicted: a right one is as far from the matches with probability {};\n"
+      "             the answer is of the matches alone\n",
+      ProbabilityText(estimate.prior_p_value));
+}
+
 std::string EvidenceText(const MotionEvidence& e) {
   std::string text = "\nWhat it rests on\n";
   text += fmt::format("  inliers    {} of {} matches ({})\n", e.num_inliers, e.num_matches,
@@ -228,7 +245,8 @@ std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec) {
   }
   const MotionSpread spread = ComputeSpread(estimate.cam2_from_cam1, estimate.pose_cov);
   return text + FoundText(estimate.cam2_from_cam1, spread) + SureText(answer, spread, spec) +
-         EvidenceText(answer.evidence) + TruthText(answer) + WarningsText(answer);
+         EvidenceText(answer.evidence) + (answer.has_prior ? PriorText(estimate) : "") + TruthText(answer) +
+         WarningsText(answer);
 }
 
 Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
@@ -263,6 +281,10 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
                                  {"direction_rad", answer.protection->levels.direction_rad}};
   }
   json["evidence"] = EvidenceAsJson(answer.evidence);
+  if (answer.has_prior) {
+    json["prior"] = Name(estimate.prior);
+    json["prior_p_value"] = JsonNumber(estimate.prior_p_value);
+  }
   if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
   if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;
   if (!std::isnan(record.nees)) {

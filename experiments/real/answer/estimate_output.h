@@ -27,6 +27,7 @@ struct PairAnswer {
   bool has_truth_sd = false;
   std::vector<ProbabilityForBounds> for_bounds = {};  // those that were asked for
   std::optional<LevelsAtRisk> protection = {};
+  bool has_prior = false;  // the problem had one
 };
 
 // What was found, how sure, what it rests on; of a refusal why, and what to try.

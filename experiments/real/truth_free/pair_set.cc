@@ -20,6 +20,7 @@ std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px
     set.name = file.scene;
     NamedPair pair{path.filename().string(), file.image1, file.image2, {}, file.seconds_between};
     pair.problem = MakeMotionProblem(std::move(file), sigma_px);
+    pair.problem.prior.reset();  // answers that share one are not independent
     set.pairs.push_back(std::move(pair));
   }
   warnings.Print();

@@ -229,6 +229,57 @@ TEST_F(MatchFileTest, TruthSdThatCannotBe) {
   EXPECT_TRUE(Refuses("# truth_sd: 1 1 1 1 1 1\n" + MatchHeader(), {":1: truth_sd", "needs a true motion"}));
 }
 
+TEST_F(MatchFileTest, SensorsMayStateAPriorOfTheMotion) {
+  EXPECT_FALSE(Read(FullText()).prior.has_value());
+  const std::string rotation = "# prior_rotation_rowmajor: 0 -1 0 1 0 0 0 0 1\n",
+                    gravity = "# gravity1: 0 9.8 0\n# gravity2: -9.8 0 0\n# gravity_sd_deg: 0.9\n",
+                    direction = "# prior_direction: 0 3 -4\n# prior_direction_sd_deg: 1.8\n";
+  const MatchFile file =
+      Read(rotation + "# prior_rotation_sd_deg: 0.9 1.8 3.6\n" + gravity + direction + FullText());
+  const auto expect_whole = [](const std::optional<MotionPrior>& prior) {
+    ASSERT_TRUE(prior && prior->rotation && prior->gravity && prior->direction);
+    EXPECT_EQ(prior->rotation->R(0, 1), -1.0);  // row-major
+    const double unit = 0.005 * std::numbers::pi;
+    const Eigen::Matrix3d cov = prior->rotation->cov / (unit * unit);
+    EXPECT_NEAR((cov - Eigen::Matrix3d(Eigen::Vector3d(1.0, 4.0, 16.0).asDiagonal())).norm(), 0.0, 1e-12);
+    EXPECT_EQ(prior->gravity->in_cam1, Eigen::Vector3d::UnitY());
+    EXPECT_EQ(prior->gravity->in_cam2, Eigen::Vector3d(-1.0, 0.0, 0.0));
+    EXPECT_NEAR(prior->gravity->sd1_rad, unit, 1e-15);
+    EXPECT_NEAR(prior->gravity->sd2_rad, unit, 1e-15);
+    EXPECT_NEAR((prior->direction->t - Eigen::Vector3d(0.0, 0.6, -0.8)).norm(), 0.0, 1e-15);
+    EXPECT_NEAR(prior->direction->sd_rad, 2.0 * unit, 1e-15);
+  };
+  expect_whole(file.prior);
+  expect_whole(MakeMotionProblem(file, 0.5).prior);
+  const std::string path = folder_.Path("written.csv");
+  WriteMatchFile(file, path);
+  expect_whole(ReadMatchFile(path).prior);
+  const MatchFile one = Read(rotation + "# prior_rotation_sd_deg: 0.9\n" + FullText());
+  ASSERT_TRUE(one.prior && one.prior->rotation);
+  EXPECT_FALSE(one.prior->gravity || one.prior->direction);
+  EXPECT_EQ(one.prior->rotation->cov(0, 0), one.prior->rotation->cov(2, 2));
+}
+
+TEST_F(MatchFileTest, PriorsThatCannotBe) {
+  const std::string rotation = "# prior_rotation_rowmajor: 0 -1 0 1 0 0 0 0 1\n";
+  EXPECT_TRUE(Refuses(rotation + FullText(), {"prior_rotation_sd_deg", "is missing"}));
+  EXPECT_TRUE(
+      Refuses("# prior_rotation_sd_deg: 1\n" + FullText(), {"prior_rotation_rowmajor", "is missing"}));
+  EXPECT_TRUE(Refuses("# prior_rotation_sd_deg: 1 2\n" + rotation + FullText(),
+                      {":1: prior_rotation_sd_deg", "3 are needed"}));
+  EXPECT_TRUE(Refuses("# prior_rotation_sd_deg: 0\n" + rotation + FullText(),
+                      {":1: prior_rotation_sd_deg", "[0.0001, 180]"}));
+  EXPECT_TRUE(Refuses("# prior_rotation_sd_deg: nan\n" + rotation + FullText(),
+                      {":1: prior_rotation_sd_deg", "'nan'"}));
+  EXPECT_TRUE(
+      Refuses("# prior_rotation_rowmajor: 1 0 0 0 1 0 0 0 -1\n# prior_rotation_sd_deg: 1\n" + FullText(),
+              {":1: prior_rotation_rowmajor", "not a rotation"}));
+  EXPECT_TRUE(Refuses("# gravity1: 0 1 0\n# gravity_sd_deg: 1\n" + FullText(), {"gravity2", "is missing"}));
+  EXPECT_TRUE(Refuses("# gravity1: 0 0 0\n# gravity2: 0 1 0\n# gravity_sd_deg: 1\n" + FullText(),
+                      {":1: gravity1", "length"}));
+  EXPECT_TRUE(Refuses("# prior_direction: 0 0 1\n" + FullText(), {"prior_direction_sd_deg", "is missing"}));
+}
+
 TEST_F(MatchFileTest, DamagedGzip) {
   const std::string whole = Gzip(MatchHeader() + MatchRows(200));
   for (const size_t size : {size_t{3}, size_t{10}, whole.size() / 2, whole.size() - 8, whole.size() - 1}) {

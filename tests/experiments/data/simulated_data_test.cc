@@ -7,6 +7,7 @@
 #include "experiments/data/make_data.h"
 #include "simulator/exact_match.h"
 #include "simulator/noise/noise_laws.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -137,6 +138,43 @@ TEST(SimulatedData, WhatNoRayReachesIsLeftOut) {
   EXPECT_EQ(made.truth.is_undetectable.size(), n);
   EXPECT_EQ(made.scene_point.size(), n);
   EXPECT_EQ(made.problem.noise_scale.size(), n);
+}
+
+// What a sensor measures is drawn from the truth by a stream of its own: matches and truth stay.
+TEST(SimulatedData, SensorsMakeAPriorAndChangeNothingElse) {
+  const TrialData without = DataWith({})->Make(kName);
+  EXPECT_FALSE(without.problem.prior.has_value());
+  const TrialData with =
+      DataWith(
+          {{"prior_rotation_sd_deg", "0.5"}, {"prior_gravity_sd_deg", "1"}, {"prior_direction_sd_deg", "5"}})
+          ->Make(kName);
+  const std::optional<MotionPrior>& prior = with.problem.prior;
+  ASSERT_TRUE(prior && prior->rotation && prior->gravity && prior->direction);
+  EXPECT_EQ(FindPriorFault(*prior), "");
+  EXPECT_NEAR(std::sqrt(prior->rotation->cov(1, 1)), 0.5 * kRadPerDeg, 1e-15);
+  EXPECT_EQ(prior->gravity->sd2_rad, kRadPerDeg);
+  EXPECT_EQ(prior->direction->sd_rad, 5.0 * kRadPerDeg);
+  // Chi-square with seven degrees of freedom at the truth: beyond 45 once in 1e7.
+  const RelativePose& truth = *with.truth.cam2_from_cam1_true;
+  EXPECT_LT(2.0 * EvaluatePrior(*prior, truth).cost, 45.0);
+  EXPECT_GT(2.0 * EvaluatePrior(*prior, truth).cost, 0.1);
+  ASSERT_EQ(with.problem.matches.size(), without.problem.matches.size());
+  for (size_t i = 0; i < with.problem.matches.size(); ++i) {
+    EXPECT_EQ(with.problem.matches[i].x1_px, without.problem.matches[i].x1_px);
+    EXPECT_EQ(with.problem.matches[i].x2_px, without.problem.matches[i].x2_px);
+  }
+  EXPECT_EQ(truth.R, without.truth.cam2_from_cam1_true->R);
+}
+
+TEST(SimulatedData, ABiasTurnsTheMeasurementAndNotItsCovariance) {
+  const auto measure = [](const char* bias) {
+    return *DataWith({{"prior_rotation_sd_deg", "0.1"}, {"prior_bias_deg", bias}})
+                ->Make(kName)
+                .problem.prior->rotation;
+  };
+  const RotationPrior right = measure("0"), wrong = measure("5");
+  EXPECT_EQ(right.cov, wrong.cov);
+  EXPECT_NEAR(RotationAngleBetween(right.R, wrong.R), 5.0 * kRadPerDeg, 1e-9);
 }
 
 }  // namespace

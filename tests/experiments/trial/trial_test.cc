@@ -111,11 +111,11 @@ TEST(StreamFor, PurposesShareNoNumbers) {
   std::set<std::uint64_t> words;
   for (const StreamPurpose purpose :
        {StreamPurpose::kScene, StreamPurpose::kNoise, StreamPurpose::kOutliers, StreamPurpose::kSampling,
-        StreamPurpose::kMonteCarlo, StreamPurpose::kCheck}) {
+        StreamPurpose::kMonteCarlo, StreamPurpose::kCheck, StreamPurpose::kPrior}) {
     RandomStream rng = StreamFor({1, 2, 3, 99}, purpose);
     for (int i = 0; i < 100; ++i) words.insert(rng.Next64());
   }
-  EXPECT_EQ(words.size(), 600u);
+  EXPECT_EQ(words.size(), 700u);
 }
 
 // Drawn errors of a truth along camera 2's axes scatter as CovarianceAt says, in the tangent at the estimate:
