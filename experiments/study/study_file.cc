@@ -220,7 +220,7 @@ void FollowFailureBounds(const YAML::Node& entries, Study* study) {
 }
 
 // The settings whose values are paths.
-constexpr const char* kPathKeys[] = {"folder", kCalibrationKey};
+constexpr const char* kPathKeys[] = {"folder", kCalibrationKey, kTruthInDoubtKey};
 
 // A path in a study is seen from the study's folder.
 std::string SeenFrom(const std::filesystem::path& folder, const std::string& path) {
