@@ -86,6 +86,8 @@ py::dict MakeDict(const MotionEstimate& estimate) {
   dict["inliers"] = estimate.inliers;
   dict["p_failure"] = estimate.failure_probability;
   dict["p_failure_domain"] = Name(estimate.probability_domain);
+  dict["prior"] = Name(estimate.prior);
+  dict["prior_p_value"] = estimate.prior_p_value;
   dict["sigma"] = estimate.sigma_estimated_px;
   dict["sigma_sd"] = estimate.sigma_estimated_sd_px;
   dict["inlier_probabilities"] = estimate.inlier_probabilities;
@@ -136,6 +138,27 @@ MotionProblem MakeProblem(const Array& x1, const Array& x2, const Lens& camera1,
   return UndistortProblem(camera1, camera2, std::move(problem)).problem;
 }
 
+// Row-major and checked by the package; empty lists: not measured. `rotation`: R, then its covariance, rad^2;
+// `gravity`: in camera 1, in camera 2, standard deviation of both; `direction`: t, standard deviation.
+MotionPrior MakePrior(const std::vector<double>& rotation, const std::vector<double>& gravity,
+                      const std::vector<double>& direction) {
+  const auto vector = [](const std::vector<double>& numbers, size_t first) {
+    return Eigen::Vector3d(numbers.at(first), numbers.at(first + 1), numbers.at(first + 2));
+  };
+  MotionPrior prior;
+  if (!rotation.empty()) {
+    using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    if (rotation.size() != 18) throw py::value_error("a rotation with its covariance has 18 numbers");
+    prior.rotation = {RowMajor(rotation.data()), RowMajor(rotation.data() + 9)};
+  }
+  if (!gravity.empty()) {
+    prior.gravity = {vector(gravity, 0).normalized(), vector(gravity, 3).normalized(), gravity.at(6),
+                     gravity.at(6)};
+  }
+  if (!direction.empty()) prior.direction = {vector(direction, 0).normalized(), direction.at(3)};
+  return prior;
+}
+
 // Pairs (rotation, direction), deg.
 using AnglePairs = std::vector<std::pair<double, double>>;
 
@@ -148,9 +171,10 @@ std::vector<FailureBounds> MakeBounds(const AnglePairs& pairs) {
 py::dict Estimate(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2, double sigma_px,
                   std::vector<double> noise_scale, const std::string& name, const std::string& file,
                   const Settings& options, std::uint64_t seed, bool allow_process, const AnglePairs& bounds,
-                  double integrity_risk) {
+                  double integrity_risk, const std::optional<MotionPrior>& prior) {
   const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
-  const MotionProblem problem = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
+  MotionProblem problem = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
+  problem.prior = prior;
   const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
   EstimateForBounds found;
   {
@@ -257,6 +281,7 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
 
 void BindEstimate(py::module_& module) {
   py::class_<Lens>(module, "Camera").def(py::init(&MakeCamera)).def("find_unreached", &FindUnreached);
+  py::class_<MotionPrior>(module, "MotionPrior").def(py::init(&MakePrior));
   module.def("estimate", &Estimate);
   module.def("estimate_many", &EstimateMany);
 }

@@ -56,6 +56,28 @@ def shaped(name: str, value: Any, shape: tuple[int, ...], what: str) -> np.ndarr
     return array
 
 
+def rotation(name: str, matrix: np.ndarray) -> np.ndarray:
+    if not np.linalg.norm(matrix @ matrix.T - np.eye(3)) < 1e-4 or np.linalg.det(matrix) < 0:
+        raise ValueError(f"{name}: {matrix.tolist()} is not a rotation matrix")
+    return matrix
+
+
+def covariance(name: str, matrix: np.ndarray) -> np.ndarray:
+    """Symmetric, with standard deviations in [1e-6, 1e6]."""
+    is_symmetric = np.allclose(matrix, matrix.T, rtol=0.0, atol=1e-10 * np.abs(matrix).max())
+    if not is_symmetric or not 1e-12 <= np.linalg.eigvalsh(matrix).min() <= np.linalg.eigvalsh(matrix).max() <= 1e12:
+        raise ValueError(f"{name}: {matrix.tolist()} is not allowed; expected a symmetric matrix with standard deviations in "
+                         "[1e-6, 1e6]")
+    return matrix
+
+
+def direction(name: str, vector: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(vector)
+    if not 1e-9 < length < 1e9:
+        raise ValueError(f"{name}: its length is {length:g}; expected one in (1e-9, 1e9)")
+    return vector / length
+
+
 def points(name: str, value: Any) -> np.ndarray:
     """N x 2 finite pixel coordinates."""
     expected = "an N x 2 array of pixel coordinates"

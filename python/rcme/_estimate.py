@@ -38,7 +38,8 @@ class Poses(NamedTuple):
 
 def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
                            options: Optional[Mapping[str, Any]] = None,
-                           bounds: Iterable[tuple[float, float]] = ()) -> tuple[Optional[Pose], dict[str, Any]]:
+                           bounds: Iterable[tuple[float, float]] = (),
+                           prior: Optional[Mapping[str, Any]] = None) -> tuple[Optional[Pose], dict[str, Any]]:
     """Estimates the motion between two images, with its uncertainty.
 
     Parameters
@@ -59,6 +60,11 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         estimator: `rcme.estimators()` lists them.
     bounds : iterable of (rotation, direction)
         Angles in degrees, above 0 and up to 180: the probability of failure for each, from the same fit. Only rcme_calibrated.
+    prior : dict
+        What is known of the motion beside the matches; only rcme_calibrated uses it. Each measurement with its standard deviation:
+        rotation (3, 3) with rotation_sd_deg (a number) or rotation_cov (3, 3; rad^2, the true one is Exp([w]x) rotation);
+        gravity1 and gravity2 (3), its direction in both cameras, with gravity_sd_deg; direction (3), of t, with
+        direction_sd_deg. Lengths of vectors do not matter.
 
     Returns
     -------
@@ -75,6 +81,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         (empty where there is no motion); protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and
         that of t exceed with a probability of at most integrity_risk each, by pose_cov and p_failure (pi: every angle; None
         without a motion); sigma and sigma_sd (px), the noise level that it found (None likewise);
+        prior, "used", "contradicted" (the matches speak against it: the answer is of these alone) or "none"; prior_p_value, the
+        probability that a right prior is as far from the matches (None without one);
         other_motions: a list of further explanations {R, t, pose_cov, weight, explained_share}, the most likely first.
 
     Raises
@@ -86,10 +94,11 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     x1, x2, *cameras = _pair("", x1, x2, camera1, camera2)
     chosen = _options(options, len(x1))
     pairs = _bounds(bounds)
+    known = _prior(prior)
     try:
         answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["noise_scale"], chosen["estimator"],
                                 chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"], pairs,
-                                chosen["integrity_risk"])
+                                chosen["integrity_risk"], known)
     except ValueError as error:
         raise ValueError(f"options: {error}") from None
     return _pose_and_info(answer, len(x1))
@@ -205,6 +214,40 @@ def _bounds(bounds: Any) -> list[tuple[float, float]]:
             for place, pair in enumerate(pairs)]
 
 
+def _prior(prior: Any) -> Optional[_rcme.MotionPrior]:
+    """The measurements, checked; None where there are none."""
+    if prior is None:
+        return None
+    if not isinstance(prior, Mapping):
+        raise ValueError(f"prior: {_check.words(prior)} is not allowed; expected a dict of measurements")
+    rest = dict(prior)
+
+    def take(key: str, shape: tuple[int, ...]) -> np.ndarray:
+        if rest.get(key) is None:
+            raise ValueError(f"prior: {key} is missing; expected an array of shape {shape}")
+        return _check.shaped(f"prior['{key}']", rest.pop(key), shape, key)
+
+    def sd(key: str) -> float:
+        return float(np.radians(_check.number(f"prior['{key}']", rest.pop(key, None), 1e-4, 180.0)))
+
+    rotation: list[float] = []
+    gravity: list[float] = []
+    direction: list[float] = []
+    if rest.keys() & {"rotation", "rotation_sd_deg", "rotation_cov"}:
+        matrix = _check.rotation("prior['rotation']", take("rotation", (3, 3)))
+        cov = take("rotation_cov", (3, 3)) if "rotation_cov" in rest else sd("rotation_sd_deg") ** 2 * np.eye(3)
+        rotation = [*matrix.ravel().tolist(), *_check.covariance("prior['rotation_cov']", cov).ravel().tolist()]
+    if rest.keys() & {"gravity1", "gravity2", "gravity_sd_deg"}:
+        vectors = [_check.direction(f"prior['{key}']", take(key, (3,))) for key in ("gravity1", "gravity2")]
+        gravity = [*vectors[0].tolist(), *vectors[1].tolist(), sd("gravity_sd_deg")]
+    if rest.keys() & {"direction", "direction_sd_deg"}:
+        direction = [*_check.direction("prior['direction']", take("direction", (3,))).tolist(), sd("direction_sd_deg")]
+    if rest:
+        raise ValueError(f"prior: {_check.words(next(iter(rest)))} is not allowed; expected rotation and rotation_sd_deg or "
+                         "rotation_cov, gravity1, gravity2 and gravity_sd_deg, direction and direction_sd_deg")
+    return _rcme.MotionPrior(rotation, gravity, direction) if rotation or gravity or direction else None
+
+
 def _known(value: float) -> Optional[float]:
     return None if np.isnan(value) else value
 
@@ -218,7 +261,8 @@ def _pose_and_info(answer: dict[str, Any], num_matches: int) -> tuple[Optional[P
             "inliers": inliers, "num_inliers": int(inliers.sum()),
             "inlier_probabilities": probabilities if len(probabilities) else None,
             "pose_cov": motion["pose_cov"] if motion else None,
-            **{key: _known(answer[key]) for key in ("p_failure", "sigma", "sigma_sd")},
+            **{key: _known(answer[key]) for key in ("p_failure", "sigma", "sigma_sd", "prior_p_value")},
+            "prior": answer["prior"],
             "p_failure_domain": answer["p_failure_domain"],
             "p_failure_for_bounds": answer["p_failure_for_bounds"],
             "protection_levels": answer["protection_levels"],

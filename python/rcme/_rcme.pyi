@@ -1,7 +1,7 @@
 """The half of the package that is C++; python/module.cc and the sources beside it."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 
@@ -14,6 +14,9 @@ class Camera:
     def __init__(self, model: str, parameters: list[float], width: int, height: int) -> None: ...
     def find_unreached(self, points: np.ndarray) -> int | None: ...
 
+class MotionPrior:
+    def __init__(self, rotation: list[float], gravity: list[float], direction: list[float]) -> None: ...
+
 class StudySource:
     def __init__(self, path: str, text: str, overrides: Settings, seed: int, trials: int,
                  allow_process: bool) -> None: ...
@@ -23,7 +26,8 @@ class StudySource:
 def use_share(folder: str) -> None: ...
 def estimate(x1: np.ndarray, x2: np.ndarray, camera1: Camera, camera2: Camera, sigma_px: float,
              noise_scale: list[float], name: str, file: str, options: Settings, seed: int,
-             allow_process: bool, bounds: list[tuple[float, float]], integrity_risk: float) -> dict[str, Any]: ...
+             allow_process: bool, bounds: list[tuple[float, float]], integrity_risk: float,
+             prior: Optional[MotionPrior]) -> dict[str, Any]: ...
 def estimate_many(pairs: list[tuple[np.ndarray, np.ndarray, Camera, Camera, list[float]]], sigma_px: float, name: str,
                   file: str, options: Settings, seed: int, allow_process: bool, bounds: list[tuple[float, float]],
                   threads: int) -> dict[str, Any]: ...

@@ -103,6 +103,25 @@ class Estimate(unittest.TestCase):
         for here, there in zip(info["other_motions"], said["other_modes"]):
             np.testing.assert_array_equal(here["pose_cov"].ravel(), there["pose_cov"])
 
+    def test_a_prior_is_used_or_contradicted(self):
+        truth = self.trial["truth"]["R"]
+        _, info = rcme.estimate_relative_pose(*self.arguments)
+        self.assertEqual((info["prior"], info["prior_p_value"]), ("none", None))
+        pose, info = rcme.estimate_relative_pose(*self.arguments, prior={"rotation": truth, "rotation_sd_deg": 1e-3})
+        self.assertEqual(info["prior"], "used")
+        self.assertLess(np.linalg.norm(pose.R - truth), 1e-4)
+        down = np.array([0.0, 1.0, 0.0])
+        sensors = {"gravity1": 9.81 * down, "gravity2": 9.81 * truth @ down, "gravity_sd_deg": 0.01,
+                   "direction": self.trial["truth"]["t"], "direction_sd_deg": 5, "rotation": truth,
+                   "rotation_cov": 1e-4 * np.eye(3)}
+        pose, info = rcme.estimate_relative_pose(*self.arguments, prior=sensors)
+        self.assertEqual(info["prior"], "used")
+        self.assertLess(np.linalg.norm((pose.R - truth) @ down), 1e-3)
+        turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+        _, info = rcme.estimate_relative_pose(*self.arguments, prior={"rotation": turn @ truth, "rotation_sd_deg": 1})
+        self.assertEqual(info["prior"], "contradicted")
+        self.assertLess(info["prior_p_value"], 1e-3)
+
     def test_many_pairs_have_the_answers_of_single_calls(self):
         trials = [rcme.simulate(STUDY, condition=1, trial=number) for number in range(7)]
         pairs = [tuple(trial[key] for key in ("x1", "x2", "camera1", "camera2")) for trial in trials]
