@@ -10,7 +10,7 @@ namespace {
 
 ViewPair ViewWithTranslation(const Eigen::Vector3d& T) {
   ViewPair view;
-  view.camera1 = view.camera2 = {500.0, 400.0, 319.5, 239.5, 640, 480};
+  view.camera1 = view.camera2 = Camera{500.0, 400.0, 319.5, 239.5, 640, 480};
   view.cam2_from_cam1_true.t = T.normalized();
   view.baseline_m = T.norm();
   return view;

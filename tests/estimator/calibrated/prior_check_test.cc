@@ -23,21 +23,22 @@ RelativePose TurnedBy(double angle_rad) {
 MotionBelief Believe(double angle_rad, double sd_rad, double weight) {
   return {TurnedBy(angle_rad), sd_rad * sd_rad * Matrix5d::Identity(), weight};
 }
-const MotionPrior kPrior{RotationPrior{Eigen::Matrix3d::Identity(), 9e-4 * Eigen::Matrix3d::Identity()}};
+const MotionPrior kMeasuredPrior{
+    RotationPrior{Eigen::Matrix3d::Identity(), 9e-4 * Eigen::Matrix3d::Identity()}};
 
 // 0.2 rad by standard deviations of 0.03 and 0.04: 4 standard deviations of both.
 TEST(PriorPValue, IsTheTailByBothCovariances) {
   const std::vector<MotionBelief> one = {Believe(0.2, 0.04, 1.0)};
-  EXPECT_NEAR(ComputePriorPValue(kPrior, one), 1.0 - ChiSquareCdf(3, 16.0), 1e-9);
+  EXPECT_NEAR(ComputePriorPValue(kMeasuredPrior, one), 1.0 - ChiSquareCdf(3, 16.0), 1e-9);
 }
 
 // The prior's part is to choose among the motions that the matches leave.
 TEST(PriorPValue, IsOfTheMotionNearestToIt) {
   const std::vector<MotionBelief> both = {Believe(0.5, 0.01, 0.99), Believe(0.0, 0.01, 0.01)};
-  EXPECT_NEAR(ComputePriorPValue(kPrior, both), 1.0, 1e-12);
+  EXPECT_NEAR(ComputePriorPValue(kMeasuredPrior, both), 1.0, 1e-12);
   const std::vector<MotionBelief> negligible = {Believe(0.5, 0.01, 1.0), Believe(0.0, 0.01, 1e-6)};
-  EXPECT_LT(ComputePriorPValue(kPrior, negligible), kPriorLevel);
-  EXPECT_EQ(ComputePriorPValue(kPrior, {}), 1.0);
+  EXPECT_LT(ComputePriorPValue(kMeasuredPrior, negligible), kPriorLevel);
+  EXPECT_EQ(ComputePriorPValue(kMeasuredPrior, {}), 1.0);
 }
 
 MotionPrior MeasureRotation(const RelativePose& truth, double sd_rad, RandomStream& rng) {

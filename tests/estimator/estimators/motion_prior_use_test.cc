@@ -16,13 +16,13 @@
 namespace rcme {
 namespace {
 
-MotionEstimate RunOn(const MotionProblem& problem, std::uint32_t trial,
-                     const CalibratedOptions& options = {}) {
+MotionEstimate EstimateFrom(const MotionProblem& problem, std::uint32_t trial,
+                            const CalibratedOptions& options = {}) {
   RandomStream rng({1, 0, trial, 4});
   return MakeRcmeCalibrated(options)->Estimate(problem, rng);
 }
 
-bool IsWrong(const MotionEstimate& estimate, const RelativePose& pose_true) {
+bool IsBeyondBounds(const MotionEstimate& estimate, const RelativePose& pose_true) {
   return RotationAngleBetween(estimate.cam2_from_cam1.R, pose_true.R) > 3.0 * kRadPerDeg ||
          AngleBetween(estimate.cam2_from_cam1.t, pose_true.t) > 15.0 * kRadPerDeg;
 }
@@ -51,7 +51,7 @@ Measured MakeMeasured(int num_matches, double outlier_ratio, double sd_deg, std:
   return made;
 }
 
-void ExpectSame(const MotionEstimate& a, const MotionEstimate& b) {
+void ExpectSameAnswer(const MotionEstimate& a, const MotionEstimate& b) {
   EXPECT_EQ(a.status, b.status);
   EXPECT_EQ(a.cam2_from_cam1.R, b.cam2_from_cam1.R);
   EXPECT_EQ(a.cam2_from_cam1.t, b.cam2_from_cam1.t);
@@ -79,7 +79,7 @@ TEST(MotionPriorUse, IsWhatTheRegistrySays) {
       EXPECT_EQ(with.probability_domain, ProbabilityDomain::kExtrapolated);
     } else {
       EXPECT_EQ(with.prior, PriorUse::kNone);
-      ExpectSame(with, alone);
+      ExpectSameAnswer(with, alone);
     }
   }
 }
@@ -89,12 +89,12 @@ TEST(MotionPriorUse, AnExactRotationIsKept) {
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     Measured made = MakeMeasured(100, 0.3, 1e-3, trial);
     made.problem.prior->rotation->R = made.pose_true.R;
-    const MotionEstimate e = RunOn(made.problem, trial);
+    const MotionEstimate e = EstimateFrom(made.problem, trial);
     ASSERT_EQ(e.status, MotionStatus::kOk);
     EXPECT_EQ(e.prior, PriorUse::kUsed);
     EXPECT_LT(RotationAngleBetween(e.cam2_from_cam1.R, made.pose_true.R), 3e-3 * kRadPerDeg) << trial;
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(std::sqrt(e.pose_cov(k, k)) * kDegPerRad, 1e-3, 1e-4);
-    EXPECT_FALSE(IsWrong(e, made.pose_true));
+    EXPECT_FALSE(IsBeyondBounds(e, made.pose_true));
   }
 }
 
@@ -106,9 +106,9 @@ TEST(MotionPriorUse, AWidePriorChangesNothing) {
     made.problem.prior->rotation->cov = 1e12 * Eigen::Matrix3d::Identity();
     made.problem.prior->gravity = {Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX(), 1e6, 1e6};
     made.problem.prior->direction = {Eigen::Vector3d::UnitX(), 1e6};
-    const MotionEstimate with = RunOn(made.problem, trial);
+    const MotionEstimate with = EstimateFrom(made.problem, trial);
     made.problem.prior.reset();
-    const MotionEstimate alone = RunOn(made.problem, trial);
+    const MotionEstimate alone = EstimateFrom(made.problem, trial);
     ASSERT_EQ(with.status, MotionStatus::kOk);
     const Vector5d away = LocalCoordinates(alone.cam2_from_cam1, with.cam2_from_cam1);
     EXPECT_LT(away.dot(alone.pose_cov.llt().solve(away)), 1e-4) << trial;
@@ -125,10 +125,11 @@ TEST(MotionPriorUse, TheCovarianceCoversTheTruth) {
   double with_prior = 0.0, without = 0.0;
   for (std::uint32_t trial = 0; trial < 300; ++trial) {
     Measured made = MakeMeasured(60, 0.2, 0.1, 2000 + trial);
-    const MotionEstimate e = RunOn(made.problem, trial);
+    const MotionEstimate e = EstimateFrom(made.problem, trial);
     made.problem.prior.reset();
-    const MotionEstimate alone = RunOn(made.problem, trial);
-    if (e.status != MotionStatus::kOk || IsWrong(e, made.pose_true) || IsWrong(alone, made.pose_true))
+    const MotionEstimate alone = EstimateFrom(made.problem, trial);
+    if (e.status != MotionStatus::kOk || IsBeyondBounds(e, made.pose_true) ||
+        IsBeyondBounds(alone, made.pose_true))
       continue;
     const Vector5d error = LocalCoordinates(e.cam2_from_cam1, made.pose_true);
     covered.Add(error.dot(e.pose_cov.llt().solve(error)) <= bound);
@@ -148,13 +149,13 @@ TEST(MotionPriorUse, AWrongPriorIsNoticed) {
   constexpr int kTrials = 60;
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     Measured made = MakeMeasured(150, 0.3, 0.5, trial, 5.0);
-    const MotionEstimate e = RunOn(made.problem, trial);
+    const MotionEstimate e = EstimateFrom(made.problem, trial);
     if (e.prior != PriorUse::kContradicted) continue;
     ++num_noticed;
     EXPECT_LT(e.prior_p_value, kPriorLevel);
     EXPECT_NE(e.message.find("contradicts"), std::string::npos);
     made.problem.prior.reset();
-    ExpectSame(e, RunOn(made.problem, trial));
+    ExpectSameAnswer(e, EstimateFrom(made.problem, trial));
   }
   EXPECT_GE(num_noticed, kTrials - 2);
 }
@@ -167,7 +168,7 @@ TEST(MotionPriorUse, ARightPriorIsSeldomContradicted) {
   constexpr int kTrials = 1000;
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     const Measured made = MakeMeasured(80, 0.2, 0.1, 5000 + trial);
-    const MotionEstimate e = RunOn(made.problem, trial);
+    const MotionEstimate e = EstimateFrom(made.problem, trial);
     num_false += e.prior == PriorUse::kContradicted;
     num_small += e.prior_p_value < 0.05;
   }
@@ -182,20 +183,20 @@ TEST(MotionPriorUse, GravityAndDirectionMakeTheAnswerBetter) {
   for (std::uint32_t trial = 0; trial < 60; ++trial) {
     RelativePose truth;
     MotionProblem problem = TwoCameraProblem(40, 1.0, 0.2, 8000 + trial, &truth);
-    const MotionEstimate alone = RunOn(problem, trial);
-    if (alone.status != MotionStatus::kOk || IsWrong(alone, truth)) continue;
+    const MotionEstimate alone = EstimateFrom(problem, trial);
+    if (alone.status != MotionStatus::kOk || IsBeyondBounds(alone, truth)) continue;
     rotation_alone += (alone.cam2_from_cam1.R * Eigen::Vector3d::UnitY() - truth.R * Eigen::Vector3d::UnitY())
                           .squaredNorm();
     direction_alone += std::pow(AngleBetween(alone.cam2_from_cam1.t, truth.t), 2);
     const double sd = 0.05 * kRadPerDeg;
     problem.prior = MotionPrior{
         {}, GravityPrior{Eigen::Vector3d::UnitY(), truth.R * Eigen::Vector3d::UnitY(), sd, sd}, {}};
-    const MotionEstimate with_gravity = RunOn(problem, trial);
+    const MotionEstimate with_gravity = EstimateFrom(problem, trial);
     gravity_error +=
         (with_gravity.cam2_from_cam1.R * Eigen::Vector3d::UnitY() - truth.R * Eigen::Vector3d::UnitY())
             .squaredNorm();
     problem.prior = MotionPrior{{}, {}, DirectionPrior{truth.t, 0.2 * kRadPerDeg}};
-    const MotionEstimate with_direction = RunOn(problem, trial);
+    const MotionEstimate with_direction = EstimateFrom(problem, trial);
     direction_error += std::pow(AngleBetween(with_direction.cam2_from_cam1.t, truth.t), 2);
     EXPECT_EQ(with_gravity.prior, PriorUse::kUsed);
     EXPECT_EQ(with_direction.prior, PriorUse::kUsed);
@@ -207,7 +208,7 @@ TEST(MotionPriorUse, GravityAndDirectionMakeTheAnswerBetter) {
 TEST(MotionPriorUse, AnImpossiblePriorIsRefused) {
   Measured made = MakeMeasured(50, 0.2, 0.1, 1);
   made.problem.prior->rotation->R *= 1.01;
-  const MotionEstimate e = RunOn(made.problem, 1);
+  const MotionEstimate e = EstimateFrom(made.problem, 1);
   EXPECT_EQ(e.status, MotionStatus::kInvalidInput);
   EXPECT_NE(e.message.find("prior"), std::string::npos);
 }
@@ -226,9 +227,9 @@ TEST(MotionPriorUse, ChoosesBetweenTheMotionsOfAPlane) {
     const RelativePose& truth = scene.cam2_from_cam1_true;
     MotionProblem problem{ObserveTwoCameraScene(scene, 1.0, 0.2, trial).matches, scene.camera1, scene.camera2,
                           1.0};
-    num_wrong_alone += IsWrong(RunOn(problem, trial), truth);
+    num_wrong_alone += IsBeyondBounds(EstimateFrom(problem, trial), truth);
     problem.prior = MotionPrior{MeasureRotation(truth, 1.0, trial)};
-    num_wrong += IsWrong(RunOn(problem, trial), truth);
+    num_wrong += IsBeyondBounds(EstimateFrom(problem, trial), truth);
   }
   EXPECT_GE(num_wrong_alone, 8);
   EXPECT_LE(num_wrong, num_wrong_alone / 3);
