@@ -140,8 +140,33 @@ double ComputePriorTail(const MotionPrior& prior, const RelativePose& pose, cons
   const PriorResiduals r = ComputePriorResiduals(prior, pose);
   const Eigen::Matrix<double, 9, 9> spread =
       Eigen::Matrix<double, 9, 9>::Identity() + r.jacobian * pose_cov * r.jacobian.transpose();
-  const double chi_square = r.residual.dot(spread.llt().solve(r.residual));
+  const Eigen::LLT<Eigen::Matrix<double, 9, 9>> llt(spread);
+  const double chi_square = r.residual.dot(llt.solve(r.residual));
+  if (llt.info() != Eigen::Success || !std::isfinite(chi_square)) return 1.0;  // it contradicts nothing
   return 1.0 - ChiSquareCdf(CountPriorFreedom(prior), chi_square);
+}
+
+std::vector<double> ListPriorNumbers(const MotionPrior& prior) {
+  std::vector<double> numbers;
+  const auto add = [&](const auto& more) { numbers.insert(numbers.end(), more.begin(), more.end()); };
+  for (const bool is_there :
+       {prior.rotation.has_value(), prior.gravity.has_value(), prior.direction.has_value()})
+    numbers.push_back(is_there ? 1.0 : 0.0);
+  if (prior.rotation) {
+    add(prior.rotation->R.reshaped());
+    add(prior.rotation->cov.reshaped());
+  }
+  if (prior.gravity) {
+    add(prior.gravity->in_cam1);
+    add(prior.gravity->in_cam2);
+    numbers.push_back(prior.gravity->sd1_rad);
+    numbers.push_back(prior.gravity->sd2_rad);
+  }
+  if (prior.direction) {
+    add(prior.direction->t);
+    numbers.push_back(prior.direction->sd_rad);
+  }
+  return numbers;
 }
 
 }  // namespace rcme

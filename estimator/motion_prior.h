@@ -27,6 +27,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "estimator/geometry/pose.h"
 
@@ -82,5 +83,8 @@ double LogPeakOverUniform(const MotionPrior& prior);
 // The probability that measurements of a motion N(pose, pose_cov) depart from it at least as far as these:
 // the upper tail of chi-square at r' (I + J pose_cov J')^-1 r.
 double ComputePriorTail(const MotionPrior& prior, const RelativePose& pose, const Matrix5d& pose_cov);
+
+// All numbers of a prior: equal for equal priors alone.
+std::vector<double> ListPriorNumbers(const MotionPrior& prior);
 
 }  // namespace rcme

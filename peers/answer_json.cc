@@ -112,6 +112,9 @@ std::string ProblemId(const MotionProblem& problem, std::uint32_t seed) {
   }
   hash.Add(problem.sigma_px);
   for (const double scale : problem.noise_scale) hash.Add(scale);
+  if (problem.prior) {
+    for (const double x : ListPriorNumbers(*problem.prior)) hash.Add(x);
+  }
   hash.Add(1.0 * seed);
   return fmt::format("{:016x}", hash.value() ^ (hash.value() >> 32));
 }

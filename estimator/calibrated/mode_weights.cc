@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "estimator/calibrated/fitted_constants.h"
+#include "stats/eigen_solvers.h"
 
 namespace rcme {
 namespace {
@@ -47,7 +48,14 @@ double EvidenceOfMotion(const Explanation& mode, const MixtureParameters& mixtur
 
 Matrix5d FindMatchInformation(const MotionPrior* prior, const Mode& mode) {
   if (prior == nullptr) return mode.hessian;
-  return mode.hessian - EvaluatePrior(*prior, mode.pose).hessian;
+  const Matrix5d of_matches = mode.hessian - EvaluatePrior(*prior, mode.pose).hessian;
+  if (Eigen::LLT<Matrix5d>(of_matches).info() == Eigen::Success) return of_matches;
+  // A difference of nearly equal ones: what the prior alone determines counts as hardly determined.
+  constexpr double kLeastShare = 1e-9;
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(of_matches);
+  const double least = kLeastShare * mode.hessian.trace();
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(least).asDiagonal() *
+         eigen.eigenvectors().transpose();
 }
 
 double ComputePriorEvidence(const MotionPrior& prior, const Mode& mode) {

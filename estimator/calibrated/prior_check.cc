@@ -13,7 +13,7 @@ double ComputePriorPValue(const MotionPrior& prior, std::span<const MotionBelief
   double greatest = 0.0;
   bool is_any_notable = false;
   for (const MotionBelief& belief : beliefs) {
-    if (belief.weight < kNotableWeight) continue;
+    if (!(belief.weight >= kNotableWeight)) continue;
     is_any_notable = true;
     greatest = std::max(greatest, ComputePriorTail(prior, belief.pose, belief.covariance));
   }

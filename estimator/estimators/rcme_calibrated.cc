@@ -218,7 +218,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     const ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
     std::vector<MotionBelief> beliefs;
     for (size_t i = 0; i < modes.size(); ++i) {
-      if (weights.of_modes[i] < kNegligibleWeight) continue;
+      if (!(weights.of_modes[i] >= kNegligibleWeight)) continue;
       const Matrix5d curvature = InverseOfObserved(matches, modes[i].mode);
       Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, of_matches.checked.check, prior);
       if (of_matches.direction_mass && !weights.is_second_motion[i])
@@ -244,6 +244,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     if (modes.empty()) {
       estimate.status = MotionStatus::kNoCandidate;
       estimate.message = "no motion explains more than five matches";
+      if (workings != nullptr) workings->problem = std::move(shuffled);
       return estimate;
     }
     ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);

@@ -164,7 +164,7 @@ bool IsImaged(const Lens& lens, const Eigen::Vector2d& ray) {
 std::optional<Eigen::Vector2d> Undistort(const Lens& lens, const Eigen::Vector2d& x_px) {
   if (lens.model == LensModel::kPinhole) return x_px;
   constexpr int kMaxSteps = 50;
-  constexpr double kDonePx = 1e-7, kLongestStep = 0.5;
+  constexpr double kDonePx = 1e-7, kLongestStep = 0.5, kRounding = 1e-14;
   const Eigen::Vector2d wanted = lens.camera.Ray(x_px).head<2>();
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
   // Newton's steps from the centre, each of at most half a focal length. The misfit of the last is squared
@@ -175,7 +175,7 @@ std::optional<Eigen::Vector2d> Undistort(const Lens& lens, const Eigen::Vector2d
     if (change.norm() > kLongestStep) change *= kLongestStep / change.norm();
     ray += change;
     if (!(ray.norm() < kLargestRay)) return std::nullopt;
-    if (misfit.norm() * lens.camera.fx >= kDonePx) continue;
+    if (misfit.norm() >= std::max(kDonePx / lens.camera.fx, kRounding * (1.0 + wanted.norm()))) continue;
     if (!IsOnFirstBranch(lens, ray)) return std::nullopt;
     return lens.camera.Project({ray.x(), ray.y(), 1.0});
   }

@@ -78,16 +78,18 @@ void AddEventOptions(CLI::App* command, RareEvent* event) {
   for (const auto kind : {RareEvent::Kind::kFailure, RareEvent::Kind::kMisleadingRotation,
                           RareEvent::Kind::kMisleadingDirection})
     kinds.emplace_back(Name(kind), kind);
-  command
-      ->add_option_function<std::string>(
-          "--event",
-          [event, kinds](const std::string& name) {
-            for (const auto& [known, kind] : kinds)
-              if (known == name) event->kind = kind;
-          },
-          "splitting: what is counted, failure (default), or an error beyond its protection level")
-      ->check(MakeChoiceValidator({"failure", "misleading_rotation", "misleading_direction"}));
+  CLI::Option* kind_option =
+      command
+          ->add_option_function<std::string>(
+              "--event",
+              [event, kinds](const std::string& name) {
+                for (const auto& [known, kind] : kinds)
+                  if (known == name) event->kind = kind;
+              },
+              "splitting: what is counted, failure (default), or an error beyond its protection level")
+          ->check(MakeChoiceValidator({"failure", "misleading_rotation", "misleading_direction"}));
   command->add_option("--risk", event->risk, "of the protection levels (docs/integrity.md)")
+      ->needs(kind_option)
       ->transform(NumberIn({1e-9, 0.5}))
       ->capture_default_str();
 }
@@ -107,11 +109,11 @@ trials would take too many calls. Two methods:
   stratified  for any failure and noise. Plain trials: all of those with a hard scene
               (Cramer-Rao bound) and one in 2, 4, ..., 64 of the others. Pays off if
               calls are slow and hard scenes have most of the failures
-With --event misleading_rotation or misleading_direction splitting counts errors
-beyond the protection level that the answer states, as `rcme integrity` does of
-plain trials. If the number of outliers drives the failures, use `rcme run` with tilted_to. A rate
-that cannot be trusted is marked, with the reason. If the command is stopped or killed,
-run it again: finished work is kept in OUT/unfinished.part.
+With --event misleading_rotation or misleading_direction splitting counts errors beyond
+the protection level that the answer states, as `rcme integrity` does of plain trials.
+If the number of outliers drives the failures, use `rcme run` with tilted_to. A rate that
+cannot be trusted is marked, with the reason. If the command is stopped or killed, run it
+again: finished work is kept in OUT/unfinished.part.
 
 Examples:
   rcme rare studies/rare_noise.yaml --out rare

@@ -53,7 +53,8 @@ void PrintEstimate(const std::string& label, const MotionEstimate& estimate, con
                    const FailureBounds& bounds) {
   fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status),
              Name(ClassifyOutcome(record, bounds)), estimate.message);
-  if (!HasRefused(record)) {
+  const bool is_in_doubt = record.status == MotionStatus::kTruthInDoubt;
+  if (is_in_doubt ? estimate.status == MotionStatus::kOk : !HasRefused(record)) {
     fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
                MatrixText(kDegPerRad * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));
   }

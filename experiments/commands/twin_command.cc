@@ -98,7 +98,9 @@ void RunTwin(const TwinArguments& arguments) {
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
   CheckProcessEstimators({spec});
-  Scenes scenes = LoadMatchFolder({arguments.pairs, arguments.sigma_px, {}});
+  // Twins are of matches: a sensor's error is not drawn anew.
+  Scenes scenes =
+      LoadMatchFolder({.folder = arguments.pairs, .sigma_px = arguments.sigma_px, .keeps_priors = false});
   const ImageNames images = ImageNamesIn(arguments.pairs);
   std::string names;
   for (const auto& [scene, data] : scenes) names += (names.empty() ? "" : ", ") + scene;

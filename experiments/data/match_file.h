@@ -19,11 +19,10 @@ namespace rcme {
 //   # size2: 1536 1024
 //   # K1_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
 //   # K2_fx_fy_cx_cy: 1379.7 1382.1 760.1 503.2
-//   # camera1: OPENCV 1536 1024 1379.7 1382.1 760.1 503.2 -.2 .05 0 0    in place of size1 and K1, of an
-//   image
-//                                          that a lens distorts: a camera model of COLMAP, width, height and
-//                                          its parameters (colmap_camera.h), in the pixels of this file;
-//                                          camera2 likewise
+//   # camera1: OPENCV 1536 1024 1379.7 1382.1 760.1 503.2 -.2 .05 0 0    in place of size1 and K1, of
+//                                          an image that a lens distorts: a camera model of COLMAP, width,
+//                                          height and its parameters (colmap_camera.h), in the pixels of this
+//                                          file; camera2 likewise
 //   # R_rowmajor: ... (9)                    optional, with t_unit: the true motion X2 = R X1 + t
 //   # t_unit: ... (3)
 //   # truth_sd: 0.01 0.01 0.01 2e-3 2e-3 2e-3   optional: that motion's own standard deviations, along the

@@ -59,6 +59,9 @@ void AddNumbers(const MatchFile& file, bool is_direction_known, Fnv1a* digest) {
     for (const double x : file.truth_sd->rotation_rad) digest->Add(x);
     for (const double x : file.truth_sd->translation) digest->Add(x);
   }
+  if (file.prior) {
+    for (const double x : ListPriorNumbers(*file.prior)) digest->Add(x);
+  }
 }
 
 // Whether the study says how good the file's truth is, and not the file.
@@ -179,6 +182,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     if (data.truth.is_in_doubt) group.digest.Add(-1.0);
     group.num_in_doubt += data.truth.is_in_doubt;
     data.problem = MakeMotionProblem(std::move(file), settings.sigma_px);
+    if (!settings.keeps_priors) data.problem.prior.reset();
     if (redraw.IsOn()) Redraw::Label(&data);
     group.pairs.push_back(std::move(data));
   }

@@ -22,6 +22,7 @@ struct MatchFolderSettings {
   // A list of pairs whose truth is in doubt (truth_doubts.h), seen as the folder; empty: none is.
   std::string truth_in_doubt = {};
   RedrawSettings redraw = {};
+  bool keeps_priors = true;  // of the motion, where files state any
 };
 
 // The pairs of one scene of a folder of match files; trial t is file t mod (number of files), each pass with

@@ -18,6 +18,7 @@ void OutcomeWatch::Add(const TrialResult& result) {
     ++of_condition.count;
     return;
   }
+  if (!IsCounted(result.records.front())) return;
   ++num_simulated_;
   for (size_t e = 0; e < result.records.size(); ++e) {
     if (HasRefused(result.records[e])) ++refusals_[e][result.records[e].status];

@@ -53,13 +53,14 @@ def build_commit(commit, folder):
         raise AgainstError(f"--against {commit}: no commit of this repository; give a hash, a tag or a branch") from error
     tree = folder / name[:12]
     programs = tree / "build/release/bin"
-    if not (programs / "rcme_benchmark").exists():
+    if not (tree / "built").exists():
         shutil.rmtree(tree, ignore_errors=True)
         tree.mkdir(parents=True)
         run_step(["bash", "-c", f"git archive {name} | tar -x -C '{tree}'"], ROOT)
         print(f"building {name[:12]} in {tree.relative_to(ROOT)}, which takes some minutes", file=sys.stderr)
         run_step(["cmake", "--preset", "release"], tree)
         run_step(["cmake", "--build", "build/release", "--target", "rcme_benchmark", "rcme"], tree)
+        (tree / "built").touch()
     return programs
 
 
@@ -71,24 +72,26 @@ def measure_cases(programs):
     return {case["name"]: case["cpu_time"] * per_microsecond[case["time_unit"]] for case in json.loads(out)["benchmarks"]}
 
 
-def measure_workload(programs, arguments, scratch):
-    """(seconds of wall time, MB of memory at most) of a command of `rcme`; None where the program does not know it."""
+def measure_workload(programs, arguments, scratch, is_old):
+    """(seconds of wall time, MB of memory at most) of a command of `rcme`; None where a program of before (`is_old`) does not know it."""
     command = [programs / "rcme", *(word.format(out=scratch) for word in arguments)]
     for word in command:
         if str(word).endswith("run.sqlite") and arguments[0] == "run":
             pathlib.Path(word).unlink(missing_ok=True)
     start = time.monotonic()
-    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL if is_old else None)
     _, status, usage = os.wait4(child.pid, 0)
     child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode != 0 and not is_old:
+        raise AgainstError(f"{' '.join(map(str, command))} ended with {child.returncode}")
     return (time.monotonic() - start, usage.ru_maxrss / 1024) if child.returncode == 0 else None
 
 
-def measure_round(programs, scratch, with_workloads):
+def measure_round(programs, scratch, with_workloads, is_old):
     """{name: value} of one program: microseconds of cases, seconds and MB of workloads."""
     values = {name: {"time": microseconds} for name, microseconds in measure_cases(programs).items()}
     for name, arguments in WORKLOADS if with_workloads else ():
-        measured = measure_workload(programs, arguments, scratch)
+        measured = measure_workload(programs, arguments, scratch, is_old)
         if measured:
             values[f"rcme {name}"] = {"time": 1e6 * measured[0], "memory": measured[1]}
     return values
@@ -120,7 +123,8 @@ def compare(rounds):
                 now, before = (statistics.median(side) for side in zip(*pairs))
                 rows.append({"name": name, "quantity": quantity, "ratio": ratio, "lower": lower, "upper": upper, "now": now, "before": before})
             elif quantity == "time":
-                rows.append({"name": name, "quantity": "only now" if any(name in now for now, _ in rounds) else "only before"})
+                now, before = (sum(name in side for side in sides) for sides in zip(*rounds))
+                rows.append({"name": name, "quantity": "only now" if before == 0 else "only before" if now == 0 else "failed at times"})
     return rows
 
 
@@ -131,7 +135,7 @@ def format_rows(rows, commit):
         name = row["name"] if row["quantity"] == "time" else f"{row['name']}, MB"
         interval = f"[{row['lower']:.3f}, {row['upper']:.3f}]"
         yield f"{name:<42} {row['ratio']:14.3f}   {interval:<16} {row['before']:10.4g} {row['now']:10.4g}"
-    for side in ("only now", "only before"):
+    for side in ("only now", "only before", "failed at times"):
         names = [row["name"] for row in rows if row["quantity"] == side]
         if names:
             yield f"{side}: {', '.join(names)}"
@@ -157,7 +161,7 @@ def main(argv):
             for number in range(arguments.rounds):
                 measured = {}
                 for side in random.Random(number).sample([0, 1], 2):
-                    measured[side] = measure_round(sides[side], scratches[side], not arguments.no_workloads)
+                    measured[side] = measure_round(sides[side], scratches[side], not arguments.no_workloads, side == 1)
                 rounds.append((measured[0], measured[1]))
                 left = (time.monotonic() - start) / (number + 1) * (arguments.rounds - number - 1)
                 print(f"round {number + 1} of {arguments.rounds}, {left:.0f} s left", file=sys.stderr)

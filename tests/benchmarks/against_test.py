@@ -57,7 +57,7 @@ class Comparison(unittest.TestCase):
 
     def test_a_row_per_case_and_workload_and_what_one_side_lacks(self):
         sides = self.make_programs("now", 3.0, "new", "none"), self.make_programs("before", 2.0, "old", "compare")
-        rounds = [tuple(against.measure_round(side, self.folder, True) for side in sides) for _ in range(6)]
+        rounds = [tuple(against.measure_round(side, self.folder, True, side is sides[1]) for side in sides) for _ in range(6)]
         rows = against.compare(rounds)
         refine = next(row for row in rows if row["name"] == "refine")
         self.assertEqual([refine[key] for key in ("ratio", "lower", "upper", "now", "before")], [1.5, 1.5, 1.5, 3.0, 2.0])
@@ -67,6 +67,10 @@ class Comparison(unittest.TestCase):
         text = "\n".join(against.format_rows(rows, "abc"))
         self.assertIn("refine                                              1.500   [1.500, 1.500]            2          3", text)
         self.assertIn("only before: old", text)
+
+    def test_a_workload_that_this_tree_cannot_run_is_an_error(self):
+        with self.assertRaisesRegex(against.AgainstError, "rcme compare .* ended with 2"):
+            against.measure_round(self.make_programs("now", 3.0, "new", "compare"), self.folder, True, False)
 
     def test_what_it_refuses(self):
         for arguments, said in ((["no-such-commit"], "--against no-such-commit: no commit"), (["HEAD", "--rounds", "5"], "--rounds 5: at least 6")):

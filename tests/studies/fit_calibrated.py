@@ -4,8 +4,8 @@ In two passes, as the check sees the modes as they are weighed: first the weight
 anew, the check.
 
 The check's probability is a logistic regression on products of at most two hinges of its signs, which are chosen forward, one after the
-other (Friedman 1991), each where it adds most to the likelihood by its score; their number is the one from which on cross-validation over
-the conditions of the training gained little. Signs are cut to the range that they had in nearly all trials.
+other (Friedman 1991), each where it adds most to the likelihood by its score; their number, 30, is where five-fold cross-validation over the
+conditions of the training, done once, gained little more. Signs are cut to the range that they had in nearly all trials.
 
 Training: draws of studies/right_calibration.yaml and of studies/any_condition.yaml, and the families of studies/calibrated, with seeds
 of their own; trials of the families count less. Where partners are permuted at random every answer is wrong. The covariance is fitted where the calibration is right: errors of the calibration are not for

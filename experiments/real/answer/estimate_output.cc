@@ -239,6 +239,7 @@ std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec) {
   std::string text = fmt::format("{}: {} - {}\n", spec.label, StatusName(estimate.status), estimate.message);
   if (estimate.status != MotionStatus::kOk) {
     if (estimate.status == MotionStatus::kDirectionNotObservable) text += RotationAloneText(estimate);
+    if (answer.has_prior && estimate.prior != PriorUse::kNone) text += PriorText(estimate);
     text += "what to try\n";
     for (const std::string& sentence : AdviceFor(estimate, spec)) text += "  " + sentence + "\n";
     return text;
@@ -261,6 +262,10 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
                {"num_matches", record.num_matches},
                {"num_inliers", record.num_inliers},
                {"failed_by_kappa", nullptr}};
+  if (answer.has_prior) {
+    json["prior"] = Name(estimate.prior);
+    json["prior_p_value"] = JsonNumber(estimate.prior_p_value);
+  }
   if (estimate.status == MotionStatus::kDirectionNotObservable) {
     json["R"] = RowMajor(estimate.cam2_from_cam1.R);
     json["rotation_cov"] = RowMajor(estimate.pose_cov.topLeftCorner<3, 3>());
@@ -281,10 +286,6 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
                                  {"direction_rad", answer.protection->levels.direction_rad}};
   }
   json["evidence"] = EvidenceAsJson(answer.evidence);
-  if (answer.has_prior) {
-    json["prior"] = Name(estimate.prior);
-    json["prior_p_value"] = JsonNumber(estimate.prior_p_value);
-  }
   if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
   if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;
   if (!std::isnan(record.nees)) {

@@ -294,7 +294,7 @@ Why ExplainOutcome(const EstimatorSpec& spec, const TrialData& data, const Motio
     why = {WhyVerdict::kSearchFailed, "the answer is not valid: " + estimate.message, {}};
   } else if (HasSucceeded(record, bounds)) {
     why = {WhyVerdict::kRight, {}, {}};
-  } else if (data.truth.cam2_from_cam1_true) {
+  } else if (data.truth.cam2_from_cam1_true && !data.truth.is_in_doubt) {
     why = WhyNotRight(spec, data, estimate, bounds);
   }
   why.runner_up = RunnerUpWords(estimate, data, bounds);

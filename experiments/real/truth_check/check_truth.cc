@@ -83,7 +83,8 @@ CheckedPair CheckPair(const PairFiles& files, const MotionEstimator& estimator,
     if (first) RequireSamePair(*first, file);
     if (file.cam2_from_cam1_true) {
       const GivenTruth truth{*file.cam2_from_cam1_true, file.truth_sd, !files.is_direction_weak};
-      const MotionProblem problem = MakeMotionProblem(file, options.sigma_px);
+      MotionProblem problem = MakeMotionProblem(file, options.sigma_px);
+      problem.prior.reset();  // what a sensor says is no evidence of the matches
       pair.front_ends.push_back(
           WeighTruth(problem, truth, options.bounds, estimator, options.seed, files.paths.size()));
       pair.front_ends.back().front_end = files.front_ends[f];
