@@ -22,7 +22,8 @@ const std::string& StatusName(MotionStatus status) {
                                                  "invalid_input",
                                                  "invalid_motion",
                                                  "invalid_covariance",
-                                                 "not_simulated"};
+                                                 "not_simulated",
+                                                 "truth_in_doubt"};
   return names[static_cast<size_t>(status)];
 }
 
@@ -46,7 +47,8 @@ const std::vector<MotionStatus>& AllStatuses() {
                                                 MotionStatus::kInvalidInput,
                                                 MotionStatus::kInvalidMotion,
                                                 MotionStatus::kInvalidCovariance,
-                                                MotionStatus::kNotSimulated};
+                                                MotionStatus::kNotSimulated,
+                                                MotionStatus::kTruthInDoubt};
   return all;
 }
 

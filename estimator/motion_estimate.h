@@ -34,8 +34,9 @@ enum class MotionStatus {
   // Never an estimator's own: what the check of its answer makes of kOk.
   kInvalidMotion,      // not a rotation and a unit vector, or not finite
   kInvalidCovariance,  // not finite, symmetric and positive semidefinite
-  // Nobody's answer: there was nothing to ask.
+  // Nobody's answer: there was nothing to ask, or nothing to judge it by.
   kNotSimulated,  // the simulator could not make this trial of a condition that was drawn from a population
+  kTruthInDoubt,  // a pair whose given truth is listed as in doubt: no answer to it is judged
 };
 
 // The status as a word for files and programs ("ok", "no_candidate", ...), and back.

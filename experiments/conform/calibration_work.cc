@@ -30,7 +30,7 @@ double LogDeterminant(const Matrix5d& covariance) {
 enum class AnswerKind { kAnswer, kRefusal, kUnscored };
 AnswerKind MakeRow(const FailureBounds& bounds, const TrialResult& result, AnswerRow* row) {
   const TrialRecord& record = result.records.front();
-  if (!WasSimulated(record)) return AnswerKind::kUnscored;
+  if (!IsCounted(record)) return AnswerKind::kUnscored;
   if (HasRefused(record)) return AnswerKind::kRefusal;
   const MotionEstimate& estimate = result.estimates.front();
   row->features = MeasureVisibleFeatures(result.data.problem, estimate);

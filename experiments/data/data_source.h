@@ -41,6 +41,7 @@ struct Truth {
   std::vector<bool> is_undetectable;  // per match: wrong, but on the true epipolar line; empty: none known
   // Its own error, part of the score; nothing: exact, or nobody says.
   std::optional<TruthSd> sd = std::nullopt;
+  bool is_in_doubt = false;  // somebody lists it as wrong: nothing is scored (truth_doubts.h)
 };
 
 // A problem for the estimators and the truth for the score, kept apart from here on.

@@ -34,6 +34,13 @@ std::vector<Parameter> Parameters(MatchFolderSettings& settings) {
   return all;
 }
 
+Parameter TruthInDoubtParameter(MatchFolderSettings& settings) {
+  return Parameter::Text(
+      kTruthInDoubtKey, &settings.truth_in_doubt,
+      "pairs that are listed and not scored, as their truth is in doubt (`rcme check-truth`)",
+      "a CSV file with the columns scene and pair_id, seen from the study's folder");
+}
+
 // Adds those entries of a registry whose models have the parameter.
 template <typename Entry>
 void AddChoicesWith(const std::string& key, const std::string& choice, const std::vector<Entry>& registry,
@@ -86,6 +93,8 @@ Choices ChoicesIn(const Settings& settings) {
   for (const auto& [name, field] : ChoiceKeys()) names.push_back(name);
   if (scene == kMatchFilesScene) names.resize(1);
   for (const Parameter& parameter : parameters) names.push_back(parameter.name());
+  if (scene == kMatchFilesScene && std::ranges::count(names, kTruthInDoubtKey) == 0)
+    names.emplace_back(kTruthInDoubtKey);
   const std::string needs = ChoicesWith(key);
   throw InputError(fmt::format("unknown key {} for scene {}{}; known keys: {}", Quoted(key), scene,
                                needs.empty() ? DidYouMean(key, names) : needs, fmt::join(names, ", ")));
@@ -95,10 +104,12 @@ Choices ChoicesIn(const Settings& settings) {
 struct Configured {
   MatchFolderSettings folder;
   std::shared_ptr<SimulatedData> simulated;  // null: a folder
+  bool has_doubts = false;                   // the settings name a list of pairs in doubt
 
   explicit Configured(const Settings& given) {
     const Settings settings = WithCalibration(given);
     const Choices choices = ChoicesIn(settings);
+    has_doubts = std::ranges::count(settings, kTruthInDoubtKey, &Settings::value_type::first) > 0;
     if (choices.scene != kMatchFilesScene) {
       const bool is_known = std::ranges::count(SceneRegistry(), choices.scene, &SceneEntry::name) > 0;
       if (!is_known) ThrowUnknownScene(choices.scene);
@@ -113,7 +124,12 @@ struct Configured {
     }
   }
 
-  std::vector<Parameter> AllParameters() { return simulated ? simulated->Parameters() : Parameters(folder); }
+  std::vector<Parameter> AllParameters() {
+    if (simulated) return simulated->Parameters();
+    std::vector<Parameter> all = Parameters(folder);
+    if (has_doubts) all.push_back(TruthInDoubtParameter(folder));
+    return all;
+  }
   std::vector<Parameter> SceneParameters() {
     return simulated ? simulated->SceneParameters() : std::vector<Parameter>();
   }
@@ -133,7 +149,8 @@ std::string ChoicesWith(const std::string& key) {
   AddChoicesWith(key, "noise", NoiseRegistry(), &choices);
   AddChoicesWith(key, "outliers", OutlierRegistry(), &choices);
   if (key == kCalibrationKey) choices.push_back(fmt::format("cameras: {}", kCamerasFromFile));
-  if (key == "folder") choices.push_back(fmt::format("scene: {}", kMatchFilesScene));
+  if (key == "folder" || key == kTruthInDoubtKey)
+    choices.push_back(fmt::format("scene: {}", kMatchFilesScene));
   return choices.empty() ? "" : fmt::format(" (needs {})", fmt::join(choices, ", or "));
 }
 
@@ -166,11 +183,12 @@ Settings ResolveSettings(const Settings& settings) {
 }
 
 Settings DistinctiveSettings(const Settings& settings, bool of_scene) {
-  static const std::set<std::string> kWithoutEffect = {"folder", "severity"},
+  static const std::set<std::string> kWithoutEffect = {"folder", kTruthInDoubtKey, "severity"},
                                      kNotOfTheScene = {"noise", "outliers"};
   Configured configured(settings);
   Settings distinctive = configured.ChosenNames();
   Configured defaults(distinctive);
+  defaults.has_doubts = configured.has_doubts;
   if (of_scene)
     std::erase_if(distinctive, [](const auto& choice) { return kNotOfTheScene.contains(choice.first); });
   const auto parameters = of_scene ? configured.SceneParameters() : configured.AllParameters();
@@ -185,6 +203,7 @@ Settings DistinctiveSettings(const Settings& settings, bool of_scene) {
 
 std::vector<SettingHelp> DescribeSettings(const Settings& settings) {
   Configured configured(settings);
+  configured.has_doubts = true;
   std::vector<SettingHelp> help;
   for (const Parameter& p : configured.AllParameters()) {
     help.push_back({p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});

@@ -45,6 +45,10 @@ std::string ChoicesWith(const std::string& key);
 // Every key a `data:` block with these settings may hold, with its value.
 std::vector<SettingHelp> DescribeSettings(const Settings& settings);
 
+// The key that names a list of pairs whose truth is in doubt (truth_doubts.h); without it no text of a study
+// has it.
+inline constexpr const char* kTruthInDoubtKey = "truth_in_doubt";
+
 // The scene name that stands for a folder of match files.
 inline constexpr const char* kMatchFilesScene = "match_files";
 

@@ -10,6 +10,7 @@
 
 #include "experiments/core/files/gzip_lines.h"
 #include "experiments/core/text/field_text.h"
+#include "experiments/data/truth_doubts.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "stats/fnv1a.h"
@@ -143,13 +144,14 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     std::vector<TrialData> pairs;
     std::vector<double> noise_levels;
     Fnv1a digest;
-    int num_with_truth_sd = 0, num_assumed = 0;
+    int num_with_truth_sd = 0, num_assumed = 0, num_in_doubt = 0;
   };
   const std::vector<fs::path> paths = MatchFilesIn(settings.folder);
   const std::set<std::string> weak = PairsWithWeakDirection(settings.folder, paths);
   std::map<std::string, Group> groups;
   size_t num_matches = 0;
   const Redraw redraw(settings.redraw);
+  TruthDoubts doubts(settings.truth_in_doubt);
   CameraWarnings warnings;
   for (const fs::path& path : paths) {
     MatchFile file = ReadMatchFile(path.string());
@@ -173,16 +175,21 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     }
     data.truth.sd = file.truth_sd;
     AddNumbers(file, data.truth.is_direction_known, &group.digest);
+    data.truth.is_in_doubt = doubts.Has(file.scene, ExtractPairId(path));
+    if (data.truth.is_in_doubt) group.digest.Add(-1.0);
+    group.num_in_doubt += data.truth.is_in_doubt;
     data.problem = MakeMotionProblem(std::move(file), settings.sigma_px);
     if (redraw.IsOn()) Redraw::Label(&data);
     group.pairs.push_back(std::move(data));
   }
   warnings.Print();
+  doubts.RequireAnyFound(settings.folder);
   std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;
   for (auto& [scene, group] : groups) {
     std::string identity = fmt::format("{} files, digest {:016x}", group.pairs.size(), group.digest.value());
     if (group.num_with_truth_sd > 0) identity += fmt::format(", truth_sd in {}", group.num_with_truth_sd);
     if (group.num_assumed > 0) identity += fmt::format(", truth_sd assumed in {}", group.num_assumed);
+    if (group.num_in_doubt > 0) identity += fmt::format(", truth in doubt in {}", group.num_in_doubt);
     sources.emplace_back(
         scene, std::make_shared<MatchFolderData>(scene, std::move(group.pairs), std::move(group.noise_levels),
                                                  identity, redraw));

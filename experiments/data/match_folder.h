@@ -19,6 +19,8 @@ struct MatchFolderSettings {
   std::string folder;     // relative to the working directory
   double sigma_px = 0.5;  // the noise level that the estimators assume
   PoseSd truth = {};      // of the poses behind the true motions of files without truth_sd
+  // A list of pairs whose truth is in doubt (truth_doubts.h), seen as the folder; empty: none is.
+  std::string truth_in_doubt = {};
   RedrawSettings redraw = {};
 };
 

@@ -28,7 +28,7 @@ std::optional<double> Miscoverage(const TrialRecord& record, const FailureBounds
 }
 
 std::optional<double> Seconds(const TrialRecord& record, const FailureBounds&) {
-  if (!WasSimulated(record)) return std::nullopt;
+  if (!IsCounted(record)) return std::nullopt;
   return record.seconds;
 }
 

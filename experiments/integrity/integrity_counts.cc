@@ -142,6 +142,7 @@ IntegrityCounts CountTrial(const TrialResult& result, const IntegrityTerms& term
   counts.num_refusals = HasRefused(record);
   counts.num_invalid = IsInvalid(record);
   counts.tally.num_without_motion = counts.num_refusals + counts.num_invalid;
+  if (record.status == MotionStatus::kTruthInDoubt) counts.num_unscored.fill(1);
   if (record.status != MotionStatus::kOk) return counts;
   const ProtectionLevels levels = ComputeProtectionLevels(result.estimates.front(), terms.risk);
   const std::array<double, kNumIntegrityQuantities> errors_deg = {record.rotation_error_deg,

@@ -60,7 +60,7 @@ struct IntegrityCounts {
   IntegrityTally tally;
   std::int64_t num_refusals = 0, num_invalid = 0;  // their sum is that of the tally without a motion
   std::int64_t num_not_simulated = 0;
-  std::array<std::int64_t, kNumIntegrityQuantities> num_unscored{};  // answers whose truth is not known
+  std::array<std::int64_t, kNumIntegrityQuantities> num_unscored{};  // whose truth is not known or in doubt
   // error bin * kNumIntegrityBins + level bin -> answers
   std::array<std::map<int, std::int64_t>, kNumIntegrityQuantities> cells;
 

@@ -37,7 +37,7 @@ CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64
         if (problem.weight != 1.0)
           throw InputError(
               "--until: the trials of this study are weighted (tilted_to); give --trials instead");
-        if (!WasSimulated(records.front())) return;
+        if (!IsCounted(records.front())) return;
         ++num_simulated;
         for (size_t e = 0; e < records.size(); ++e) {
           if (options.event.needs_truth && !IsScored(records[e])) {

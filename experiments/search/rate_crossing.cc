@@ -151,6 +151,7 @@ class Asker {
       const TrialResult result = RunTrialOfDraw(plan, condition, static_cast<std::uint32_t>(first + index));
       (*progress_)->Advance(1);
       if (!result.why_not_simulated.empty()) return;
+      if (!IsCounted(result.records.front())) return;
       CheckTrial(result, question_);
       ++num_simulated;
       num_events += question_.event.has_happened(result.records.front(), plan.study.failure);

@@ -46,7 +46,8 @@ const std::vector<TrialQuantity>& OwnQuantities() {
   using B = const FailureBounds&;
   static const double nees_bound = ChiSquareQuantile(5, 0.95);
   static const std::vector<TrialQuantity> all = {
-      {"not_scored", kRate, "a motion whose truth is not known, of all trials",
+      {"not_scored", kRate,
+       "a motion whose truth is not known, or a trial whose truth is in doubt, of all trials",
        [](R r, B) { return Yes(!IsScored(r)); }},
       {"success", kRate, "a motion within the failure bounds, of all trials but those not scored",
        [](R r, B b) { return If(IsScored(r), HasSucceeded(r, b)); }},
@@ -136,11 +137,13 @@ bool IsOfOutside(const std::string& quantity) {
          quantity == StatusName(MotionStatus::kUnreadableAnswer);
 }
 
-void LeaveOutNotSimulated(TrialQuantity* quantity) {
+// What does not count is named by two quantities and is in no other.
+void LeaveOutUncounted(TrialQuantity* quantity) {
   if (quantity->name == StatusName(MotionStatus::kNotSimulated)) return;
-  quantity->contribution = [of_simulated = std::move(quantity->contribution)](
+  const auto is_of_quantity = quantity->name == "not_scored" ? WasSimulated : IsCounted;
+  quantity->contribution = [is_of_quantity, of_counted = std::move(quantity->contribution)](
                                const TrialRecord& r, const FailureBounds& b) -> std::optional<double> {
-    return WasSimulated(r) ? of_simulated(r, b) : std::nullopt;
+    return is_of_quantity(r) ? of_counted(r, b) : std::nullopt;
   };
 }
 
@@ -160,7 +163,7 @@ const std::vector<TrialQuantity>& TrialQuantities() {
       quantities.push_back(MakeQuantity(score, SummaryRow::Kind::kScore));
     for (const TrialMeasure& error : TrialErrors())
       quantities.push_back(MakeQuantity(error, SummaryRow::Kind::kMedian));
-    for (TrialQuantity& quantity : quantities) LeaveOutNotSimulated(&quantity);
+    for (TrialQuantity& quantity : quantities) LeaveOutUncounted(&quantity);
     return quantities;
   }();
   return all;

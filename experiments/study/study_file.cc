@@ -134,7 +134,12 @@ Settings WrittenData(const Study& study) {
 
 std::vector<std::string> DataKeys(const Study& study) {
   std::vector<std::string> keys;
-  for (const auto& [key, value] : ResolveSettings(ChooseFirstSettings(study))) keys.push_back(key);
+  const Settings settings = ResolveSettings(ChooseFirstSettings(study));
+  for (const auto& [key, value] : settings) keys.push_back(key);
+  const bool is_of_match_files =
+      std::ranges::count(settings, Settings::value_type("scene", kMatchFilesScene)) > 0;
+  if (is_of_match_files && std::ranges::count(keys, kTruthInDoubtKey) == 0)
+    keys.emplace_back(kTruthInDoubtKey);
   return keys;
 }
 
@@ -220,7 +225,7 @@ void FollowFailureBounds(const YAML::Node& entries, Study* study) {
 }
 
 // The settings whose values are paths.
-constexpr const char* kPathKeys[] = {"folder", kCalibrationKey};
+constexpr const char* kPathKeys[] = {"folder", kCalibrationKey, kTruthInDoubtKey};
 
 // A path in a study is seen from the study's folder.
 std::string SeenFrom(const std::filesystem::path& folder, const std::string& path) {

@@ -138,7 +138,9 @@ std::string TextToLock(const StudyPlan& plan) {
   Study study = plan.study;
   const bool is_of_real_pairs =
       std::ranges::count(study.data, Settings::value_type("scene", kMatchFilesScene)) > 0;
-  std::erase_if(study.data, [](const auto& setting) { return setting.first == "folder"; });
+  std::erase_if(study.data, [](const auto& setting) {
+    return setting.first == "folder" || setting.first == kTruthInDoubtKey;
+  });
   std::string text = ToYaml(study);
   for (const std::string& line : DigestsIn(plan.identity, is_of_real_pairs)) text += line + "\n";
   return text;

@@ -45,7 +45,10 @@ std::string Identity(const StudyPlan& plan) {
   same.description.clear();
   same.ademp.reset();
   same.hypotheses.clear();
-  std::erase_if(same.data, [](const auto& setting) { return setting.first == "folder"; });  // its data count
+  // What they hold counts.
+  std::erase_if(same.data, [](const auto& setting) {
+    return setting.first == "folder" || setting.first == kTruthInDoubtKey;
+  });
   std::string identity = ToYaml(same) + ResolvedConditions(plan);
   if (same.population) identity += DescribePopulationIdentity(*same.population, plan.refused);
   for (const Condition& condition : plan.conditions) {

@@ -40,7 +40,7 @@ void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord
   if (!truth.is_direction_known) return;
   if (HasMotion(estimate.status))
     record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
-  if (WasSimulated(*record) && !HasRefused(*record)) record->nees = ComputeNees(estimate, truth);
+  if (IsCounted(*record) && !HasRefused(*record)) record->nees = ComputeNees(estimate, truth);
 }
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
@@ -100,6 +100,10 @@ TrialRecord ScoreJudged(const MotionEstimate& judged, const TrialData& data, dou
   record.inlier_brier = BrierOfInliers(judged, data.truth);
   record.doubt = static_cast<int>(judged.doubt);
   record.seconds = seconds;
+  if (data.truth.is_in_doubt && WasSimulated(record)) {
+    record.status = MotionStatus::kTruthInDoubt;
+    return record;
+  }
   ScoreMotion(judged, data.truth, &record);
   ScoreInliers(judged, data.truth, &record);
   return record;
@@ -113,12 +117,16 @@ bool IsInvalid(const TrialRecord& record) {
 
 bool WasSimulated(const TrialRecord& record) { return record.status != MotionStatus::kNotSimulated; }
 
+bool IsCounted(const TrialRecord& record) {
+  return WasSimulated(record) && record.status != MotionStatus::kTruthInDoubt;
+}
+
 bool HasRefused(const TrialRecord& record) {
-  return record.status != MotionStatus::kOk && !IsInvalid(record) && WasSimulated(record);
+  return record.status != MotionStatus::kOk && !IsInvalid(record) && IsCounted(record);
 }
 
 bool IsScored(const TrialRecord& record) {
-  if (!WasSimulated(record)) return false;
+  if (!IsCounted(record)) return false;
   return record.status != MotionStatus::kOk || !std::isnan(record.rotation_error_deg);
 }
 

@@ -44,10 +44,13 @@ struct ProblemRecord {
 bool IsInvalid(const TrialRecord& record);
 // There was a problem to be solved: the simulator could make the trial.
 bool WasSimulated(const TrialRecord& record);
+// It was simulated, and its truth is not in doubt: the others count in no rate but in that of what is not
+// scored.
+bool IsCounted(const TrialRecord& record);
 // No motion: neither a success nor a failure.
 bool HasRefused(const TrialRecord& record);
-// False for a returned motion whose truth is not known, and for a trial that was not simulated: neither has
-// failed or succeeded.
+// False for a returned motion whose truth is not known, and for a trial that was not simulated or whose truth
+// is in doubt: none has failed or succeeded.
 bool IsScored(const TrialRecord& record);
 // An invalid answer, or a returned motion beyond a bound. False where no motion was returned, or no truth is
 // known.

@@ -13,10 +13,10 @@ struct TrialEvent {
   bool (*has_happened)(const TrialRecord&, const FailureBounds&);
   bool needs_truth;
 
-  // Whether the record says if it has happened: not of a trial that was not simulated, nor, if it needs the
-  // truth, of one that is not scored.
+  // Whether the record says if it has happened: not of a trial that does not count (IsCounted), nor, if it
+  // needs the truth, of one that is not scored.
   bool IsKnownFor(const TrialRecord& record) const {
-    return needs_truth ? IsScored(record) : WasSimulated(record);
+    return needs_truth ? IsScored(record) : IsCounted(record);
   }
 };
 const std::vector<TrialEvent>& TrialEvents();

@@ -7,7 +7,7 @@
 
 namespace rcme {
 
-// kNotScored: the truth is not known, or the trial was not simulated.
+// kNotScored: the truth is not known or in doubt, or the trial was not simulated.
 enum class TrialOutcome { kSuccess, kFailure, kRefusal, kNotScored };
 
 TrialOutcome ClassifyOutcome(const TrialRecord& record, const FailureBounds& bounds);
@@ -16,7 +16,7 @@ TrialOutcome ClassifyOutcome(const TrialRecord& record, const FailureBounds& bou
 const char* Name(TrialOutcome outcome);
 
 // The same with the reason, where there is one: the status in the place of "refusal", of "failure" where
-// the answer is not valid, and of "not_scored" where there was no problem.
+// the answer is not valid, and of "not_scored" where there was no problem, or its truth is in doubt.
 std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds);
 
 }  // namespace rcme

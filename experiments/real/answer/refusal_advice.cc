@@ -45,6 +45,7 @@ std::vector<std::string> AdviceFor(const MotionEstimate& estimate, const Estimat
   switch (estimate.status) {
     case MotionStatus::kOk:
     case MotionStatus::kNotSimulated:
+    case MotionStatus::kTruthInDoubt:
       break;
     case MotionStatus::kNoCandidate:
       AddMoreSamples(spec, &advice);

@@ -91,18 +91,18 @@ TEST(TrialMeasure, ByHand) {
   EXPECT_DOUBLE_EQ(Find("max_error_median_deg").Of(Motion(7.0, 2.5)).value(), 7.0);
 }
 
-// Every status but ok, with errors that look perfect: none may count. A trial that was not simulated says
-// nothing at all.
+// Every status but ok, with errors that look perfect: none may count. A trial that does not count
+// says nothing at all.
 TEST(TrialMeasure, WhatIsNoMotionIsAsWrongAsCanBeOrLeftOut) {
   for (const MotionStatus status : AllStatuses()) {
     if (status == MotionStatus::kOk) continue;
     const TrialRecord record = Record(status, 0.0, 0.0);
     for (const TrialMeasure& measure : TrialScores()) {
-      const bool is_left_out = !WasSimulated(record) || (measure.leaves_out_refusals && HasRefused(record));
+      const bool is_left_out = !IsCounted(record) || (measure.leaves_out_refusals && HasRefused(record));
       EXPECT_EQ(measure.Of(record), is_left_out ? std::nullopt : std::optional<double>(0.0)) << measure.name;
     }
     for (const TrialMeasure& measure : TrialErrors()) {
-      const bool is_left_out = !WasSimulated(record) || (measure.leaves_out_refusals && HasRefused(record));
+      const bool is_left_out = !IsCounted(record) || (measure.leaves_out_refusals && HasRefused(record));
       EXPECT_EQ(measure.Of(record), is_left_out ? std::nullopt : std::optional<double>(kInfinity))
           << measure.name;
     }

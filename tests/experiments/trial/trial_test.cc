@@ -267,7 +267,8 @@ TEST(Score, NoMotionIsNeitherSuccessNorFailure) {
                                  record.inlier_precision, record.inlier_recall}) {
       EXPECT_TRUE(std::isnan(unknown)) << StatusName(status);
     }
-    EXPECT_EQ(HasRefused(record), status != MotionStatus::kNotSimulated) << StatusName(status);
+    const bool is_counted = status != MotionStatus::kNotSimulated && status != MotionStatus::kTruthInDoubt;
+    EXPECT_EQ(HasRefused(record), is_counted) << StatusName(status);
     EXPECT_FALSE(HasFailed(record, {}) || HasSucceeded(record, {})) << StatusName(status);
   }
 }

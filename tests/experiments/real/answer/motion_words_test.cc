@@ -86,7 +86,8 @@ TEST(RefusalAdvice, NamesWhatTheEstimatorHas) {
     MotionEstimate estimate;
     estimate.status = status;
     for (const char* name : {"rcme", "rcme_calibrated", "standard"}) {
-      const bool has_none = status == MotionStatus::kOk || status == MotionStatus::kNotSimulated;
+      const bool has_none = status == MotionStatus::kOk || status == MotionStatus::kNotSimulated ||
+                            status == MotionStatus::kTruthInDoubt;
       EXPECT_EQ(AdviceFor(estimate, DefaultEstimator(name)).empty(), has_none) << StatusName(status);
     }
   }
