@@ -16,7 +16,8 @@ namespace {
 constexpr int kMinMatches = 5;  // that determine a motion
 
 bool IsOfTheJudge(MotionStatus status) {
-  return status == MotionStatus::kInvalidMotion || status == MotionStatus::kInvalidCovariance;
+  return status == MotionStatus::kInvalidMotion || status == MotionStatus::kInvalidCovariance ||
+         status == MotionStatus::kNotSimulated || status == MotionStatus::kTruthInDoubt;
 }
 
 MotionEstimate Refusal(MotionStatus status, const std::string& message) {

@@ -49,7 +49,7 @@ class NoOutsideAnswer : public std::runtime_error {
 };
 
 // The status of that name. Throws NoOutsideAnswer (unreadable_answer) for an unknown one, and for those that
-// only the judge of answers gives (invalid_motion, invalid_covariance).
+// only the judge of answers or of trials gives (invalid_motion, not_simulated, ...).
 MotionStatus StatusOfOutside(const std::string& name);
 
 // The covariance of [rotation, direction] (5x5, rad^2) from that of [w, dt]: what dt does along t is no part

@@ -138,6 +138,8 @@ TEST(AnswerJson, WhatIsNoAnswerHasAFault) {
                                   line(R"(, "p_failure": "x")"),
                                   line(R"(, "seconds": -1)"),
                                   line(R"(, "status": "invalid_motion")"),
+                                  line(R"(, "status": "not_simulated")"),
+                                  line(R"(, "status": "truth_in_doubt")"),
                                   line(R"(, "message": 3)"),
                                   line(R"(, "t": [1,0,0])"),
                                   line(R"(, "id": 3)")}) {
