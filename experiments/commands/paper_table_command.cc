@@ -16,6 +16,7 @@ struct PaperTableArguments {
   std::string run, out;
   std::vector<std::string> groups;  // empty: the usual ones
   std::string clusters = "images", format = "table";
+  std::vector<double> bounds_deg;
 };
 
 void RunPaperTable(const PaperTableArguments& arguments) {
@@ -23,7 +24,8 @@ void RunPaperTable(const PaperTableArguments& arguments) {
   for (const std::string& text : arguments.groups) groups.push_back(ParseSceneGroup(text));
   const PaperTable table =
       MakePaperTable(ResultStore::OpenForReading(arguments.run), groups.empty() ? UsualSceneGroups() : groups,
-                     arguments.clusters == "images" ? TableClusters::kImages : TableClusters::kSequences);
+                     arguments.clusters == "images" ? TableClusters::kImages : TableClusters::kSequences,
+                     arguments.bounds_deg);
   const std::string text = PaperTableAsText(table), csv = PaperTableAsCsv(table),
                     json = PaperTableAsJson(table);
   if (!arguments.out.empty()) {
@@ -45,12 +47,14 @@ void AddPaperTableCommand(CLI::App& app) {
 it counts Detect-fail and other refusals, failures by the paper's flag
 (n*_I / n_I <= kappa), failures by ground truth where the files state it, and how often
 the flag is right. Pairs that share an image are not independent: the intervals are
-exact binomial ones for the number of independent pairs with the same information. The
-paper's printed figures follow, with intervals.
+exact binomial ones for the number of independent pairs with the same information. Pairs
+whose truth is in doubt (truth_in_doubt of the study) are counted apart. The paper's
+printed figures follow, with intervals.
 
 Examples:
   rcme run studies/paper_table.yaml --set folder=PAIRS --out run.sqlite
   rcme paper-table run.sqlite --out table
+  rcme paper-table run.sqlite --bound 5 --bound 10      outcomes at 5 and at 10 degrees
   rcme paper-table run.sqlite --group indoor='MH_*,V1_*,office' --group outdoor='kitti*')");
   auto arguments = std::make_shared<PaperTableArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
@@ -67,6 +71,12 @@ Examples:
                    "which pairs are dependent: those that share images, or all of a sequence")
       ->check(MakeChoiceValidator({"images", "sequences"}))
       ->capture_default_str();
+  command
+      ->add_option("--bound", arguments->bounds_deg,
+                   "DEG, repeatable: also refusals, failures and successes side by side, a failure being an "
+                   "error of rotation or direction above DEG, with the AUC up to it and the median time")
+      ->transform(NumberIn({1e-6, 180.0}))
+      ->allow_extra_args(false);
   command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
       ->check(MakeChoiceValidator({"table", "csv", "json"}))
       ->capture_default_str();

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -11,23 +13,57 @@
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/text_lines.h"
+#include "stats/median_ratio.h"
 
 namespace rcme {
 namespace {
+
+// One call of a pair whose motion is known: how far off it is, in the greater of both errors.
+struct PairError {
+  std::int64_t member1 = 0, member2 = 0;
+  bool is_refused = false;
+  double error_deg = 0.0;  // infinite of what is no valid motion
+};
+
+BoundOutcomes MeasureOutcomes(const std::vector<PairError>& errors, double bound_deg) {
+  std::vector<PairEvent> refusal, failure, success;
+  std::vector<PairValue> area;
+  for (const PairError& e : errors) {
+    const bool is_right = !e.is_refused && e.error_deg <= bound_deg;
+    refusal.push_back({e.member1, e.member2, e.is_refused});
+    failure.push_back({e.member1, e.member2, !e.is_refused && !is_right});
+    success.push_back({e.member1, e.member2, is_right});
+    area.push_back({e.member1, e.member2, is_right ? 1.0 - e.error_deg / bound_deg : 0.0});
+  }
+  return {bound_deg, MeasureSharedMemberRate(refusal), MeasureSharedMemberRate(failure),
+          MeasureSharedMemberRate(success), MeasureSharedMemberMean(area)};
+}
 
 // The events of one estimator on some pairs.
 struct CellEvents {
   std::vector<PairEvent> detect_fail, other_refusal, kappa_failure, true_failure, flag_of_failed,
       flag_of_right;
+  std::vector<PairError> errors;
+  std::vector<double> seconds;
 
   void Append(const CellEvents& other) {
     for (const auto list : kLists)
       (this->*list).insert((this->*list).end(), (other.*list).begin(), (other.*list).end());
+    errors.insert(errors.end(), other.errors.begin(), other.errors.end());
+    seconds.insert(seconds.end(), other.seconds.begin(), other.seconds.end());
   }
-  TableCell Measure() const {
-    return {MeasureSharedMemberRate(detect_fail),    MeasureSharedMemberRate(other_refusal),
-            MeasureSharedMemberRate(kappa_failure),  MeasureSharedMemberRate(true_failure),
-            MeasureSharedMemberRate(flag_of_failed), MeasureSharedMemberRate(flag_of_right)};
+  TableCell Measure(const std::vector<double>& bounds_deg) const {
+    TableCell cell{MeasureSharedMemberRate(detect_fail),
+                   MeasureSharedMemberRate(other_refusal),
+                   MeasureSharedMemberRate(kappa_failure),
+                   MeasureSharedMemberRate(true_failure),
+                   MeasureSharedMemberRate(flag_of_failed),
+                   MeasureSharedMemberRate(flag_of_right),
+                   {},
+                   std::numeric_limits<double>::quiet_NaN()};
+    for (const double bound_deg : bounds_deg) cell.outcomes.push_back(MeasureOutcomes(errors, bound_deg));
+    if (!seconds.empty()) cell.median_seconds = ComputeMedian(seconds);
+    return cell;
   }
 
   static constexpr std::vector<PairEvent> CellEvents::*kLists[] = {
@@ -39,6 +75,7 @@ struct CellEvents {
 struct SceneEvents {
   std::vector<std::string> levels;
   std::vector<CellEvents> estimators;
+  std::int64_t num_in_doubt = 0;
 };
 
 // Numbers of what pairs have in common, over all scenes.
@@ -92,12 +129,17 @@ void AddRecord(const TrialRecord& record, bool is_truth_known, const FailureBoun
   const auto add = [&members](std::vector<PairEvent>* list, bool happened) {
     list->push_back({members.first, members.second, happened});
   };
+  events->seconds.push_back(record.seconds);
   const bool is_returned = !HasRefused(record), is_detected = record.status == MotionStatus::kNoCandidate;
   const bool is_flagged = is_returned && HasFlag(record) && record.failed_by_kappa;
   add(&events->detect_fail, is_detected);
   add(&events->other_refusal, !is_returned && !is_detected);
   add(&events->kappa_failure, is_flagged);
   if (!is_truth_known) return;
+  const bool is_valid = record.status == MotionStatus::kOk;
+  const double error_deg = is_valid ? std::fmax(record.rotation_error_deg, record.direction_error_deg)
+                                    : std::numeric_limits<double>::infinity();
+  events->errors.push_back({members.first, members.second, !is_returned, error_deg});
   add(&events->true_failure, HasFailed(record, bounds));
   if (is_returned && HasFlag(record))
     add(HasFailed(record, bounds) ? &events->flag_of_failed : &events->flag_of_right, is_flagged);
@@ -116,11 +158,15 @@ std::vector<SceneEvents> ListSceneEvents(const ResultStore& run, const StudyPlan
                                          TableClusters clusters) {
   std::vector<SceneEvents> scenes;
   for (const Condition& condition : plan.conditions)
-    scenes.push_back({condition.levels, std::vector<CellEvents>(plan.study.estimators.size())});
+    scenes.push_back({condition.levels, std::vector<CellEvents>(plan.study.estimators.size()), 0});
   Members members(clusters);
   std::vector<bool> has_flag(plan.study.estimators.size());
   run.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     const Condition& condition = plan.conditions[problem.condition];
+    if (records.front().status == MotionStatus::kTruthInDoubt) {
+      ++scenes[problem.condition].num_in_doubt;
+      return;
+    }
     const TrialData data = condition.source->Make(NameOfScene(plan, condition, problem.trial));
     const auto of_pair = members.Of(condition, plan, data.origin);
     for (const TrialRecord& record : records) {
@@ -143,12 +189,14 @@ bool IsInGroup(const SceneGroup& group, const SceneEvents& scene) {
   });
 }
 
-TableRow MakeTableRow(const std::string& name, bool is_group, const std::vector<const SceneEvents*>& scenes) {
-  TableRow row{name, is_group, {}};
+TableRow MakeTableRow(const std::string& name, bool is_group, const std::vector<const SceneEvents*>& scenes,
+                      const std::vector<double>& bounds_deg) {
+  TableRow row{name, is_group, {}, 0};
+  for (const SceneEvents* scene : scenes) row.num_in_doubt += scene->num_in_doubt;
   for (size_t e = 0; e < scenes.front()->estimators.size(); ++e) {
     CellEvents events;
     for (const SceneEvents* scene : scenes) events.Append(scene->estimators[e]);
-    row.cells.push_back(events.Measure());
+    row.cells.push_back(events.Measure(bounds_deg));
   }
   return row;
 }
@@ -176,7 +224,7 @@ std::vector<SceneGroup> UsualSceneGroups() {
 }
 
 PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>& groups,
-                          TableClusters clusters) {
+                          TableClusters clusters, const std::vector<double>& bounds_deg) {
   if (run.Description().keeps_counts)
     throw InputError(
         "the run keeps only counts, but the table needs every trial; run it without --keep counts");
@@ -188,16 +236,16 @@ PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>&
   for (const SceneEvents& scene : scenes) {
     all.push_back(&scene);
     const std::string name = fmt::format("{}", fmt::join(scene.levels, ", "));
-    table.rows.push_back(MakeTableRow(name.empty() ? plan.study.name : name, false, {&scene}));
+    table.rows.push_back(MakeTableRow(name.empty() ? plan.study.name : name, false, {&scene}, bounds_deg));
   }
   for (const SceneGroup& group : groups) {
     std::vector<const SceneEvents*> of_group;
     for (const SceneEvents& scene : scenes) {
       if (IsInGroup(group, scene)) of_group.push_back(&scene);
     }
-    if (!of_group.empty()) table.rows.push_back(MakeTableRow(group.name, true, of_group));
+    if (!of_group.empty()) table.rows.push_back(MakeTableRow(group.name, true, of_group, bounds_deg));
   }
-  if (scenes.size() > 1) table.rows.push_back(MakeTableRow("all", true, all));
+  if (scenes.size() > 1) table.rows.push_back(MakeTableRow("all", true, all, bounds_deg));
   return table;
 }
 

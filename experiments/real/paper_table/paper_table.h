@@ -26,6 +26,16 @@ enum class TableClusters {
   kSequences  // all pairs of a scene
 };
 
+// What became of the pairs whose motion is known, by the greater of rotation and direction error e: the three
+// rates add up to 1.
+struct BoundOutcomes {
+  double bound_deg = 0.0;
+  SharedMemberRate refusal;  // no motion
+  SharedMemberRate failure;  // e above the bound, or an answer that is not valid
+  SharedMemberRate success;
+  SharedMemberMean area;  // AUC: of max(0, 1 - e / bound), 0 without a success
+};
+
 // One estimator on one scene or group. Rates of all pairs, but where a line says otherwise; intervals respect
 // what pairs have in common (shared_members.h).
 struct TableCell {
@@ -35,12 +45,15 @@ struct TableCell {
   SharedMemberRate true_failure;   // motion beyond a bound or not valid; of pairs whose motion is known
   // The flag against the truth, of returned motions with both.
   SharedMemberRate flag_of_failed, flag_of_right;
+  std::vector<BoundOutcomes> outcomes;  // of each bound that was asked for
+  double median_seconds = 0.0;          // of a call; NaN without pairs
 };
 
 struct TableRow {
   std::string name;
   bool is_group = false;
-  std::vector<TableCell> cells;  // one per estimator of the study
+  std::vector<TableCell> cells;   // one per estimator of the study
+  std::int64_t num_in_doubt = 0;  // pairs whose truth is listed as in doubt: in no cell
 };
 
 struct PaperTable {
@@ -51,7 +64,8 @@ struct PaperTable {
 };
 
 // Reads the pairs again, for the names of their images. Throws InputError if they are gone or have changed.
+// `bounds_deg`: those of the outcomes.
 PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>& groups,
-                          TableClusters clusters);
+                          TableClusters clusters, const std::vector<double>& bounds_deg = {});
 
 }  // namespace rcme

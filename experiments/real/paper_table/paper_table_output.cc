@@ -32,15 +32,22 @@ const NumberFormat kPercentOfHeading{100.0, "", ".2f"};
 // Of a rate of n pairs in per cent: as many as tell one pair from none.
 int CountDecimals(std::int64_t n) { return n <= 100 ? 0 : n <= 1000 ? 1 : 2; }
 
+bool HasDoubts(const PaperTable& paper_table) {
+  return std::ranges::any_of(paper_table.rows, [](const TableRow& row) { return row.num_in_doubt > 0; });
+}
+
 Table MakeEstimatorTable(const PaperTable& paper_table, size_t estimator) {
   Table table{
       {Column::Key(paper_table.estimators[estimator]), Column::Count("pairs"), Column::Count("apart")}};
+  const bool has_doubts = HasDoubts(paper_table);
+  if (has_doubts) table.columns.push_back(Column::Count("in doubt"));
   for (const CellQuantity& quantity : kQuantities)
     table.columns.push_back(Column::Estimated(quantity.heading, kPercentOfHeading));
   for (const TableRow& row : paper_table.rows) {
     const TableCell& cell = row.cells[estimator];
     table.rows.push_back(
         {(row.is_group ? "= " : "") + row.name, cell.detect_fail.n, cell.detect_fail.num_apart});
+    if (has_doubts) table.rows.back().emplace_back(row.num_in_doubt);
     for (const CellQuantity& quantity : kQuantities) {
       const SharedMemberRate& rate = cell.*quantity.rate;
       const std::string counts = fmt::format("{} of {}", rate.num_events, rate.n);
@@ -51,6 +58,47 @@ Table MakeEstimatorTable(const PaperTable& paper_table, size_t estimator) {
     }
   }
   return table;
+}
+
+Estimate EstimateOf(const SharedMemberRate& rate) {
+  return {.value = rate.rate, .interval = rate.interval, .decimals = CountDecimals(rate.n)};
+}
+
+// What became of the pairs at one bound: a row per estimator, of each scene and group.
+Table MakeOutcomeTable(const PaperTable& paper_table, size_t bound) {
+  const NumberFormat milliseconds{1e3, "", ".3g"};
+  Table table{{Column::Key("scene"), Column::Key("estimator"), Column::Count("pairs"),
+               Column::Estimated("refusal %", kPercentOfHeading),
+               Column::Estimated("failure %", kPercentOfHeading),
+               Column::Estimated("success %", kPercentOfHeading),
+               Column::Estimated("AUC %", kPercentOfHeading), Column::Number("median ms", milliseconds)}};
+  for (const TableRow& row : paper_table.rows) {
+    for (size_t e = 0; e < paper_table.estimators.size(); ++e) {
+      const BoundOutcomes& outcomes = row.cells[e].outcomes[bound];
+      table.rows.push_back({(row.is_group ? "= " : "") + row.name, paper_table.estimators[e],
+                            outcomes.success.n, EstimateOf(outcomes.refusal), EstimateOf(outcomes.failure),
+                            EstimateOf(outcomes.success),
+                            Estimate{.value = outcomes.area.value,
+                                     .interval = outcomes.area.interval,
+                                     .decimals = CountDecimals(outcomes.area.n)},
+                            row.cells[e].median_seconds});
+    }
+  }
+  return table;
+}
+
+std::string OutcomesAsText(const PaperTable& paper_table) {
+  std::string text;
+  const std::vector<BoundOutcomes>& bounds = paper_table.rows.front().cells.front().outcomes;
+  for (size_t b = 0; b < bounds.size(); ++b) {
+    text += "\n" +
+            FormatParagraph(fmt::format(
+                "Outcomes at {:g} deg: failure is an error of rotation or direction above it, or an answer "
+                "that is not valid, of pairs whose motion is known; AUC@{:g}",
+                bounds[b].bound_deg, bounds[b].bound_deg)) +
+            "\n" + RenderText(MakeOutcomeTable(paper_table, b));
+  }
+  return text;
 }
 
 double ComputeShare(const PrintedRate& rate) {
@@ -101,6 +149,66 @@ std::vector<Column> RateColumns(bool is_printed) {
           Column::Number("design_effect")};
 }
 
+// The outcomes of a cell: refusal_5_deg, failure_5_deg, success_5_deg, auc_5_deg, ..., median_seconds.
+void AppendOutcomes(const TableRow& row, const TableCell& cell, const std::string& estimator, Table* table) {
+  for (const BoundOutcomes& outcomes : cell.outcomes) {
+    if (outcomes.success.n == 0) continue;
+    const auto name = [&](const char* what) { return fmt::format("{}_{:g}_deg", what, outcomes.bound_deg); };
+    const auto add = [&](const char* what, const SharedMemberRate& rate) {
+      table->rows.push_back({"run", row.name, row.is_group, estimator, name(what), "rate", rate.rate,
+                             rate.interval, rate.n, rate.num_events, rate.num_apart, rate.design_effect});
+    };
+    add("refusal", outcomes.refusal);
+    add("failure", outcomes.failure);
+    add("success", outcomes.success);
+    table->rows.push_back({"run",
+                           row.name,
+                           row.is_group,
+                           estimator,
+                           name("auc"),
+                           "score",
+                           outcomes.area.value,
+                           outcomes.area.interval,
+                           outcomes.area.n,
+                           {},
+                           {},
+                           {}});
+  }
+  if (!cell.outcomes.empty())
+    table->rows.push_back({"run",
+                           row.name,
+                           row.is_group,
+                           estimator,
+                           "median_seconds",
+                           "median",
+                           cell.median_seconds,
+                           {},
+                           cell.detect_fail.n,
+                           {},
+                           {},
+                           {}});
+}
+
+// The pairs in doubt of a row, where there are any at all; they are no estimator's.
+void AppendDoubts(const PaperTable& paper_table, Table* table) {
+  if (!HasDoubts(paper_table)) return;
+  for (const TableRow& row : paper_table.rows) {
+    const std::int64_t n = row.cells.front().detect_fail.n + row.num_in_doubt;
+    table->rows.push_back({"run",
+                           row.name,
+                           row.is_group,
+                           "",
+                           "truth_in_doubt",
+                           "rate",
+                           static_cast<double>(row.num_in_doubt) / static_cast<double>(n),
+                           {},
+                           n,
+                           row.num_in_doubt,
+                           {},
+                           {}});
+  }
+}
+
 Table MakeRunTable(const PaperTable& paper_table) {
   Table table{RateColumns(/*is_printed=*/false)};
   for (const TableRow& row : paper_table.rows) {
@@ -112,8 +220,10 @@ Table MakeRunTable(const PaperTable& paper_table) {
                               rate.rate, rate.interval, rate.n, rate.num_events, rate.num_apart,
                               rate.design_effect});
       }
+      AppendOutcomes(row, row.cells[e], paper_table.estimators[e], &table);
     }
   }
+  AppendDoubts(paper_table, &table);
   return table;
 }
 
@@ -146,6 +256,11 @@ std::string PaperTableAsText(const PaperTable& table) {
                                   table.study));
   for (size_t e = 0; e < table.estimators.size(); ++e)
     text += "\n" + RenderText(MakeEstimatorTable(table, e));
+  text += OutcomesAsText(table);
+  if (HasDoubts(table))
+    text += "\n" + FormatParagraph(
+                       "in doubt: pairs whose truth is listed as wrong (truth_in_doubt of the "
+                       "study); they are in no other column.");
   text += "\n" +
           FormatParagraph(fmt::format(
               "Failure (kappa): the paper's flag, half or fewer of the consistent matches being left after "

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "experiments/real/paper_table/paper_table_output.h"
 #include "experiments/real/paper_table/printed_table.h"
@@ -106,6 +107,12 @@ class PaperTableOfARun : public testing::Test {
       for (std::uint32_t trial = 0; trial < 3; ++trial) {
         for (std::uint32_t estimator = 0; estimator < 2; ++estimator)
           records.push_back(MakeRecord(condition, trial, estimator));
+        if (condition == 0 && in_doubt_ == static_cast<int>(trial)) {
+          for (TrialRecord& record : std::span(records).last(2)) {
+            record.status = MotionStatus::kTruthInDoubt;
+            record.rotation_error_deg = record.direction_error_deg = std::nan("");
+          }
+        }
       }
     }
     AddRecords(store, records);
@@ -134,6 +141,7 @@ class PaperTableOfARun : public testing::Test {
   }
 
   TempFolder pairs_;
+  int in_doubt_ = -1;  // the pair of the first scene whose truth is; negative: none
 };
 
 TEST_F(PaperTableOfARun, CountsWhatHappened) {
@@ -165,6 +173,49 @@ TEST_F(PaperTableOfARun, CountsWhatHappened) {
   EXPECT_EQ(table.rows[3].cells[0].detect_fail.n, 6);
   EXPECT_EQ(table.rows[3].cells[0].detect_fail.num_apart, 2);
   EXPECT_EQ(MakePaperTable(run, {}, TableClusters::kSequences).rows[2].cells[0].detect_fail.num_members, 2);
+}
+
+// Of the three pairs of kitti_a one is right, one 50 degrees off, one refused.
+TEST_F(PaperTableOfARun, OutcomesStandSideBySideAtEachBound) {
+  const ResultStore run = Run("run.sqlite");
+  const PaperTable table = MakePaperTable(run, {}, TableClusters::kImages, {0.05, 5.0});
+  for (const TableRow& row : table.rows) {
+    for (const TableCell& cell : row.cells) {
+      for (const BoundOutcomes& o : cell.outcomes) {
+        EXPECT_EQ(o.refusal.num_events + o.failure.num_events + o.success.num_events, o.success.n);
+        EXPECT_EQ(o.failure.n, o.success.n);
+      }
+    }
+  }
+  const std::vector<BoundOutcomes>& outcomes = table.rows[0].cells[0].outcomes;
+  ASSERT_EQ(outcomes.size(), 2u);
+  EXPECT_EQ(outcomes[0].failure.num_events, 2);
+  EXPECT_EQ(outcomes[1].failure.num_events, 1);
+  EXPECT_EQ(outcomes[1].success.num_events, 1);
+  EXPECT_EQ(outcomes[1].refusal.num_events, 1);
+  EXPECT_NEAR(outcomes[1].area.value, (1.0 - 0.1 / 5.0) / 3.0, 1e-12);
+  const std::string text = PaperTableAsText(table), csv = PaperTableAsCsv(table);
+  EXPECT_NE(text.find("Outcomes at 5 deg"), std::string::npos) << text;
+  EXPECT_NE(csv.find("\nrun,kitti_a,standard,failure_5_deg,rate,0.33333333,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\nrun,kitti_a,standard,auc_5_deg,score,0.32666667,"), std::string::npos) << csv;
+  EXPECT_EQ(csv.find("in_doubt"), std::string::npos) << csv;
+  const std::string as_before = PaperTableAsText(MakePaperTable(run, {}, TableClusters::kImages));
+  EXPECT_EQ(as_before.find("Outcomes"), std::string::npos);
+  EXPECT_EQ(as_before.find("in doubt"), std::string::npos);
+}
+
+TEST_F(PaperTableOfARun, APairInDoubtIsListedAndInNoOtherColumn) {
+  in_doubt_ = 1;
+  const PaperTable table = MakePaperTable(Run("run.sqlite"), {}, TableClusters::kImages, {5.0});
+  EXPECT_EQ(table.rows[0].num_in_doubt, 1);
+  EXPECT_EQ(table.rows.back().num_in_doubt, 1);
+  EXPECT_EQ(table.rows[0].cells[0].detect_fail.n, 2);
+  EXPECT_EQ(table.rows[0].cells[0].true_failure.n, 2);
+  EXPECT_EQ(table.rows[0].cells[0].true_failure.num_events, 0);
+  EXPECT_EQ(table.rows[0].cells[0].outcomes[0].success.n, 2);
+  const std::string text = PaperTableAsText(table), csv = PaperTableAsCsv(table);
+  EXPECT_NE(text.find("in doubt"), std::string::npos) << text;
+  EXPECT_NE(csv.find("\nrun,kitti_a,,truth_in_doubt,rate,0.33333333,,,3,1,"), std::string::npos) << csv;
 }
 
 TEST_F(PaperTableOfARun, IsWrittenForPeopleAndPrograms) {
