@@ -129,6 +129,7 @@ A first session:
   AddPairsCommand(app);
   AddValidateCommand(app);
   AddTwinCommand(app);
+  AddCheckTruthCommand(app);
   AddPaperTableCommand(app);
   app.group("Help");
   AddListCommand(app);

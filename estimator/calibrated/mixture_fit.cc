@@ -104,10 +104,14 @@ void FitShares(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode
   MixturePrior fixed = prior;
   fixed.estimates_scale = false;
   mode->mixture.inlier_ratio = 0.5;
-  for (int step = 0; step < kSteps; ++step) {
-    const MixtureSums sums = SumMixture(matches, matches.All(), mode->pose, mode->mixture);
-    mode->mixture = Updated(mode->mixture, sums, matches.num_matches(), fixed);
-  }
+  mode->mixture = FitMixture(matches, fixed, mode->pose, mode->mixture, kSteps);
+}
+
+MixtureParameters FitMixture(const MatchBlocks& matches, const MixturePrior& prior, const RelativePose& pose,
+                             MixtureParameters start, int num_steps) {
+  for (int step = 0; step < num_steps; ++step)
+    start = Updated(start, SumMixture(matches, matches.All(), pose, start), matches.num_matches(), prior);
+  return start;
 }
 
 }  // namespace rcme

@@ -54,4 +54,8 @@ bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_step
 // scale.
 void FitShares(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode);
 
+// Of all matches under a motion that stays: the mixture after so many steps of expectation-maximisation.
+MixtureParameters FitMixture(const MatchBlocks& matches, const MixturePrior& prior, const RelativePose& pose,
+                             MixtureParameters start, int num_steps);
+
 }  // namespace rcme

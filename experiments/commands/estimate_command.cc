@@ -10,6 +10,7 @@
 #include "estimator/loop_inspection.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/failure_bounds_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
@@ -42,22 +43,7 @@ struct EstimateArguments {
   bool as_json = false;
 };
 
-// "1,5": deg, of the rotation and of the direction.
-FailureBounds ParseFailureBounds(const std::string& text) {
-  const size_t comma = std::min(text.find(','), text.size());
-  FailureBounds bounds;
-  const auto is_angle = [](const std::string& part, double* angle) {
-    return ParseReal(part, angle) && *angle > 0.0 && *angle <= 180.0;
-  };
-  if (comma < text.size() && is_angle(text.substr(0, comma), &bounds.max_rotation_error_deg) &&
-      is_angle(text.substr(comma + 1), &bounds.max_direction_error_deg))
-    return bounds;
-  throw InputError(fmt::format(
-      "--bounds: {} is not allowed; give R,D: a rotation and a direction in deg, above 0 and up to 180",
-      Quoted(text)));
-}
-
-std::vector<FailureBounds> ParseFailureBounds(const std::vector<std::string>& texts) {
+std::vector<FailureBounds> ParseAllBounds(const std::vector<std::string>& texts) {
   std::vector<FailureBounds> bounds;
   for (const std::string& text : texts) bounds.push_back(ParseFailureBounds(text));
   return bounds;
@@ -108,7 +94,7 @@ class Answerer {
   explicit Answerer(const EstimateArguments& arguments)
       : arguments_(arguments),
         given_(ParseCameras(arguments.intrinsics)),
-        bounds_(ParseFailureBounds(arguments.bounds)),
+        bounds_(ParseAllBounds(arguments.bounds)),
         spec_(ChosenEstimator(arguments.estimator)),
         estimator_(Make(spec_)) {
     CheckProcessEstimators({spec_});

@@ -113,6 +113,7 @@ TEST_F(CommandPermission, OfAnEstimatorFile) {
   for (const Arguments& arguments : std::vector<Arguments>{{"estimate", matches},
                                                            {"check-estimator"},
                                                            {"validate", folder_.path()},
+                                                           {"check-truth", folder_.path()},
                                                            {"twin", folder_.path(), "--out", out_}}) {
     Arguments with_file = arguments;
     with_file.insert(with_file.end(), {"--estimator-file", file_});

@@ -29,6 +29,7 @@ inline constexpr const char* kSummaryFormat = "rcme summary 1";
 inline constexpr const char* kSurfaceDataFormat = "rcme surface data 1";
 inline constexpr const char* kTransferFormat = "rcme transfer 1";
 inline constexpr const char* kTrialFormat = "rcme trial 2";
+inline constexpr const char* kTruthCheckFormat = "rcme truth check 1";
 inline constexpr const char* kTuningFormat = "rcme tuning 1";
 inline constexpr const char* kTwinFormat = "rcme twin 1";
 inline constexpr const char* kValidationFormat = "rcme validation 2";

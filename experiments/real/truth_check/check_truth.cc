@@ -1,0 +1,119 @@
+#include "experiments/real/truth_check/check_truth.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "experiments/core/work/make_in_order.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/data/match_file.h"
+#include "experiments/data/match_folder.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Two files' statements of the same motion, which may be written with a different number of digits.
+constexpr double kSameMotionRad = 1e-3;
+
+std::vector<std::string> NameFrontEnds(const std::vector<std::string>& folders) {
+  std::vector<std::string> names;
+  std::set<std::string> paths, last;
+  for (const std::string& folder : folders) {
+    const fs::path path = (fs::weakly_canonical(folder) / "").parent_path();
+    if (!paths.insert(path.string()).second)
+      throw InputError(fmt::format("'{}' is given twice; give a folder per front end", folder));
+    names.push_back(path.filename().string());
+    last.insert(names.back());
+  }
+  return last.size() == names.size() ? names : folders;
+}
+
+void RequireSamePair(const MatchFile& first, const MatchFile& other) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(
+        fmt::format("{}: {} than {}, but the name is that of the same pair", other.path, what, first.path));
+  };
+  if (first.scene != other.scene) refuse("another scene");
+  if (first.cam2_from_cam1_true.has_value() != other.cam2_from_cam1_true.has_value())
+    refuse("another true motion");
+  if (!first.cam2_from_cam1_true) return;
+  const Vector5d difference = LocalCoordinates(*first.cam2_from_cam1_true, *other.cam2_from_cam1_true);
+  if (difference.norm() > kSameMotionRad) refuse("another true motion");
+}
+
+}  // namespace
+
+std::vector<PairFiles> ListPairFiles(const std::vector<std::string>& folders) {
+  const std::vector<std::string> names = NameFrontEnds(folders);
+  std::map<std::string, PairFiles> pairs;
+  for (size_t f = 0; f < folders.size(); ++f) {
+    const std::vector<fs::path> paths = MatchFilesIn(folders[f]);
+    const std::set<std::string> weak = PairsWithWeakDirection(folders[f], paths);
+    for (const fs::path& path : paths) {
+      const std::string id = ExtractPairId(path);
+      PairFiles& pair = pairs[id];
+      pair.pair_id = id;
+      pair.front_ends.push_back(names[f]);
+      pair.paths.push_back(path.string());
+      pair.is_direction_weak |= weak.contains(id);
+    }
+  }
+  std::vector<PairFiles> listed;
+  for (auto& [id, pair] : pairs) listed.push_back(std::move(pair));
+  return listed;
+}
+
+CheckedPair CheckPair(const PairFiles& files, const MotionEstimator& estimator,
+                      const TruthCheckOptions& options) {
+  CheckedPair pair;
+  pair.pair_id = files.pair_id;
+  std::optional<MatchFile> first;  // without its matches
+  for (size_t f = 0; f < files.paths.size(); ++f) {
+    MatchFile file = ReadMatchFile(files.paths[f]);
+    std::ranges::copy(file.doubts, std::back_inserter(pair.camera_doubts));
+    if (first) RequireSamePair(*first, file);
+    if (file.cam2_from_cam1_true) {
+      const GivenTruth truth{*file.cam2_from_cam1_true, file.truth_sd, !files.is_direction_weak};
+      const MotionProblem problem = MakeMotionProblem(file, options.sigma_px);
+      pair.front_ends.push_back(
+          WeighTruth(problem, truth, options.bounds, estimator, options.seed, files.paths.size()));
+      pair.front_ends.back().front_end = files.front_ends[f];
+    }
+    if (first) continue;
+    file.matches.clear();
+    first = std::move(file);
+  }
+  pair.scene = first->scene;
+  pair.has_truth = first->cam2_from_cam1_true.has_value();
+  pair.verdict = JudgeTruth(pair.front_ends);
+  return pair;
+}
+
+std::vector<CheckedPair> CheckTruths(const std::vector<std::string>& folders,
+                                     const MotionEstimator& estimator, const TruthCheckOptions& options) {
+  const std::vector<PairFiles> files = ListPairFiles(folders);
+  std::vector<CheckedPair> pairs;
+  CameraWarnings warnings;
+  Progress progress("pairs", std::ssize(files), 0);
+  MakeInOrder(
+      std::ssize(files), options.num_threads,
+      [&](std::int64_t i) { return CheckPair(files[static_cast<size_t>(i)], estimator, options); },
+      [&](CheckedPair pair) {
+        warnings.Add(pair.camera_doubts);
+        pairs.push_back(std::move(pair));
+        progress.Advance(1);
+      });
+  warnings.Print();
+  return pairs;
+}
+
+}  // namespace rcme

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/real/truth_check/check_truth.h"
+
+namespace rcme {
+
+// A table of the scenes, then one of the pairs in doubt.
+std::string TruthCheckAsText(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options);
+// A row per pair and front end.
+std::string TruthCheckAsCsv(const std::vector<CheckedPair>& pairs);
+std::string TruthCheckAsJson(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options);
+// The pairs in doubt, for the key truth_in_doubt of a study (experiments/data/truth_doubts.h).
+std::string TruthDoubtsAsCsv(const std::vector<CheckedPair>& pairs);
+
+}  // namespace rcme
