@@ -188,6 +188,7 @@ Settings DistinctiveSettings(const Settings& settings, bool of_scene) {
   Configured configured(settings);
   Settings distinctive = configured.ChosenNames();
   Configured defaults(distinctive);
+  defaults.has_doubts = configured.has_doubts;
   if (of_scene)
     std::erase_if(distinctive, [](const auto& choice) { return kNotOfTheScene.contains(choice.first); });
   const auto parameters = of_scene ? configured.SceneParameters() : configured.AllParameters();

@@ -134,7 +134,12 @@ Settings WrittenData(const Study& study) {
 
 std::vector<std::string> DataKeys(const Study& study) {
   std::vector<std::string> keys;
-  for (const auto& [key, value] : ResolveSettings(ChooseFirstSettings(study))) keys.push_back(key);
+  const Settings settings = ResolveSettings(ChooseFirstSettings(study));
+  for (const auto& [key, value] : settings) keys.push_back(key);
+  const bool is_of_match_files =
+      std::ranges::count(settings, Settings::value_type("scene", kMatchFilesScene)) > 0;
+  if (is_of_match_files && std::ranges::count(keys, kTruthInDoubtKey) == 0)
+    keys.emplace_back(kTruthInDoubtKey);
   return keys;
 }
 

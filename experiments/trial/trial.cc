@@ -40,7 +40,7 @@ void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord
   if (!truth.is_direction_known) return;
   if (HasMotion(estimate.status))
     record->direction_error_deg = kDegPerRad * AngleBetween(estimate.cam2_from_cam1.t, pose_true.t);
-  if (WasSimulated(*record) && !HasRefused(*record)) record->nees = ComputeNees(estimate, truth);
+  if (IsCounted(*record) && !HasRefused(*record)) record->nees = ComputeNees(estimate, truth);
 }
 
 void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {

@@ -82,6 +82,18 @@ TEST_F(StudyWithDoubts, TheirNumberIsSaidAndCounts) {
   EXPECT_EQ(DescribeTruthQuality(without).find("doubt"), std::string::npos);
 }
 
+TEST_F(StudyWithDoubts, TheListMayBeGivenByTheCommand) {
+  const std::string list = other_.Write("doubts.csv", "scene,pair_id\na,a_001\n");
+  Study study =
+      ParseStudy("data: {scene: match_files, folder: nowhere}\nestimators: [{name: standard}]\n", "t");
+  Override(&study, "folder", pairs_.path());
+  Override(&study, "truth_in_doubt", list);
+  EXPECT_TRUE(MakePlan(study).conditions[0].source->Make({1, 0, 1, 0}).truth.is_in_doubt);
+  Study simulated = ParseStudy("data: {scene: plane}\nestimators: [{name: standard}]\n", "t");
+  EXPECT_TRUE(ThrowsInputError([&] { Override(&simulated, "truth_in_doubt", list); },
+                               {"truth_in_doubt", "needs scene: match_files"}));
+}
+
 TEST_F(StudyWithDoubts, AListOfOtherPairsIsRefused) {
   EXPECT_TRUE(ThrowsInputError([&] { Plan("scene,pair_id\nb,a_001\n"); }, {"doubts.csv", "1 pairs", "none"}));
 }
