@@ -47,6 +47,7 @@ SHORTER = [
     (r"^rcme tune (\S+)", r"rcme tune \1 --set scene=room"),
     (r"\bSTUDY\b", "studies/failure_vs_outliers.yaml"),
     (r"\bPAIRS\b", "pairs"),
+    (r"\bpairs/sift pairs/orb\b", "pairs"),
     (r"^rcme run (?!.*--(until|trials) )(?!first.yaml|locked.yaml|regression_gate)(.*)$", r"rcme run \2 --trials 2"),
     (r"regression_gate --trials 250", "regression_gate --trials 40"),
     (r"^rcme gate before.sqlite .* --out", "rcme gate before.sqlite --of failure --margin failure=0.1 --out"),
