@@ -167,7 +167,7 @@ TEST(MutatedInput, MatchFiles) {
   const auto read = [&](const std::string& input) { ReadMatchFile(folder.Write("m.csv", input)); };
   // As many as this corpus and seed give: few, since most damage makes a K that cannot be that of the images.
   const Outcomes plain = ReadDamaged(corpus, words, 5000, read);
-  EXPECT_GE(plain.num_read, 91);
+  EXPECT_GE(plain.num_read, 74);
   EXPECT_GT(plain.num_refused, 1000);
   const auto read_packed = [&](const std::string& input) { read(Gzip(input)); };
   EXPECT_GE(ReadDamaged(corpus, words, 1000, read_packed).num_read, 18);

@@ -69,6 +69,12 @@ double ComputePrediction(const std::vector<ComparedPair>& pairs, size_t quantity
   return all.empty() ? kNaN : ComputeMean(all);
 }
 
+double CountTwinEvents(const std::vector<ComparedPair>& pairs, size_t quantity) {
+  size_t count = 0;
+  for (const ComparedPair& pair : pairs) count += pair.twins[quantity].size();
+  return static_cast<double>(count);
+}
+
 std::optional<TwinComparison> Compared(const std::vector<ComparedPair>& pairs, size_t quantity,
                                        const std::string& twin, double confidence) {
   const QuantityText& text = kQuantityTexts[quantity];
@@ -87,6 +93,7 @@ std::optional<TwinComparison> Compared(const std::vector<ComparedPair>& pairs, s
     compared.n = rate.n;
     compared.observed = rate.rate;
     compared.joint = rate.interval;
+    compared.half_event = 0.5 / CountTwinEvents(pairs, quantity);
     return compared;
   }
   const SharedMemberMean mean = MeasureSharedMemberMean(

@@ -1,6 +1,7 @@
 // What an estimator does on real pairs beside what it does on their simulated twins.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,11 @@ struct TwinComparison {
   // 0.95 where simulation is right. Pairs with a common image are not independent (stats/shared_members.h);
   // means of a semi-real twin are compared pair by pair.
   Interval joint;
-  bool IsWithin() const { return joint.Contains(predicted); }
+  // Of a rate, half of one of the twins' events: so well a rate of 0 or 1 of theirs is known.
+  double half_event = 0.0;
+  bool IsWithin() const {
+    return joint.Contains(is_rate ? std::clamp(predicted, half_event, 1.0 - half_event) : predicted);
+  }
 };
 
 struct TwinReport {
