@@ -145,7 +145,7 @@ TEST(SettingCounts, AreThoseOfAnEstimatorInOnePiece) {
 // Of rcme_calibrated: the limit is decided from one call, whatever its levels are.
 TEST(SettingCounts, LevelsOfTheProbabilityLimitShareOneCall) {
   const StudyPlan plan =
-      TunedPlan("  options: {max_failure_probability: [0.01, 0.05, 0.2, 1], max_samples: [70, 100]}\n",
+      TunedPlan("  options: {max_failure_probability: [0.0001, 0.05, 0.2, 1], max_samples: [70, 100]}\n",
                 "rcme_calibrated", "  - {name: rcme_calibrated, options: {max_samples: 100}}\n");
   const SettingPlan settings = MakeTunedSettings(plan);
   EXPECT_EQ(settings.groups.size(), 2u) << "one for each number of samples";
