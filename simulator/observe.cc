@@ -44,6 +44,8 @@ Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierMo
 
   Observation observation{std::vector<Correspondence>(n), {}, std::vector<bool>(n),
                           std::vector<bool>(n),           {}, drawn.weight};
+  observation.point.reserve(n);
+  observation.noise_scale.reserve(noise_scale.size());
   for (size_t k = 0; k < n; ++k) {
     observation.matches[k] = matches[order[k]];
     observation.is_inlier_true[k] = is_inlier[order[k]];

@@ -64,8 +64,10 @@ auto Simulate(const Make& make) {
   }
 }
 
+// Those of `all`; `which` is in order.
 template <typename T>
-std::vector<T> Select(const std::vector<T>& all, const std::vector<size_t>& which) {
+std::vector<T> Select(std::vector<T> all, const std::vector<size_t>& which) {
+  if (which.size() == all.size()) return all;
   std::vector<T> selected;
   selected.reserve(which.size());
   for (const size_t i : which) selected.push_back(all[i]);
@@ -190,11 +192,11 @@ TrialData SimulatedData::Give(const Scene& scene, Observation observation, Rando
       UndistortProblem(AssumedLens(scene.camera1), AssumedLens(scene.camera2), std::move(as_taken));
   data.problem = std::move(undistorted.problem);
   data.truth = {scene.cam2_from_cam1_true, scene.IsDirectionDefined(),
-                Select(observation.is_inlier_true, undistorted.kept),
-                Select(observation.is_undetectable, undistorted.kept)};
+                Select(std::move(observation.is_inlier_true), undistorted.kept),
+                Select(std::move(observation.is_undetectable), undistorted.kept)};
   data.origin = "simulated";
   data.weight = observation.weight;
-  data.scene_point = Select(observation.point, undistorted.kept);
+  data.scene_point = Select(std::move(observation.point), undistorted.kept);
   return data;
 }
 
