@@ -7,6 +7,7 @@
 
 namespace rcme {
 
-void AddFrontEndOptions(CLI::App* command, DetectorOptions* detector, MatcherOptions* matcher);
+void AddFrontEndOptions(CLI::App* command, DetectorOptions* detector, MatcherOptions* matcher,
+                        bool* has_scores);
 
 }  // namespace rcme

@@ -2,11 +2,11 @@
 
 #include <memory>
 
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/front_end_options.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/text/message.h"
 #include "experiments/data/match_file.h"
 #include "experiments/real/images/match_images.h"
 
@@ -38,7 +38,7 @@ Examples:
   command->add_option("--K2", arguments->K2, "fx fy cx cy of the second camera; default: --K1")
       ->transform(NumberIn())
       ->expected(4);
-  AddFrontEndOptions(command, &arguments->detector, &arguments->matcher);
+  AddFrontEndOptions(command, &arguments->detector, &arguments->matcher, &arguments->has_scores);
   command->add_option("-o,--out", *out, "match file to write")->required();
   command->callback([arguments, out] {
     CheckIsNoInput(*out, {arguments->image1, arguments->image2});

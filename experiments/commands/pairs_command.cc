@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -69,6 +70,10 @@ void CheckApplies(const PairsArguments& arguments) {
   refuse("--max-frames", dataset.max_frames > 0, images);
   refuse("--every", arguments.pairs.every > 1, images);
   refuse("--neighbours", arguments.pairs.neighbours > 1, images);
+  refuse("--scores", arguments.pairs.has_scores, images);
+  refuse("--window", arguments.pairs.window > 0, images);
+  if (arguments.pairs.window > 0 && arguments.pairs.neighbours > 1)
+    throw InputError("--neighbours: does not apply with --window, which pairs all images near each other");
   refuse("--cache", !arguments.pairs.cache.empty(), images);
   refuse("--truth-sd", !arguments.truth_sd.empty(), {"kitti", "euroc", "tum", "colmap"});
 }
@@ -80,12 +85,24 @@ std::string DescribePairsIdentity(const PairsArguments& arguments) {
   return fmt::format(
       "{} {} | sequences {} | name {} | K {} | {} {} | model {} | frames {} | detector {} {} | ratio {} {} | "
       "gate {} {} "
-      "{} {} | every {} | neighbours {} | truth_sd {}",
+      "{} {} | every {} | neighbours {} | truth_sd {}{}{}",
       arguments.layout, std::filesystem::weakly_canonical(d.folder).string(), fmt::join(d.only, " "), d.name,
       fmt::join(d.K, " "), arguments.lens, fmt::join(d.distortion, " "), d.model, d.max_frames,
       static_cast<int>(p.detector.detector), p.detector.max_features, p.matcher.max_ratio,
       p.matcher.is_mutual, arguments.gate, p.gate.least_matches, p.gate.least_parallax_deg, p.gate.sigma_px,
-      p.every, p.neighbours, fmt::join(arguments.truth_sd, " "));
+      p.every, p.neighbours, fmt::join(arguments.truth_sd, " "), p.has_scores ? " | scores" : "",
+      p.window > 0 ? fmt::format(" | window {}", p.window) : "");
+}
+
+// A study needs true motions; without any, motions are estimated and covariances checked.
+std::string NameNextCommand(const std::vector<PairRow>& rows, const std::string& out) {
+  const auto is_kept = [](const PairRow& row) { return row.reason == kKeptPair; };
+  const bool has_truth = std::ranges::any_of(
+      rows, [&](const PairRow& row) { return is_kept(row) && !std::isnan(row.rotation_deg); });
+  if (has_truth) return fmt::format("rcme run studies/real_pairs.yaml --set folder={} --out run.sqlite", out);
+  const auto first = std::ranges::find_if(rows, is_kept);
+  return fmt::format("rcme estimate {} (one motion), or rcme validate {} (are the covariances right?)",
+                     (std::filesystem::path(out) / (first->pair_id + ".csv")).string(), out);
 }
 
 void RunPairs(PairsArguments arguments) {
@@ -128,11 +145,7 @@ void RunPairs(PairsArguments arguments) {
   if (!is_any_kept)
     throw InputError(fmt::format("{} ({}/INDEX.csv lists them; --gate off keeps all pairs)",
                                  DescribeWhyNone(journal.rows(), journal.damaged()), out));
-  PrintMessage(
-      "match files and INDEX.csv -> {}; next: rcme run studies/real_pairs.yaml --set folder={} "
-      "--out "
-      "run.sqlite\n",
-      out, out);
+  PrintMessage("match files and INDEX.csv -> {}; next: {}\n", out, NameNextCommand(journal.rows(), out));
 }
 
 void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
@@ -204,6 +217,11 @@ void AddGateOptions(CLI::App* command, PairsArguments* arguments) {
                    "pair each key frame with this many before it; 2 gives `rcme validate` triples")
       ->transform(WholeNumberIn(1, 100))
       ->capture_default_str();
+  command
+      ->add_option("--window", arguments->pairs.window,
+                   "pair every image, key frame or not, with each of so many before it; 0: off")
+      ->transform(WholeNumberIn(0, 100))
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -251,7 +269,8 @@ Examples:
   rcme pairs project/database.db --layout colmap --gate off --out colmap_pairs)");
   auto arguments = std::make_shared<PairsArguments>();
   AddDatasetOptions(command, arguments.get());
-  AddFrontEndOptions(command, &arguments->pairs.detector, &arguments->pairs.matcher);
+  AddFrontEndOptions(command, &arguments->pairs.detector, &arguments->pairs.matcher,
+                     &arguments->pairs.has_scores);
   command->add_option("--cache", arguments->pairs.cache,
                       "folder for features, which are found again by the content of the image");
   AddGateOptions(command, arguments.get());

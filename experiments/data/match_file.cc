@@ -27,10 +27,10 @@ namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::array<std::string_view, 4> kColumns = {"x1", "y1", "x2", "y2"};
-constexpr std::string_view kSigmaColumn = "sigma_px";
+constexpr std::string_view kSigmaColumn = "sigma_px", kScoreColumn = "score";
 constexpr size_t kMaxColumns = 1000;
 constexpr size_t kMaxSceneBytes = 200;
-constexpr std::array<std::string_view, 22> kHeaderKeys = {"camera1",
+constexpr std::array<std::string_view, 23> kHeaderKeys = {"camera1",
                                                           "camera2",
                                                           "size1",
                                                           "size2",
@@ -51,7 +51,8 @@ constexpr std::array<std::string_view, 22> kHeaderKeys = {"camera1",
                                                           "gravity2",
                                                           "gravity_sd_deg",
                                                           "prior_direction",
-                                                          "prior_direction_sd_deg"};
+                                                          "prior_direction_sd_deg",
+                                                          "better_score"};
 
 std::string_view Trim(std::string_view text) {
   const size_t first = text.find_first_not_of(" \t\r");
@@ -343,6 +344,19 @@ class Rows {
   // "file:12" of a match.
   std::string Place(size_t match) const { return fmt::format("{}:{}", file_->path, line_numbers_.at(match)); }
 
+  // Of a file whose header says which scores are better; nothing without one such column.
+  std::optional<std::vector<double>> Scores() const {
+    if (num_score_columns_ != 1) return std::nullopt;
+    std::vector<double> scores(scores_.size());
+    for (size_t i = 0; i < scores.size(); ++i) {
+      if (!ParseReal(scores_[i], &scores[i])) {
+        throw InputError(
+            fmt::format("{}: {}: {} is not a finite number", Place(i), kScoreColumn, Quoted(scores_[i])));
+      }
+    }
+    return scores;
+  }
+
   void Add(std::string_view line, const GzipLines& lines) {
     const std::vector<std::string> fields =
         line.find(',') == std::string_view::npos ? SplitAtBlanks(line) : SplitAtCommas(line);
@@ -356,6 +370,7 @@ class Rows {
       file_->matches.push_back(MatchFrom(fields, lines));
       line_numbers_.push_back(lines.line_number());
       if (sigma_column_ > 0) file_->sigma_px.push_back(SigmaFrom(fields, lines));
+      if (score_column_ > 0) scores_.push_back(score_column_ < fields.size() ? fields[score_column_] : "");
     }
   }
 
@@ -368,9 +383,15 @@ class Rows {
     }
     if (std::ranges::count(fields, kSigmaColumn) > 1)
       lines.Fail(fmt::format("column {} stands twice", kSigmaColumn));
-    const auto found = std::ranges::find(fields, kSigmaColumn);
-    sigma_column_ = 0;
-    if (found != fields.end()) sigma_column_ = static_cast<size_t>(found - fields.begin());
+    sigma_column_ = FindColumn(fields, kSigmaColumn);
+    score_column_ = FindColumn(fields, kScoreColumn);
+    num_score_columns_ = std::ranges::count(fields, kScoreColumn);
+  }
+
+  // 0, where x1 is: there is none.
+  static size_t FindColumn(const std::vector<std::string>& fields, std::string_view name) {
+    const auto found = std::ranges::find(fields, name);
+    return found == fields.end() ? 0 : static_cast<size_t>(found - fields.begin());
   }
 
   double SigmaFrom(const std::vector<std::string>& fields, const GzipLines& lines) const {
@@ -384,9 +405,23 @@ class Rows {
   }
 
   MatchFile* file_;
-  std::vector<int> line_numbers_;  // of the matches
-  size_t sigma_column_ = 0;        // 0, where x1 is: none
+  std::vector<int> line_numbers_;    // of the matches
+  std::vector<std::string> scores_;  // of the matches, as text: a number where the header names it a score
+  size_t sigma_column_ = 0, score_column_ = 0;  // 0, where x1 is: none
+  std::ptrdiff_t num_score_columns_ = 0;
 };
+
+void ReadScores(const Header& header, const Rows& rows, MatchFile* file) {
+  const std::string key = "better_score";
+  if (!header.Has(key)) return;
+  const std::string word = header.Text(key);
+  if (word != "lower" && word != "higher")
+    header.Fail(key, fmt::format("{} is not allowed; lower or higher is", Quoted(word)));
+  std::optional<std::vector<double>> scores = rows.Scores();
+  if (!scores) header.Fail(key, fmt::format("needs one column named {}", kScoreColumn));
+  file->better_score = word == "lower" ? BetterScore::kLower : BetterScore::kHigher;
+  file->scores = std::move(*scores);
+}
 
 // Throws InputError that names the row of a match that has no rays.
 void UndistortMatches(const Lens& lens1, const Lens& lens2, const Rows& rows, MatchFile* file) {
@@ -438,6 +473,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.noise_level = NoiseLevelFrom(header);
   file.seconds_between = SecondsBetweenFrom(header);
   file.prior = PriorFrom(header);
+  ReadScores(header, rows, &file);
   file.scene = SceneFrom(header);
   if (header.Has("image1")) file.image1 = header.Text("image1");
   if (header.Has("image2")) file.image2 = header.Text("image2");
@@ -515,13 +551,18 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
   if (file.noise_level != 1.0) text += fmt::format("# noise_level: {}\n", file.noise_level);
   if (file.seconds_between > 0.0) text += fmt::format("# seconds_between: {}\n", file.seconds_between);
   if (file.prior) text += PriorText(*file.prior);
-  const bool has_sigma = !file.sigma_px.empty();
+  if (file.better_score)
+    text +=
+        fmt::format("# better_score: {}\n", *file.better_score == BetterScore::kLower ? "lower" : "higher");
+  const bool has_sigma = !file.sigma_px.empty(), has_scores = file.better_score.has_value();
   text +=
-      fmt::format("{}{}{}\n", fmt::join(kColumns, ","), has_sigma ? "," : "", has_sigma ? kSigmaColumn : "");
+      fmt::format("{}{}{}", fmt::join(kColumns, ","), has_sigma ? "," : "", has_sigma ? kSigmaColumn : "");
+  text += has_scores ? fmt::format(",{}\n", kScoreColumn) : "\n";
   for (size_t i = 0; i < file.matches.size(); ++i) {
     const Correspondence& m = file.matches[i];
     text += fmt::format("{},{},{},{}", m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y());
     if (has_sigma) text += fmt::format(",{}", file.sigma_px.at(i));
+    if (has_scores) text += fmt::format(",{}", file.scores.at(i));
     text += '\n';
   }
   WriteFileWhole(path, text);

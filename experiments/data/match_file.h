@@ -42,13 +42,17 @@ namespace rcme {
 //   # gravity_sd_deg: 1                      of each of them
 //   # prior_direction: 0.1 0 0.99            of t, of any length
 //   # prior_direction_sd_deg: 5
+//   # better_score: lower                    or higher: of the column score
 //   # key: value                             any further one is skipped
 //   x1,y1,x2,y2[,...]                        column names, optional, before the first match
 //   14.499,496.324,192.576,795.354[,...]     px; pixel (0, 0) is the centre of the top-left pixel
 //
 // A further column named sigma_px is each match's own standard deviation per coordinate (features.h says
 // what those of our front end are). An estimator is given how these compare with each other, not how large
-// they are (MakeMotionProblem). Other columns are skipped.
+// they are (MakeMotionProblem). A column named score says how good each match is, any finite number, where
+// the header says which are better: a ratio of distances is better where it is lower, a confidence where it
+// is higher. Without that key the column is skipped, as other columns are.
+enum class BetterScore { kLower, kHigher };
 struct MatchFile {
   std::string path;
   std::string scene = "unnamed";
@@ -66,6 +70,8 @@ struct MatchFile {
   double seconds_between = std::numeric_limits<double>::quiet_NaN();  // NaN: the file does not say
   std::vector<CameraDoubt> doubts = {};                               // about K, as the reader found them
   std::optional<MotionPrior> prior = {};
+  std::optional<BetterScore> better_score = {};  // nothing: the file has no scores
+  std::vector<double> scores = {};               // per match, as they are in the file
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
@@ -76,7 +82,8 @@ using GivenCameras = std::optional<std::array<Lens, 2>>;
 // Reads line by line; memory is that of the matches. Throws InputError that names the file, the line, what is
 // wrong and what is allowed: missing or truncated file, missing key, a K that is not invertible or cannot be
 // that of the image (camera_plausibility.h), an invalid rotation, columns in another order, a coordinate that
-// is not finite, a sigma_px that is not positive, more than kMaxMatchesPerFile matches, 1,000 columns or what
+// is not finite, a sigma_px that is not positive, a score that is not finite, better_score without such a
+// column, more than kMaxMatchesPerFile matches, 1,000 columns or what
 // GzipLines allows. Columns are separated by commas or, in a line without one, by blanks.
 //
 // Matches of images that a lens distorts are undistorted: the file has those of the pinhole cameras with the

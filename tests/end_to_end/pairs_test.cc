@@ -74,6 +74,35 @@ TEST(PairsProgram, EndsWithTwoAndTheReasonsWhereNoPairIsKept) {
                                    "000000.png: the image is damaged: it ends early"}));
 }
 
+// Every image with each of the two before it, which makes loops; scores are written, and what is recommended
+// is for pairs without truth.
+TEST(PairsProgram, PairsAllImagesOfAWindowAndRecommendsWhatNeedsNoTruth) {
+  const TempFolder folder;
+  const std::string images = folder.Path("images"), out = folder.Path("out");
+  WriteImageFolder(images, 4, RenderedCamera());
+  const std::vector<std::string> command = {"pairs", images,     "--layout", "images", "--gate", "off",
+                                            "--K",   "260",      "262",      "158.3",  "121.6",  "--window",
+                                            "2",     "--scores", "--ratio",  "1",      "--out",  out};
+  const ProgramResult made = RunRcme(command);
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  for (const char* pair :
+       {"000000_000001", "000000_000002", "000001_000002", "000001_000003", "000002_000003"})
+    EXPECT_TRUE(fs::exists(out + "/images_" + pair + ".csv")) << pair;
+  EXPECT_FALSE(fs::exists(out + "/images_000000_000003.csv"));
+  const std::string pair = out + "/images_000000_000001.csv";
+  EXPECT_NE(made.err.find("next: rcme estimate " + pair + " (one motion), or rcme validate " + out),
+            std::string::npos)
+      << made.err;
+  EXPECT_EQ(made.err.find("rcme run"), std::string::npos) << made.err;
+  EXPECT_NE(ReadBytes(pair).find("# better_score: lower\nx1,y1,x2,y2,sigma_px,score\n"), std::string::npos);
+  EXPECT_EQ(RunRcme({"estimate", pair}).exit_code, 0);
+  const ProgramResult again = RunRcme(command);
+  EXPECT_NE(again.err.find("continues after 5 pairs"), std::string::npos) << again.err;
+  std::vector<std::string> both = command;
+  both.insert(both.end(), {"--neighbours", "2"});
+  EXPECT_TRUE(IsRefused(RunRcme(both), {"--neighbours: does not apply with --window"}));
+}
+
 // Half of K: a warning that says so, once for all pairs.
 TEST(PairsProgram, WarnsWhereKIsNotOfTheImages) {
   const TempFolder folder;

@@ -46,6 +46,11 @@ cv::Mat MakeDescriptorMatrix(const Features& features) {
                             : cv::Mat(num_rows, num_bytes / static_cast<int>(sizeof(float)), CV_32FC1, bytes);
 }
 
+// Of the nearest two. Two descriptors that are the same as the first's say nothing of which is right: 1.
+float RatioOfDistances(const std::vector<cv::DMatch>& two) {
+  return two[1].distance > 0.0f ? two[0].distance / two[1].distance : 1.0f;
+}
+
 // Of each key point of image 1 the nearest of image 2, where it passes the ratio test.
 std::vector<FeatureMatch> MatchNearest(const cv::Mat& rows1, const cv::Mat& rows2, bool is_binary,
                                        double max_ratio) {
@@ -53,9 +58,9 @@ std::vector<FeatureMatch> MatchNearest(const cv::Mat& rows1, const cv::Mat& rows
   cv::BFMatcher(is_binary ? cv::NORM_HAMMING : cv::NORM_L2).knnMatch(rows1, rows2, nearest, 2);
   std::vector<FeatureMatch> matches;
   for (const std::vector<cv::DMatch>& two : nearest) {
-    if (two.size() < 2 || two[0].distance >= max_ratio * two[1].distance) continue;
-    matches.push_back(
-        {static_cast<std::uint32_t>(two[0].queryIdx), static_cast<std::uint32_t>(two[0].trainIdx)});
+    if (two.size() < 2 || (max_ratio < 1.0 && two[0].distance >= max_ratio * two[1].distance)) continue;
+    matches.push_back({static_cast<std::uint32_t>(two[0].queryIdx),
+                       static_cast<std::uint32_t>(two[0].trainIdx), RatioOfDistances(two)});
   }
   return matches;
 }

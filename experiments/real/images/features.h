@@ -7,9 +7,9 @@
 //
 // the noise level assumed everywhere at the finest scale, more beyond. Only its growth is meant: the level is
 // to be estimated. On rendered images residuals grow with the power 0.8 to 0.9 of the size (SIFT), 1 (ORB)
-// and 1.3 to 1.9 (AKAZE; tests/experiments/real/images/features_test.cc holds them within bounds), on real pairs 4
-// to 9 times over the sizes, less than proportionally. A power too great costs more than one too small, as it
-// gives all the weight to few matches (results/stated_noise): hence 0.7.
+// and 1.3 to 1.9 (AKAZE; tests/experiments/real/images/features_test.cc holds them within bounds), on real
+// pairs 4 to 9 times over the sizes, less than proportionally. A power too great costs more than one too
+// small, as it gives all the weight to few matches (results/stated_noise): hence 0.7.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,7 @@ size_t CountDescriptorBytes(Detector detector);
 Features DetectFeatures(const GreyImage& image, const DetectorOptions& options);
 
 struct MatcherOptions {
-  double max_ratio = 0.8;  // Lowe's: nearest / second nearest
+  double max_ratio = 0.8;  // Lowe's: nearest / second nearest; 1: no such test
   bool is_mutual = true;   // each is the other's nearest
 };
 
@@ -59,6 +59,7 @@ struct MatcherOptions {
 // is mutual; else one of image 2 may be in several.
 struct FeatureMatch {
   std::uint32_t at1 = 0, at2 = 0;
+  float ratio = 0.0f;  // of the distances to the nearest and the second nearest, in [0, 1]: less is better
   friend bool operator==(const FeatureMatch&, const FeatureMatch&) = default;
 };
 std::vector<FeatureMatch> MatchFeatures(const Features& features1, const Features& features2,

@@ -28,9 +28,11 @@ MatchFile MatchImages(const MatchImagesOptions& options) {
     const KeyPoint& p1 = image1.features.key_points[match.at1];
     const KeyPoint& p2 = image2.features.key_points[match.at2];
     file.matches.push_back({{p1.x_px, p1.y_px}, {p2.x_px, p2.y_px}});
+    if (options.has_scores) file.scores.push_back(match.ratio);
     file.sigma_px.push_back(
         SigmaOfMatch(options.detector.detector, p1, p2, image1.features.scale, image2.features.scale));
   }
+  if (options.has_scores) file.better_score = BetterScore::kLower;
   file.doubts = FindPairDoubts(file.camera1, file.camera2, file.matches,
                                {"--K1", options.K2.empty() ? "--K1" : "--K2"});
   return file;

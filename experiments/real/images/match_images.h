@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "experiments/real/images/features.h"
 #include "experiments/data/match_file.h"
+#include "experiments/real/images/features.h"
 
 namespace rcme {
 
@@ -13,6 +13,7 @@ struct MatchImagesOptions {
   std::vector<double> K1, K2;  // fx fy cx cy, px; K2 empty: as K1
   DetectorOptions detector;
   MatcherOptions matcher;
+  bool has_scores = false;  // the file gets them: each match's ratio of distances
 };
 
 // Putative matches of two images (PNG, JPEG, TIFF, BMP, PNM; grey_image.h), outliers kept, each

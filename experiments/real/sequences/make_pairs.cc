@@ -81,7 +81,7 @@ class SequencePairs {
     for (size_t i = 0; i < sequence_.frames.size(); i += static_cast<size_t>(options_.every)) {
       StopIfRequested(*journal_);
       LoadedFrame frame{i, &sequence_.frames[i], nullptr, {}};
-      Meet(&frame);
+      options_.window > 0 ? MeetAll(&frame) : Meet(&frame);
       progress->Advance(1);
     }
   }
@@ -103,6 +103,17 @@ class SequencePairs {
       waiting_.push_back(*frame);
       if (waiting_.size() > static_cast<size_t>(options_.neighbours)) waiting_.pop_front();
     }
+  }
+
+  // The next image and those of the window before it, the latest last.
+  void MeetAll(LoadedFrame* frame) {
+    if (journal_->FindDamaged(sequence_.name, frame->frame->name)) return;
+    if (waiting_.empty() && !Load(frame)) return;
+    for (LoadedFrame& before : waiting_) {
+      if (!Pair(&before, frame)) return;  // damaged
+    }
+    waiting_.push_back(*frame);
+    if (waiting_.size() > static_cast<size_t>(options_.window)) waiting_.pop_front();
   }
 
   // What became of the two; null where the second is damaged. The first was read before.
@@ -135,11 +146,13 @@ class SequencePairs {
     file.camera1 = file.camera2 = sequence_.lens.camera;
     file.image1 = frame1.frame->name;
     file.image2 = frame2.frame->name;
+    if (options_.has_scores) file.better_score = BetterScore::kLower;
     const Features &features1 = frame1.image->features, &features2 = frame2.image->features;
     for (const FeatureMatch& match : MatchFeatures(features1, features2, options_.matcher)) {
       const auto &x1 = frame1.x_px[match.at1], &x2 = frame2.x_px[match.at2];
       if (!x1 || !x2) continue;
       file.matches.push_back({Rounded(*x1), Rounded(*x2)});
+      if (options_.has_scores) file.scores.push_back(std::round(1e4 * match.ratio) / 1e4);
       const double sigma_px = SigmaOfMatch(options_.detector.detector, features1.key_points[match.at1],
                                            features2.key_points[match.at2], features1.scale, features2.scale);
       file.sigma_px.push_back(std::round(1e4 * sigma_px) / 1e4);

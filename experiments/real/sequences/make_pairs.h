@@ -20,14 +20,18 @@ struct PairsOptions {
   DetectorOptions detector;
   MatcherOptions matcher;
   KeyFrameGate gate;
-  int every = 1;       // of the images every n-th
-  int neighbours = 1;  // pairs of a key frame with that many before it
+  bool has_scores = false;  // match files get the ratio of distances of each match
+  int every = 1;            // of the images every n-th
+  int neighbours = 1;       // pairs of a key frame with that many before it
+  int window = 0;           // pairs of every image with that many before it; 0: of key frames
   std::optional<PoseSd> truth_sd;
 };
 
 // The pairs of image sequences. As in ORB-SLAM2 an image waits as the first of a pair until a later one makes
 // a pair with it that the gate keeps; that one then waits in its place. An image that too few matches join to
 // the one that waits takes its place too. Without a criterion every image makes a pair with the one before.
+// With a window every image makes a pair with each of the last `window` images that can be read, and the gate
+// judges each pair by itself.
 // Throws InputError, and Stopped when that is requested.
 void MakePairsOfImages(const std::vector<Sequence>& sequences, const PairsOptions& options,
                        PairJournal* journal);

@@ -128,6 +128,36 @@ TEST_F(MatchFileTest, WithoutColumnNamesSceneOrTruePose) {
   EXPECT_EQ(file.matches.size(), 1u);
 }
 
+TEST_F(MatchFileTest, AColumnMayGiveScoresWhereTheHeaderSaysWhichAreBetter) {
+  const std::string rows = "x1,y1,x2,y2,score\n1,2,3,4,0.5\n5,6,7,8,-1.25,9\n";
+  EXPECT_FALSE(Read(MatchHeader() + rows).better_score.has_value());
+  EXPECT_TRUE(Read(MatchHeader() + "x1,y1,x2,y2,score\n1,2,3,4,none\n").scores.empty());  // no score, no key
+  for (const auto& [word, better] :
+       {std::pair{"lower", BetterScore::kLower}, {"higher", BetterScore::kHigher}}) {
+    const std::string header = MatchHeader() + "# better_score: " + word + "\n";
+    const MatchFile file = Read(header + rows);
+    EXPECT_EQ(file.better_score, better);
+    EXPECT_EQ(file.scores, (std::vector<double>{0.5, -1.25}));
+    const std::string copy = folder_.Path("copy.csv");
+    WriteMatchFile(file, copy);
+    EXPECT_EQ(ReadMatchFile(copy).better_score, better);
+    EXPECT_EQ(ReadMatchFile(copy).scores, file.scores);
+    for (const char* wrong : {"nan", "inf", "", "high", "1.25 px"}) {
+      std::string row = "5,6,7,8,";
+      EXPECT_TRUE(Refuses(header + "x1,y1,x2,y2,score\n" + row.append(wrong) + "\n",
+                          {":7: score: '", "is not a finite number"}))
+          << wrong;
+    }
+    EXPECT_TRUE(Refuses(header + "x1,y1,x2,y2,score\n1,2,3,4\n", {":7: score: ''"}));
+    for (const char* names : {"x1,y1,x2,y2,ratio", "x1,y1,x2,y2,score,score"})
+      EXPECT_TRUE(
+          Refuses(header + names + "\n1,2,3,4,5,6\n", {":5: better_score: needs one column named score"}))
+          << names;
+  }
+  EXPECT_TRUE(Refuses(MatchHeader() + "# better_score: best\n" + rows,
+                      {":5: better_score: 'best' is not allowed; lower or higher is"}));
+}
+
 TEST_F(MatchFileTest, AColumnMayGiveEachMatchItsOwnSigma) {
   EXPECT_TRUE(Read(FullText()).sigma_px.empty());
   const std::string text =

@@ -68,6 +68,30 @@ TEST(FrontEnd, MostMatchesOfEveryDetectorLieOnTheTrueEpipolarLines) {
   }
 }
 
+// With a ratio of 1 every match that is mutual stays, ties too; of those below 0.8 that are right a greater
+// share has a low ratio: the ratio says how good a match is.
+TEST(FrontEnd, WithoutTheRatioTestTheRatioIsAScore) {
+  for (const auto& [name, detector] : DetectorNames()) {
+    const Features f1 = DetectFeatures(Rendered(4), {detector}), f2 = DetectFeatures(Rendered(6), {detector});
+    const std::vector<FeatureMatch> matches = MatchFeatures(f1, f2, {.max_ratio = 1.0});
+    std::vector<FeatureMatch> below;
+    for (const FeatureMatch& match : matches) {
+      EXPECT_TRUE(match.ratio >= 0.0f && match.ratio <= 1.0f) << name << ": " << match.ratio;
+      if (match.ratio < 0.8f) below.push_back(match);
+    }
+    EXPECT_GT(matches.size(), MatchFeatures(f1, f2, {.max_ratio = 0.8}).size()) << name;
+    EXPECT_GT(below.size(), 100u) << name;
+    const std::vector<double> distances = DistancesFromEpipolarLines(f1, f2, 4, 6, matches);
+    double num_low = 0.0, num_low_near = 0.0, num_high = 0.0, num_high_near = 0.0;
+    for (size_t i = 0; i < matches.size(); ++i) {
+      const bool is_low = matches[i].ratio < 0.8f, is_near = std::abs(distances[i]) < 1.5;
+      (is_low ? num_low : num_high) += 1.0;
+      (is_low ? num_low_near : num_high_near) += is_near;
+    }
+    EXPECT_GT(num_low_near / num_low, num_high_near / num_high + 0.2) << name;
+  }
+}
+
 // A bright disc whose centre is known to a hundredth of a pixel, at many places within a pixel.
 TEST(FrontEnd, SiftPlacesADiscAtItsCentre) {
   double sum_x = 0.0, sum_y = 0.0;
