@@ -24,7 +24,8 @@ struct Visited {
   Vec spread;
 };
 
-// One block; returns its inliers and moves *spread behind what it wrote.
+// One block; returns its inliers and moves *spread behind their spreads. What follows them, up to a block, is
+// overwritten.
 template <bool has_spread, typename Visit>
 HWY_INLINE unsigned ScanBlock(const MatchBlock& block, int num_matches, const Visit& visit, double** spread) {
   unsigned bits = 0;
@@ -33,7 +34,9 @@ HWY_INLINE unsigned ScanBlock(const MatchBlock& block, int num_matches, const Vi
     const Mask is_inlier = num_matches < kBlockSize
                                ? hn::And(visited.is_inlier, AreMatches(lane, num_matches))
                                : visited.is_inlier;
-    if constexpr (has_spread) *spread += hn::CompressStore(visited.spread, is_inlier, Tag(), *spread);
+    if constexpr (has_spread) {
+      *spread += StoreSelected(visited.spread, is_inlier, *spread);
+    }
     bits |= ReadMaskBits(is_inlier) << lane;
   }
   return bits;
