@@ -202,6 +202,16 @@ def ratios(spec):
     return markdown(["ratio", *(f"{file['run']['processor']}, {file['run']['instruction_set']}" for file in files), "target set beforehand"], body)
 
 
+def against(spec):
+    """The time of each stage, call and workload over that of a former commit, and memory: the JSON of `scripts/benchmark --against`."""
+    content = json.loads((RESULTS / spec.argument).read_text())
+    units = {"time": "us", "memory": "MB"}
+    body = [[row["name"], f"{row['ratio']:.2f} [{row['lower']:.2f}, {row['upper']:.2f}]", *(f"{row[side]:.3g} {units[row['quantity']]}"
+                                                                                      for side in ("before", "now"))]
+            for row in sorted((row for row in content["rows"] if "ratio" in row), key=lambda row: -row["ratio"])]
+    return markdown(["stage or call", f"now / {content['against']}", content["against"], "now"], body)
+
+
 def transfer(spec):
     """What `rcme transfer` printed, without the list of families on which a setting is violated. Each block of its table
     begins with the families; a line without one goes on with the line before."""
@@ -300,6 +310,6 @@ def winners(spec):
 
 SPECIAL = {"made": made, "list": all_results, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
            "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
-           "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "transfer": transfer,
+           "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "against": against, "transfer": transfer,
            "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,
            "caught": caught, "validation_values": validation_values, "median_ratios": median_ratios, "twins": twins, "twin_values": twin_values}
