@@ -15,6 +15,7 @@ MARKS = {  # kind: how its scene points are drawn
 }
 TRUE_BASELINE = dict(color="0.7", linewidth=4, solid_capstyle="butt")
 MIDDLE = (2, 98)  # percentiles of the points that the view shows at least
+LONG_M = 2000  # a longer view has axes in km
 
 # A side to look from: coordinates to the right and up or down the panel, and the two rays of View.edges in its plane.
 FROM_ABOVE = ((0, 2), slice(0, 2))
@@ -73,7 +74,12 @@ def draw_scene(axes, trial, looks, limits):
         draw_camera(axes, view, FROM_ABOVE, 0.11 * (right - left))
     if trial.baseline_m:
         draw_directions(axes, trial, looks, FROM_ABOVE)
-    axes.set(xlim=(left, right), ylim=(near, far), xlabel="x (m)", ylabel="z (m)")
+    unit = "m"
+    if far - near > LONG_M:  # numbers of five digits would leave the figure
+        unit = "km"
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_formatter(lambda metres, _: f"{metres / 1000:g}".replace("-", "\N{MINUS SIGN}"))
+    axes.set(xlim=(left, right), ylim=(near, far), xlabel=f"x ({unit})", ylabel=f"z ({unit})")
     axes.set_title("The scene from above")
     axes.tick_params(labelsize=7)
 

@@ -154,7 +154,13 @@ class Scene(unittest.TestCase):
         panel = panels_of(drawn())["The scene from above"]
         self.assertEqual(marks_of(panel, "o"), {(-1, 4), (0, 5), (1, 6)})
         self.assertEqual(marks_of(panel, "x"), {(0.5, 4.5), (0, 1e5)})
-        self.assertEqual((panel.get_xlabel(), panel.get_ylabel()), ("x (m)", "z (m)"))
+
+    def test_a_long_view_is_in_kilometres(self):
+        for far_m, unit in ((1000, "m"), (4000, "km")):
+            points = [[-1, 0, 4], [0, 0, 5], [1, 1, 6], [0.5, 0, 4.5], [0.2, 0, far_m], [0, 0, far_m]]
+            panel = panels_of(drawn(points_in_cam1_m=points))["The scene from above"]
+            self.assertEqual((panel.get_xlabel(), panel.get_ylabel()), (f"x ({unit})", f"z ({unit})"))
+        self.assertEqual([panel.yaxis.get_major_formatter()(metres, 0) for metres in (-500, 3000)], ["\N{MINUS SIGN}0.5", "3"])
 
     def test_one_metre_is_as_long_ahead_as_sideways(self):
         for name in ("The scene from above", "The cameras from above", "The cameras from the right"):
