@@ -63,7 +63,7 @@ class Comparison(unittest.TestCase):
         self.assertEqual([refine[key] for key in ("ratio", "lower", "upper", "now", "before")], [1.5, 1.5, 1.5, 3.0, 2.0])
         self.assertEqual([row["name"] for row in rows if row["quantity"] == "only before"], ["old"])
         self.assertEqual([row["name"] for row in rows if row["quantity"] == "only now"], ["new", "rcme compare"])
-        self.assertEqual([row["name"] for row in rows if row["quantity"] == "memory"], ["rcme run of six estimators", "rcme summarize"])
+        self.assertEqual([row["name"] for row in rows if row["quantity"] == "memory"], ["rcme run of five estimators", "rcme summarize"])
         text = "\n".join(against.format_rows(rows, "abc"))
         self.assertIn("refine                                              1.500   [1.500, 1.500]            2          3", text)
         self.assertIn("only before: old", text)
