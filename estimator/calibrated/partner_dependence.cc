@@ -47,19 +47,17 @@ double TestOrder(const Cosines& c) {
   return variance > 0.0 ? sum / std::sqrt(variance) : 0.0;
 }
 
-// Among the partners, b of any match, that are greater than a_i, b_i has a uniform rank; equal ones share
-// theirs.
+// Among the partners, b of any match in ascending order, that are greater than a_i, b_i has a uniform rank;
+// equal ones share theirs.
 double TestRank(const Cosines& c, const std::vector<double>& partners) {
   double sum = 0.0, variance = 0.0;
   for (size_t i = 0; i < c.a.size(); ++i) {
     if (!(c.a[i] < c.b[i])) continue;
-    double num_greater = 0.0, rank = 0.0;
-    for (const double b : partners) {
-      if (!(c.a[i] < b)) continue;
-      num_greater += 1.0;
-      rank += 0.5 * (Sign(c.b[i] - b) + 1.0);
-    }
+    const auto greater = std::upper_bound(partners.begin(), partners.end(), c.a[i]);
+    const auto [equal, beyond] = std::equal_range(greater, partners.end(), c.b[i]);
+    const auto num_greater = static_cast<double>(partners.end() - greater);
     if (num_greater < 2.0) continue;
+    const double rank = static_cast<double>(equal - greater) + 0.5 * static_cast<double>(beyond - equal);
     sum += 0.5 - rank / num_greater;
     variance += (1.0 - 1.0 / (num_greater * num_greater)) / 12.0;
   }
@@ -74,6 +72,7 @@ PartnerDependence FindPartnerDependence(const MotionProblem& problem, const Rela
   std::vector<double> partners;
   for (size_t i = 0; i < std::min(problem.matches.size(), kMostPartners); ++i)
     partners.push_back(CosineInCamera2(problem, pose, i));
+  std::ranges::sort(partners);
   return {TestOrder(cosines), TestRank(cosines, partners)};
 }
 
