@@ -16,14 +16,14 @@ ViewPair RandomView(std::uint32_t trial) {
   return {TestCamera1(), TestCamera2(), RandomPose(rng, 40.0), 0.5};
 }
 
-RandomStream StreamOf(std::uint32_t trial) {
+RandomStream MakeStream(std::uint32_t trial) {
   return RandomStream({.seed = 1, .trial = trial, .purpose = 4112});
 }
 
 TEST(MotionSensors, MeasureNothingUnlessAskedFor) {
   const MotionSensors none;
   EXPECT_TRUE(none.IsNone());
-  RandomStream rng = StreamOf(0);
+  RandomStream rng = MakeStream(0);
   const MeasuredMotion measured = none.Measure(RandomView(0), rng);
   EXPECT_FALSE(measured.R || measured.gravity || measured.t);
 }
@@ -54,7 +54,7 @@ TEST(MotionSensors, NoiseHasTheStandardDeviationOnItsSide) {
   double of_rotation = 0.0, of_gravity1 = 0.0, of_gravity2 = 0.0, of_direction = 0.0;
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     const ViewPair view = RandomView(trial);
-    RandomStream rng = StreamOf(trial);
+    RandomStream rng = MakeStream(trial);
     const MeasuredMotion m = sensors.Measure(view, rng);
     const RelativePose& truth = view.cam2_from_cam1_true;
     const Eigen::Vector3d down = Eigen::Vector3d::UnitY();
@@ -78,7 +78,7 @@ TEST(MotionSensors, BiasTurnsByItsAngle) {
   sensors.rotation_sd_deg = sensors.gravity_sd_deg = sensors.direction_sd_deg = 1e-4;
   sensors.bias_deg = 5.0;
   const ViewPair view = RandomView(3);
-  RandomStream rng = StreamOf(3);
+  RandomStream rng = MakeStream(3);
   const MeasuredMotion m = sensors.Measure(view, rng);
   const RelativePose& truth = view.cam2_from_cam1_true;
   EXPECT_NEAR(RotationAngleBetween(*m.R, truth.R), 5.0 * kRadPerDeg, 1e-4);
@@ -92,7 +92,7 @@ TEST(MotionSensors, DrawTheSameNumbersWhateverIsMeasured) {
   MotionSensors one, all;
   one.direction_sd_deg = all.direction_sd_deg = 2.0;
   all.rotation_sd_deg = all.gravity_sd_deg = 1.0;
-  RandomStream first = StreamOf(5), second = StreamOf(5);
+  RandomStream first = MakeStream(5), second = MakeStream(5);
   EXPECT_EQ(*one.Measure(view, first).t, *all.Measure(view, second).t);
   EXPECT_EQ(first.Next32(), second.Next32());
 }
@@ -102,7 +102,7 @@ TEST(MotionSensors, APureRotationHasNoDirection) {
   view.baseline_m = 0.0;
   MotionSensors sensors;
   sensors.direction_sd_deg = 1.0;
-  RandomStream rng = StreamOf(6);
+  RandomStream rng = MakeStream(6);
   EXPECT_FALSE(sensors.Measure(view, rng).t);
 }
 

@@ -60,7 +60,7 @@ Table MakeEstimatorTable(const PaperTable& paper_table, size_t estimator) {
   return table;
 }
 
-Estimate EstimateOf(const SharedMemberRate& rate) {
+Estimate MakeEstimate(const SharedMemberRate& rate) {
   return {.value = rate.rate, .interval = rate.interval, .decimals = CountDecimals(rate.n)};
 }
 
@@ -76,8 +76,8 @@ Table MakeOutcomeTable(const PaperTable& paper_table, size_t bound) {
     for (size_t e = 0; e < paper_table.estimators.size(); ++e) {
       const BoundOutcomes& outcomes = row.cells[e].outcomes[bound];
       table.rows.push_back({(row.is_group ? "= " : "") + row.name, paper_table.estimators[e],
-                            outcomes.success.n, EstimateOf(outcomes.refusal), EstimateOf(outcomes.failure),
-                            EstimateOf(outcomes.success),
+                            outcomes.success.n, MakeEstimate(outcomes.refusal),
+                            MakeEstimate(outcomes.failure), MakeEstimate(outcomes.success),
                             Estimate{.value = outcomes.area.value,
                                      .interval = outcomes.area.interval,
                                      .decimals = CountDecimals(outcomes.area.n)},

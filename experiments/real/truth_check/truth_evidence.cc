@@ -35,7 +35,7 @@ MotionProblem OneOfEachKeyPoint(const MotionProblem& problem) {
   return SelectPart(problem, kept);
 }
 
-MixturePrior PriorOf(const MotionProblem& problem) {
+MixturePrior MakeMixturePrior(const MotionProblem& problem) {
   return {2.0 * problem.sigma_px / std::hypot(problem.camera2.width, problem.camera2.height), true};
 }
 
@@ -91,7 +91,7 @@ MixtureParameters FitCommonMixture(const MatchBlocks& matches, const MixturePrio
 std::vector<RelativePose> ListTruths(const MotionProblem& problem, const MatchBlocks& matches,
                                      const GivenTruth& truth, const FailureBounds& bounds,
                                      const RelativePose& motion, MixtureParameters* mixture, size_t* best) {
-  const MixturePrior prior = PriorOf(problem);
+  const MixturePrior prior = MakeMixturePrior(problem);
   std::vector<RelativePose> truths = {truth.cam2_from_cam1};
   *mixture = FitCommonMixture(matches, prior, {truths[0], motion});
   for (int round = 0; round < 2; ++round) {
