@@ -97,6 +97,18 @@ std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder,
   return weak;
 }
 
+// Throws InputError where two files, a.csv and a.csv.gz, are one pair.
+void CheckPairsStandOnce(const std::string& folder, const std::vector<fs::path>& paths) {
+  std::map<std::string, fs::path> files;
+  for (const fs::path& path : paths) {
+    const auto [known, is_new] = files.emplace(ExtractPairId(path), path);
+    if (is_new) continue;
+    throw InputError(fmt::format("folder: '{}' holds the pair {} twice, as {} and {}; keep one of them",
+                                 folder, known->first, known->second.filename().string(),
+                                 path.filename().string()));
+  }
+}
+
 std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   if (!fs::is_directory(folder)) {
     throw InputError(
@@ -121,6 +133,7 @@ std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   if (paths.empty())
     throw InputError(fmt::format("folder: '{}' holds no *.csv or *.csv.gz match files", folder));
   std::sort(paths.begin(), paths.end());
+  CheckPairsStandOnce(folder, paths);
   return paths;
 }
 

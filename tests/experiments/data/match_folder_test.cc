@@ -196,6 +196,15 @@ TEST_F(MatchFolderTest, Errors) {
   EXPECT_TRUE(ThrowsInputError([&] { load(folder_.path()); }, {"c_000.csv:5: y2", "'nan'"}));
 }
 
+TEST_F(MatchFolderTest, APairInTwoFilesIsRefused) {
+  folder_.Write("b_000.csv.gz", Gzip("# scene: b\n" + MatchHeader() + MatchRows(13, 3)));
+  EXPECT_TRUE(ThrowsInputError(
+      [&] {
+        LoadMatchFolder({folder_.path(), 0.5});
+      },
+      {"holds the pair b_000 twice, as b_000.csv and b_000.csv.gz; keep one of them"}));
+}
+
 TEST_F(MatchFolderTest, MoreTrialsThanCanBeCounted) {
   Study study = FolderStudy();
   study.trials = 2'000'000'000;
