@@ -7,7 +7,6 @@
 #include "estimator/problem_check.h"
 #include "estimator/undistortion.h"
 #include "experiments/data/likely_size.h"
-#include "experiments/data/match_folder.h"
 #include "experiments/real/sequences/layout_files.h"
 #include "experiments/real/sequences/listed_pairs.h"
 #include "experiments/real/sequences/npz_file.h"
@@ -129,7 +128,7 @@ class NpzPairs : public ListedPairs {
   }
 
   size_t size() const override { return paths_.size(); }
-  std::string PairId(size_t i) const override { return ExtractPairId(paths_.at(i)); }
+  std::string PairId(size_t i) const override { return paths_.at(i).stem().string(); }
   std::string Note() const override { return "no truth: .npz files of matches have none"; }
   ListedPair Read(size_t i) override {
     const NpzFile npz(paths_.at(i).string());
