@@ -95,6 +95,8 @@ void NpzFile::ReadDirectory() {
   size_t at = directory_;
   for (size_t i = 0; i < num_members; ++i) at = AddMember(at);
   if (at != end) Fail(std::string(kZipDamaged));
+  // A damaged name would hide an array that may be missing: each stands twice.
+  for (const auto& [name, member] : members_) PackedBytes(name, member);
 }
 
 size_t NpzFile::AddMember(size_t at) {

@@ -30,7 +30,8 @@ class NpzFile {
   static constexpr size_t kMaxArrays = 1000;
   static constexpr size_t kMaxDimensions = 8;
 
-  // Reads the bytes of the file and its list of arrays. Throws InputError that names the path.
+  // Reads the bytes of the file and its list of arrays, whose names are compared with those before them.
+  // Throws InputError that names the path.
   explicit NpzFile(const std::string& path);
 
   bool Has(const std::string& name) const { return members_.contains(name); }
