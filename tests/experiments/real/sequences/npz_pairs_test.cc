@@ -92,7 +92,7 @@ TEST(OpenNpzPairs, NeedsNoScoresAndKeepsThoseOfMatchesThatALensShows) {
                "p0[0] = 9e5\nsave('a', keypoints0=p0, keypoints1=p1, matches=m, match_confidence=c)\n");
   DatasetOptions options = OptionsOf(distorted.path());
   options.lens = LensModel::kRadtan;
-  options.distortion = {-0.2, 0.05, 0, 0};
+  options.distortion = {-0.2, 0, 0, 0};
   const MatchFile file = OpenNpzPairs(options)->Read(0).file;
   ASSERT_EQ(file.matches.size(), 1u);
   EXPECT_EQ(file.scores, std::vector<double>{0.75});
