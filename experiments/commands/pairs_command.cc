@@ -32,12 +32,13 @@ struct Layout {
   std::vector<Sequence> (*read)(const DatasetOptions&);
   std::unique_ptr<ListedPairs> (*open)(const DatasetOptions&);
 };
-constexpr std::array<Layout, 7> kLayouts = {{{"kitti", ReadKitti, nullptr},
+constexpr std::array<Layout, 8> kLayouts = {{{"kitti", ReadKitti, nullptr},
                                              {"euroc", ReadEuroc, nullptr},
                                              {"tum", ReadTum, nullptr},
                                              {"images", ReadImageFolder, nullptr},
                                              {"colmap", nullptr, OpenColmap},
                                              {"posebench", nullptr, OpenPosebench},
+                                             {"npz", nullptr, OpenNpzPairs},
                                              {"matches", nullptr, OpenMatchFiles}}};
 
 std::vector<std::string> LayoutNames() {
@@ -63,10 +64,10 @@ void CheckApplies(const PairsArguments& arguments) {
   const std::vector<std::string> sequences = {"kitti", "euroc", "tum"};
   const std::vector<std::string> images = {"kitti", "euroc", "tum", "images"};
   refuse("--sequence", !dataset.only.empty(), sequences);
-  refuse("--K", !dataset.K.empty(), {"tum", "images"});
-  refuse("--distortion", !dataset.distortion.empty(), {"tum", "images"});
+  refuse("--K", !dataset.K.empty(), {"tum", "images", "npz"});
+  refuse("--distortion", !dataset.distortion.empty(), {"tum", "images", "npz"});
   refuse("--model", !dataset.model.empty(), {"colmap"});
-  refuse("--name", !dataset.name.empty(), {"kitti", "euroc", "tum", "images", "colmap", "posebench"});
+  refuse("--name", !dataset.name.empty(), {"kitti", "euroc", "tum", "images", "colmap", "posebench", "npz"});
   refuse("--max-frames", dataset.max_frames > 0, images);
   refuse("--every", arguments.pairs.every > 1, images);
   refuse("--neighbours", arguments.pairs.neighbours > 1, images);
@@ -169,13 +170,13 @@ void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
                    "only the first images of each sequence; 0: all")
       ->transform(WholeNumberIn(0, 100'000'000));
   command->add_option("--name", arguments->dataset.name,
-                      "scene of the pairs (images, colmap), or prefix of the sequence's name (KITTI/)");
+                      "scene of the pairs (images, colmap, npz), or prefix of the sequence's name (KITTI/)");
   command
       ->add_option("--K", arguments->dataset.K,
-                   "images, tum: fx fy cx cy in px, where (0, 0) is the centre of the first pixel")
+                   "images, npz, tum: fx fy cx cy in px, where (0, 0) is the centre of the first pixel")
       ->transform(NumberIn())
       ->expected(4);
-  command->add_option("--lens", arguments->lens, "images, tum: the distortion of --K; default: pinhole")
+  command->add_option("--lens", arguments->lens, "images, npz, tum: the distortion of --K; default: pinhole")
       ->check(MakeChoiceValidator({"pinhole", "radtan", "fisheye"}));
   command
       ->add_option("--distortion", arguments->dataset.distortion,
@@ -241,6 +242,9 @@ void AddPairsCommand(CLI::App& app) {
   colmap     database.db {cameras, images, keypoints, matches}; sparse/0, if present,
              gives the truth and the cameras
   posebench  FILE.h5, a group per pair {x1, x2, R, t, camera1, camera2}
+  npz        *.npz of learned features, one a pair: keypoints0, keypoints1, matches [n0]
+             (-1: none) and match_confidence or matching_scores, or matches [m, 2] and
+             scores; needs --K, of both cameras
   matches    match files, tested by the gate and indexed again
 
 Pairs are chosen as the initialiser of ORB-SLAM2 chooses them, which the paper used. An

@@ -17,6 +17,7 @@
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/files/gzip_lines.h"
 #include "experiments/data/colmap_camera.h"
+#include "experiments/data/likely_size.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
@@ -133,8 +134,6 @@ class Header {
   std::map<std::string, Entry> entries_;
 };
 
-constexpr double kMaxImageLength = 1e6;
-
 std::array<int, 2> SizeFrom(const Header& header, const std::string& key) {
   const std::vector<double> size = header.Numbers(key, 2);
   for (const double length : size) {
@@ -142,18 +141,6 @@ std::array<int, 2> SizeFrom(const Header& header, const std::string& key) {
     header.Fail(key, "width and height must be whole numbers in [1, 1e6] px");
   }
   return {static_cast<int>(size[0]), static_cast<int>(size[1])};
-}
-
-// Twice the principal point, or what holds all points if that is more. `x_px`: a point in this image.
-std::array<int, 2> LikelySize(const Camera& camera, const std::vector<Correspondence>& matches,
-                              Eigen::Vector2d Correspondence::*x_px) {
-  Eigen::Vector2d size(2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0);
-  for (const Correspondence& match : matches)
-    size = size.cwiseMax((match.*x_px + Eigen::Vector2d::Constant(0.5)).eval());
-  const auto whole = [](double length) {
-    return static_cast<int>(std::clamp(std::ceil(length), 1.0, kMaxImageLength));
-  };
-  return {whole(size.x()), whole(size.y())};
 }
 
 // Of the key `camera1` or `camera2`, beside which the others have nothing to say.

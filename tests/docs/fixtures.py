@@ -57,7 +57,8 @@ def make_images(folder):
 
 
 def make_datasets(folder):
-    """The same three images as KITTI, EuRoC and TUM have them, as a folder, and their points as a database of COLMAP."""
+    """The same three images as KITTI, EuRoC and TUM have them, as a folder, and their points as a database of COLMAP
+    and as matches of learned features."""
     images = [folder / f"corridor/{i}.png" for i in range(3)]
     for image, center in zip(images, CENTERS):
         draw(image, blobs_in(center))
@@ -98,6 +99,17 @@ def make_datasets(folder):
         same = np.column_stack([np.arange(POINTS)] * 2).astype(np.uint32).tobytes()
         for first, second in ((1, 2), (1, 3), (2, 3)):
             database.execute("INSERT INTO matches VALUES (?, ?, 2, ?)", (2147483647 * first + second, POINTS, same))
+    make_learned_matches(folder / "superglue_output")
+
+
+def make_learned_matches(folder):
+    """The points of the first two images as SuperGlue's users write them: every tenth key point has no match."""
+    folder.mkdir()
+    points = [(blobs_in(center)[:, :2] + np.random.default_rng(image).normal(0, 0.3, (POINTS, 2))).astype(np.float32)
+              for image, center in enumerate(CENTERS[:2])]
+    matches = np.where(np.arange(POINTS) % 10 == 0, -1, np.arange(POINTS))
+    np.savez(folder / "0_1_matches.npz", keypoints0=points[0], keypoints1=points[1], matches=matches,
+             match_confidence=np.where(matches < 0, 0, 0.9).astype(np.float32))
 
 
 def make_fixtures(folder, program, commands):

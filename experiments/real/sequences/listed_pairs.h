@@ -38,6 +38,12 @@ std::unique_ptr<ListedPairs> OpenColmap(const DatasetOptions& options);
 // program was built without the library.
 std::unique_ptr<ListedPairs> OpenPosebench(const DatasetOptions& options);
 
+// A folder of `.npz` files (npz_file.h), one a pair: `keypoints0` [n0, 2] and `keypoints1` [n1, 2] in px,
+// where (0, 0) is the centre of the first pixel; `matches` [n0], the key point of image 2 or -1, with
+// `match_confidence` or `matching_scores` [n0], or `matches` [m, 2] with `scores` [m]; without `matches`,
+// `matches0` and `matching_scores0` [n0]. Scores may be missing. The camera of both images is that of --K.
+std::unique_ptr<ListedPairs> OpenNpzPairs(const DatasetOptions& options);
+
 // A folder of match files (match_file.h).
 std::unique_ptr<ListedPairs> OpenMatchFiles(const DatasetOptions& options);
 
