@@ -4,8 +4,10 @@
 #include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 
 #include "stats/constants.h"
+#include "stats/remembered.h"
 
 namespace rcme {
 
@@ -23,7 +25,9 @@ Measured Accuracy::root_mean_squared_error() const {
   return {root, root == 0.0 ? 0.0 : squares_.standard_error() / (2.0 * root)};
 }
 
-RankInterval QuantileRanks(std::int64_t n, double p, double confidence) {
+namespace {
+
+RankInterval ComputeQuantileRanks(std::int64_t n, double p, double confidence) {
   // The number of values <= the quantile is B ~ Binomial(n, p). The r-th smallest lies above it if B < r:
   // lower is the largest r with P(B < r) <= tail, upper the least with P(B >= r) <= tail.
   using boost::math::policies::discrete_quantile;
@@ -33,6 +37,14 @@ RankInterval QuantileRanks(std::int64_t n, double p, double confidence) {
   const double tail = 0.5 * (1.0 - confidence);
   return {static_cast<std::int64_t>(quantile(law, tail)),
           static_cast<std::int64_t>(quantile(complement(law, tail))) + 1};
+}
+
+}  // namespace
+
+RankInterval QuantileRanks(std::int64_t n, double p, double confidence) {
+  thread_local Remembered<std::tuple<std::int64_t, double, double>, RankInterval> remembered;
+  return remembered.Get({n, p, confidence}, static_cast<std::uint64_t>(n),
+                        [&] { return ComputeQuantileRanks(n, p, confidence); });
 }
 
 MeasuredQuantile MeasureQuantile(std::vector<double> values, double p, double confidence) {

@@ -13,9 +13,14 @@ struct CountedNumber {
 };
 
 // log K(m), K(m) = mean over the stakes lambda of prod_i (1 + lambda (x_i - m))^count_i, the stakes being
-// `scale` times those given. No factor is below zero as long as they are at most 1 / m.
+// `scale` times those given, 1 to 16 of them (std::invalid_argument). Every factor must be above zero, as all
+// are with stakes below 1 / m. The same bits on every instruction set.
 double LogCapital(const std::vector<CountedNumber>& numbers, double m, std::span<const double> stakes,
                   double scale = 1.0);
+
+// LogCapital(...) >= log_capital, in less time.
+bool IsCapitalAtLeast(double log_capital, const std::vector<CountedNumber>& numbers, double m,
+                      std::span<const double> stakes, double scale = 1.0);
 
 // The greatest m in [0, mean] that is excluded, within a thousandth of `distance` below it; 0 if there is no
 // such m. Exclusion must be true up to some m < mean and false from there. `distance`: the step of the search

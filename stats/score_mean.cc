@@ -19,6 +19,9 @@ constexpr std::array<double, 14> kShares = {0.95, 0.85, 0.7,  0.55, 0.4,   0.28,
 double LogCapitalAbove(const std::vector<CountedNumber>& numbers, double m) {
   return m > 0.0 ? LogCapital(numbers, m, kShares, 1.0 / m) : std::numeric_limits<double>::infinity();
 }
+bool IsExcluded(const std::vector<CountedNumber>& numbers, double m, double needed) {
+  return !(m > 0.0) || IsCapitalAtLeast(needed, numbers, m, kShares, 1.0 / m);
+}
 
 }  // namespace
 
@@ -76,7 +79,7 @@ Interval ScoreMean::Sequence(double confidence) const {
     const UnitScores scores = InUnitRange(is_mirrored);
     if (!(scores.mean > 0.0)) return 0.0;
     return GreatestExcluded(scores.mean, scores.distance,
-                            [&](double m) { return LogCapitalAbove(scores.numbers, m) >= needed; });
+                            [&](double m) { return IsExcluded(scores.numbers, m, needed); });
   };
   const double size = range_.upper - range_.lower;
   return {range_.lower + size * lower_bound(false), range_.upper - size * lower_bound(true)};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
@@ -272,13 +273,20 @@ std::string SummaryAsJson(const Summary& summary) {
                                  {"trials_planned", summary.num_trials_planned},
                                  {"repeats_per_scene", summary.repeats_per_scene},
                                  {"efforts", nlohmann::ordered_json::object()},
-                                 {"rows", RenderJson(MakeTable(MakeRowColumns(summary), summary.rows))}};
+                                 {"rows", nlohmann::ordered_json::array()}};
   for (const auto& [label, effort] : summary.efforts) json["efforts"][label] = effort;
   if (!summary.truth_quality.empty()) json["truth"] = summary.truth_quality;
   if (!summary.population.empty()) json["population"] = summary.population;
   if (summary.num_retried > 0) json["retried_trials"] = summary.num_retried;
   if (summary.preregistration) json["preregistration"] = PreregistrationAsJson(*summary.preregistration);
-  return JsonText(kSummaryFormat, json);
+  constexpr size_t kRowsAtOnce = 1000;
+  const std::vector<ColumnOf<SummaryRow>> columns = MakeRowColumns(summary);
+  std::span<const SummaryRow> left = summary.rows;
+  return JsonText(kSummaryFormat, json, "rows", [&] {
+    const std::span<const SummaryRow> some = left.first(std::min(kRowsAtOnce, left.size()));
+    left = left.subspan(some.size());
+    return RenderJson(MakeTable(columns, some));
+  });
 }
 
 }  // namespace rcme

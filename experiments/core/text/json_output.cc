@@ -3,11 +3,43 @@
 #include <nlohmann/json.hpp>
 
 namespace rcme {
+namespace {
 
-std::string JsonText(const char* format, const nlohmann::ordered_json& object) {
-  nlohmann::ordered_json stamped = {{"format", format}};
+using Json = nlohmann::ordered_json;
+
+std::string Dump(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); }
+
+// A row of an array that is in an object: on lines of their own, two levels deep.
+void AppendRow(const Json& row, std::string* text) {
+  *text += "\n  ";
+  for (const char c : Dump(row)) {
+    *text += c;
+    if (c == '\n') *text += "  ";
+  }
+}
+
+}  // namespace
+
+std::string JsonText(const char* format, const Json& object) {
+  Json stamped = {{"format", format}};
   stamped.update(object);
-  return stamped.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return Dump(stamped) + "\n";
+}
+
+std::string JsonText(const char* format, const Json& object, const std::string& key,
+                     const std::function<Json()>& next_rows) {
+  std::string text = JsonText(format, object);
+  const std::string empty = "\n " + Json(key).dump() + ": []";  // no string holds the end of a line
+  const size_t inside = text.find(empty) + empty.size() - 1;
+  const std::string rest = text.substr(inside);
+  text.resize(inside);
+  for (Json rows = next_rows(); !rows.empty(); rows = next_rows()) {
+    for (const Json& row : rows) {
+      if (text.back() != '[') text += ',';
+      AppendRow(row, &text);
+    }
+  }
+  return text + (text.back() == '[' ? "" : "\n ") + rest;
 }
 
 }  // namespace rcme

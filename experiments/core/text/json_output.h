@@ -1,6 +1,7 @@
 // The JSON that the program writes: one object that begins with its format.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -38,5 +39,9 @@ inline constexpr const char* kWorstFormat = "rcme worst 1";  // written by plots
 // The text of an object with `format` as its first key. Names are whatever bytes the input held: what is no
 // UTF-8 is replaced.
 std::string JsonText(const char* format, const nlohmann::ordered_json& object);
+// The same for an array of millions of rows, the empty array `key` of `object`, which are never all there as
+// JSON: next_rows() gives some of them as an array, and an empty one where there are no more.
+std::string JsonText(const char* format, const nlohmann::ordered_json& object, const std::string& key,
+                     const std::function<nlohmann::ordered_json()>& next_rows);
 
 }  // namespace rcme
