@@ -1,0 +1,46 @@
+// The header of a match file (match_file.h): lines "# key: value" before and between the matches.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "estimator/geometry/pose.h"
+#include "experiments/core/files/gzip_lines.h"
+
+namespace rcme {
+
+std::string_view Trim(std::string_view text);  // without blanks at its ends
+std::vector<std::string> SplitAtCommas(std::string_view text);
+std::vector<std::string> SplitAtBlanks(std::string_view text);
+
+// The values of the known keys with the lines they stand on. What cannot be read throws InputError, with the
+// file, the line, the key and what is allowed.
+class MatchHeader {
+ public:
+  explicit MatchHeader(std::string path) : path_(std::move(path)) {}
+
+  void AddLine(std::string_view line, const GzipLines& lines);
+
+  std::string Place(const std::string& key) const;  // "file:12: key"
+  bool Has(const std::string& key) const { return entries_.count(key) > 0; }
+  std::string Text(const std::string& key) const { return entries_.at(key).text; }
+
+  // Of a key that must be there.
+  std::vector<double> Numbers(const std::string& key, size_t count) const;
+  Eigen::Matrix3d Rotation(const std::string& key) const;   // nine numbers, row by row
+  Eigen::Vector3d Direction(const std::string& key) const;  // of unit length, from one of any length
+
+  [[noreturn]] void Fail(const std::string& key, const std::string& what) const;
+
+ private:
+  struct Entry {
+    std::string text;
+    int line_number = 0;
+  };
+  std::string path_;
+  std::map<std::string, Entry> entries_;
+};
+
+}  // namespace rcme

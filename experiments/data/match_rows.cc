@@ -1,0 +1,106 @@
+#include "experiments/data/match_rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "estimator/problem_check.h"
+#include "experiments/data/match_header.h"
+#include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "parameters/plain_text.h"
+
+namespace rcme {
+namespace {
+
+constexpr size_t kMaxColumns = 1000;
+
+bool AreColumnNames(const std::vector<std::string>& fields) {
+  return std::ranges::find_first_of(fields, kCoordinateColumns) != fields.end();
+}
+
+bool HasColumnsFirst(const std::vector<std::string>& fields) {
+  return fields.size() >= kCoordinateColumns.size() &&
+         std::equal(kCoordinateColumns.begin(), kCoordinateColumns.end(), fields.begin());
+}
+
+Correspondence ReadMatch(const std::vector<std::string>& fields, const GzipLines& lines) {
+  if (fields.size() < kCoordinateColumns.size())
+    lines.Fail(fmt::format("{} columns; x1,y1,x2,y2 are needed", fields.size()));
+  std::array<double, 4> x{};
+  for (size_t i = 0; i < x.size(); ++i) {
+    if (ParseReal(fields[i], &x[i]) && std::abs(x[i]) <= kMaxCoordinatePx) continue;
+    lines.Fail(fmt::format("{}: {} is not a finite number in [{}, {}] px", kCoordinateColumns[i],
+                           Quoted(fields[i]), -kMaxCoordinatePx, kMaxCoordinatePx));
+  }
+  return {{x[0], x[1]}, {x[2], x[3]}};
+}
+
+// 0, where x1 is: there is none.
+size_t FindColumn(const std::vector<std::string>& fields, std::string_view name) {
+  const auto found = std::ranges::find(fields, name);
+  return found == fields.end() ? 0 : static_cast<size_t>(found - fields.begin());
+}
+
+}  // namespace
+
+void MatchRows::Add(std::string_view line, const GzipLines& lines) {
+  const std::vector<std::string> fields =
+      line.find(',') == std::string_view::npos ? SplitAtBlanks(line) : SplitAtCommas(line);
+  if (fields.size() > kMaxColumns)
+    lines.Fail(fmt::format("too many columns; at most {} are allowed", kMaxColumns));
+  if (AreColumnNames(fields)) {
+    SetNames(fields, line, lines);
+  } else if (file_->matches.size() == kMaxMatchesPerFile) {
+    lines.Fail(fmt::format("too many matches; at most {} are allowed", kMaxMatchesPerFile));
+  } else {
+    file_->matches.push_back(ReadMatch(fields, lines));
+    line_numbers_.push_back(lines.line_number());
+    if (sigma_column_ > 0) file_->sigma_px.push_back(ReadSigma(fields, lines));
+    if (score_column_ > 0) scores_.push_back(score_column_ < fields.size() ? fields[score_column_] : "");
+  }
+}
+
+std::string MatchRows::Place(size_t match) const {
+  return fmt::format("{}:{}", file_->path, line_numbers_.at(match));
+}
+
+// Of a file whose header says which scores are better; nothing without one such column.
+std::optional<std::vector<double>> MatchRows::Scores() const {
+  if (num_score_columns_ != 1) return std::nullopt;
+  std::vector<double> scores(scores_.size());
+  for (size_t i = 0; i < scores.size(); ++i) {
+    if (!ParseReal(scores_[i], &scores[i])) {
+      throw InputError(
+          fmt::format("{}: {}: {} is not a finite number", Place(i), kScoreColumn, Quoted(scores_[i])));
+    }
+  }
+  return scores;
+}
+
+void MatchRows::SetNames(const std::vector<std::string>& fields, std::string_view line,
+                         const GzipLines& lines) {
+  if (!file_->matches.empty() || !HasColumnsFirst(fields)) {
+    lines.Fail(fmt::format("column names {} are not allowed; give {}[,...], before the first match, or none",
+                           Quoted(line), fmt::join(kCoordinateColumns, ",")));
+  }
+  if (std::ranges::count(fields, kSigmaColumn) > 1)
+    lines.Fail(fmt::format("column {} stands twice", kSigmaColumn));
+  sigma_column_ = FindColumn(fields, kSigmaColumn);
+  score_column_ = FindColumn(fields, kScoreColumn);
+  num_score_columns_ = std::ranges::count(fields, kScoreColumn);
+}
+
+double MatchRows::ReadSigma(const std::vector<std::string>& fields, const GzipLines& lines) const {
+  double sigma_px = 0.0;
+  const std::string text = sigma_column_ < fields.size() ? fields[sigma_column_] : "";
+  if (!ParseReal(text, &sigma_px) || sigma_px <= 0.0 || sigma_px > kMaxCoordinatePx) {
+    lines.Fail(fmt::format("{}: {} is not a finite number in (0, {}] px", kSigmaColumn, Quoted(text),
+                           kMaxCoordinatePx));
+  }
+  return sigma_px;
+}
+
+}  // namespace rcme
