@@ -1,0 +1,127 @@
+#include "experiments/real/truth_free/closure_by_length.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "stats/distributions.h"
+#include "stats/random.h"
+
+namespace rcme {
+namespace {
+
+constexpr int kImages = 8;
+constexpr int kSequences = 400;
+
+// Rotations between eight images of each sequence, consecutive ones and each with the first, with independent
+// errors of covariance S; the estimators state S over `factor`. The twins are the pairs again.
+std::vector<PairAnswers> AnswerSequences(double factor, int num_sequences = kSequences) {
+  Matrix5d root = Matrix5d::Zero();  // of S, rad
+  root.diagonal() << 1e-3, 2e-3, 5e-4, 1e-3, 1e-3;
+  root(1, 0) = 1e-3;
+  std::vector<PairAnswers> answers;
+  for (int sequence = 0; sequence < num_sequences; ++sequence) {
+    RandomStream rng({.seed = 1, .trial = static_cast<std::uint32_t>(sequence), .purpose = 95});
+    const Eigen::Vector3d turn(0.05, -0.1, 0.02);
+    const auto add = [&](int image1, int image2) {
+      Vector5d error;
+      for (double& e : error) e = rng.Normal();
+      Answered answered;
+      answered.pair.image1 = fmt::format("{:04} {}", sequence, image1);
+      answered.pair.image2 = fmt::format("{:04} {}", sequence, image2);
+      answered.estimate.status = MotionStatus::kOk;
+      answered.estimate.cam2_from_cam1 =
+          Retract({RotationFromVector((image2 - image1) * turn), Eigen::Vector3d::UnitX()}, root * error);
+      answered.estimate.pose_cov = root * root.transpose() / factor;
+      answers.push_back({answered, {answered}});
+    };
+    for (int image = 1; image < kImages; ++image) {
+      add(image - 1, image);
+      if (image > 1) add(0, image);
+    }
+  }
+  return answers;
+}
+
+std::vector<LengthClosure> OfPairs(const std::vector<PairAnswers>& answers) {
+  std::vector<LengthClosure> chosen;
+  for (const LengthClosure& closure : MeasureClosureByLength(answers, 20)) {
+    if (!closure.is_of_twins) chosen.push_back(closure);
+  }
+  return chosen;
+}
+
+// Independent errors of known covariance: squared distances are chi-square whatever the length. The standard
+// error of their mean over three is sqrt(2 / 3 / 400), half of it that of its root; of the share, sqrt(.95
+// .05 / 400).
+TEST(MeasureClosureByLength, IsChiSquareWhereCovariancesHold) {
+  const std::vector<LengthClosure> closures = OfPairs(AnswerSequences(1.0));
+  ASSERT_EQ(closures.size(), 6u);  // there are no matches, so that shared errors cannot be allowed for
+  for (size_t k = 0; k < 6; ++k) {
+    const LengthClosure& closure = closures[k];
+    EXPECT_EQ(closure.num_images, k + 3);
+    EXPECT_EQ(closure.shared, SharedErrors::kIgnored);
+    EXPECT_EQ(closure.num_loops, kSequences);
+    EXPECT_EQ(closure.num_apart, kSequences);
+    EXPECT_NEAR(closure.covered.value, 0.95, 4.0 * 0.0109) << closure.num_images;
+    EXPECT_NEAR(closure.rms_over_sd.value, 1.0, 4.0 * 0.0204) << closure.num_images;
+  }
+}
+
+// Variances stated too small by two: the root mean square is sqrt(2) standard deviations, and the region
+// holds what chi-square holds below half the bound, .728. 400 loops tell it from .95, and sqrt(2) from 1, for
+// sure: both differ by more than ten standard errors.
+TEST(MeasureClosureByLength, FindsCovariancesTooSmallByTwo) {
+  const double expected = ChiSquareCdf(3, ChiSquareQuantile(3, 0.95) / 2.0);
+  for (const LengthClosure& closure : OfPairs(AnswerSequences(2.0))) {
+    EXPECT_NEAR(closure.covered.value, expected, 4.0 * std::sqrt(expected * (1.0 - expected) / kSequences));
+    EXPECT_NEAR(closure.rms_over_sd.value, std::sqrt(2.0), 4.0 * 0.0289);
+    EXPECT_LT(closure.covered.interval.upper, 0.95);
+    EXPECT_GT(closure.rms_over_sd.interval.lower, 1.0);
+  }
+}
+
+// The intervals hold 1 and .95 in about 95 % of runs of 12 sequences each: 6 lengths of 100 runs, whose
+// results depend on each other within a run. The mean of chi-square is skewed: 90 % is what is asked of it.
+TEST(MeasureClosureByLength, IntervalsHoldWhatIsRight) {
+  const std::vector<PairAnswers> all = AnswerSequences(1.0, 1200);
+  const size_t per_run = all.size() / 100;
+  int num_rms = 0, num_covered = 0, n = 0;
+  for (size_t run = 0; run < 100; ++run) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(run * per_run);
+    for (const LengthClosure& closure : OfPairs({first, first + static_cast<std::ptrdiff_t>(per_run)})) {
+      ++n;
+      num_rms += closure.rms_over_sd.interval.Contains(1.0);
+      num_covered += closure.covered.interval.Contains(0.95);
+    }
+  }
+  EXPECT_EQ(n, 600);
+  EXPECT_GT(num_rms, 0.90 * n);
+  EXPECT_GT(num_covered, 0.95 * n);
+}
+
+// The twins here are the pairs, whose closure is what is expected of them: no distance at all.
+TEST(MeasureClosureByLength, OfTwinsIsAboutTheirTruth) {
+  int num_of_twins = 0;
+  for (const LengthClosure& closure : MeasureClosureByLength(AnswerSequences(1.0, 3), 4)) {
+    if (!closure.is_of_twins) continue;
+    ++num_of_twins;
+    EXPECT_EQ(closure.num_loops, 3);
+    EXPECT_NEAR(closure.rms_over_sd.value, 0.0, 1e-9);
+    EXPECT_EQ(closure.covered.value, 1.0);
+  }
+  EXPECT_EQ(num_of_twins, 2);
+}
+
+// A pair that is not answered opens the loops through it, and others are found.
+TEST(MeasureClosureByLength, IsOfAnsweredPairs) {
+  std::vector<PairAnswers> answers = AnswerSequences(1.0, 10);
+  answers[0].whole.estimate.status = MotionStatus::kNoCandidate;  // images 0 and 1 of the first sequence
+  for (const LengthClosure& closure : OfPairs(answers))
+    EXPECT_EQ(closure.num_loops, closure.num_images < 8 ? 10 : 9) << closure.num_images;
+  EXPECT_TRUE(MeasureClosureByLength(answers, 0).empty());
+}
+
+}  // namespace
+}  // namespace rcme
