@@ -53,9 +53,10 @@ class Moves {
     const MotionProblem& problem = step.pair->problem;
     const std::vector<int>& inliers = step.estimate->inliers;
     const MatchScores scores = ScoreFitted(problem, inliers, step.estimate->cam2_from_cam1);
+    const NamedPair& named = step.key_points ? *step.key_points : *step.pair;
     const Eigen::LDLT<Matrix5d> ldlt(scores.information);
     for (size_t k = 0; k < inliers.size(); ++k) {
-      const Correspondence& match = problem.matches[static_cast<size_t>(inliers[k])];
+      const Correspondence& match = named.problem.matches[static_cast<size_t>(inliers[k])];
       const Vector5d gain = ldlt.solve(scores.rows[k]);
       const double kept = std::max(1.0 - gain.dot(scores.rows[k]), 0.05);
       moves_.emplace_back(jacobian * gain * (scores.residuals[k] / kept));
@@ -131,7 +132,7 @@ std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of,
 
 std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
                                         const std::vector<Loop>& loops, LoopErrorOf error_of,
-                                        SharedErrors shared) {
+                                        SharedErrors shared, TwinKeyPoints twins) {
   std::vector<UnitValues> closures;
   for (const Loop& loop : loops) {
     if (error_of == DirectionClosure && loop.size() != 3) continue;
@@ -141,7 +142,8 @@ std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
       for (const LoopStep& step : loop) {
         const Answered* answered = choose(answers[step.pair]);
         if (!answered || !answered->IsOk()) return std::vector<AnsweredStep>();
-        steps.push_back({&answered->pair, &answered->estimate, step.is_forward});
+        const NamedPair* named = twins == TwinKeyPoints::kOfPairs ? &answers[step.pair].whole.pair : nullptr;
+        steps.push_back({&answered->pair, &answered->estimate, step.is_forward, named});
       }
       return steps;
     };

@@ -11,25 +11,26 @@
 namespace rcme {
 namespace {
 
-constexpr int kDegreesOfFreedom = 3;  // of a rotation
+constexpr int kRotationFreedom = 3;  // of a rotation
 
 // The squared distance of each loop, of the pairs and of their twins, which share no error with each other.
-struct Distances {
+struct LoopDistances {
   std::vector<GroupValue> of_pairs, of_twins;
 };
 
-Distances ComputeDistances(const std::vector<PairAnswers>& answers, const std::vector<Loop>& loops,
-                           SharedErrors shared) {
+LoopDistances ComputeLoopDistances(const std::vector<PairAnswers>& answers, const std::vector<Loop>& loops,
+                                   SharedErrors shared) {
   const std::vector<ImageNumbers> images = NumberImages(answers);
   const auto most_images = static_cast<std::int64_t>(2 * answers.size() + 1);
-  Distances distances;
+  LoopDistances distances;
   for (const Loop& loop : loops) {
     std::vector<std::int64_t> members;
     for (const LoopStep& step : loop) {
       members.push_back(images[step.pair].image1);
       members.push_back(images[step.pair].image2);
     }
-    for (const UnitValues& values : ComputeClosures(answers, {loop}, RotationClosure, shared)) {
+    for (const UnitValues& values :
+         ComputeClosures(answers, {loop}, RotationClosure, shared, TwinKeyPoints::kOfPairs)) {
       for (const double value : values.observed) distances.of_pairs.push_back({members, value});
       std::vector<std::int64_t> of_twin = members;
       for (const double value : values.null) {
@@ -41,12 +42,12 @@ Distances ComputeDistances(const std::vector<PairAnswers>& answers, const std::v
   return distances;
 }
 
-LengthClosure Summarize(std::vector<GroupValue> distances) {
+LengthClosure SummarizeLength(std::vector<GroupValue> distances) {
   const SharedGroupMean mean = MeasureSharedGroupMean(distances);
-  const double bound = ChiSquareQuantile(kDegreesOfFreedom, 0.95);
+  const double bound = ChiSquareQuantile(kRotationFreedom, 0.95);
   for (GroupValue& distance : distances) distance.value = distance.value <= bound ? 1.0 : 0.0;
   const SharedGroupMean rate = MeasureSharedGroupRate(distances);
-  const auto root = [](double x) { return std::sqrt(std::max(x, 0.0) / kDegreesOfFreedom); };
+  const auto root = [](double x) { return std::sqrt(std::max(x, 0.0) / kRotationFreedom); };
   LengthClosure closure;
   closure.num_loops = mean.n;
   closure.num_apart = mean.num_apart;
@@ -73,11 +74,11 @@ std::vector<LengthClosure> MeasureClosureByLength(const std::vector<PairAnswers>
   for (size_t length = 3; length <= longest; ++length) {
     const std::vector<Loop> loops = FindLoopsOfLength(names, length);
     for (const SharedErrors shared : {SharedErrors::kAllowedFor, SharedErrors::kIgnored}) {
-      Distances distances = ComputeDistances(answers, loops, shared);
+      LoopDistances distances = ComputeLoopDistances(answers, loops, shared);
       for (const bool is_of_twins : {false, true}) {
         std::vector<GroupValue>& of = is_of_twins ? distances.of_twins : distances.of_pairs;
         if (of.empty()) continue;
-        LengthClosure closure = Summarize(std::move(of));
+        LengthClosure closure = SummarizeLength(std::move(of));
         closure.num_images = length;
         closure.is_of_twins = is_of_twins;
         closure.shared = shared;

@@ -9,20 +9,21 @@
 namespace rcme {
 namespace {
 
-using R = const LengthClosure&;
-
 std::string DescribeShared(SharedErrors shared) {
   return shared == SharedErrors::kIgnored ? "ignored" : "allowed for";
 }
 
 std::vector<ColumnOf<LengthClosure>> ClosureColumns() {
-  return {{Column::Count("images"), [](R r) { return static_cast<std::int64_t>(r.num_images); }},
-          {Column::Text("shared_errors"), [](R r) { return DescribeShared(r.shared); }},
-          {Column::Text("of"), [](R r) { return r.is_of_twins ? "twins" : "pairs"; }},
-          {Column::Count("loops"), [](R r) { return r.num_loops; }},
-          {Column::Count("apart"), [](R r) { return r.num_apart; }},
-          {Column::Estimated("covered", {100.0, "%", ".0f"}), [](R r) { return r.covered; }},
-          {Column::Estimated("rms_over_sd", {1.0, "", ".2f"}), [](R r) { return r.rms_over_sd; }}};
+  return {
+      {Column::Count("images"),
+       [](const LengthClosure& r) { return static_cast<std::int64_t>(r.num_images); }},
+      {Column::Text("shared_errors"), [](const LengthClosure& r) { return DescribeShared(r.shared); }},
+      {Column::Text("of"), [](const LengthClosure& r) { return r.is_of_twins ? "twins" : "pairs"; }},
+      {Column::Count("loops"), [](const LengthClosure& r) { return r.num_loops; }},
+      {Column::Count("apart"), [](const LengthClosure& r) { return r.num_apart; }},
+      {Column::Estimated("covered", {100.0, "%", ".0f"}), [](const LengthClosure& r) { return r.covered; }},
+      {Column::Estimated("rms_over_sd", {1.0, "", ".2f"}),
+       [](const LengthClosure& r) { return r.rms_over_sd; }}};
 }
 
 // One entry of a set, for a table of all sets.

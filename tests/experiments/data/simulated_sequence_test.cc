@@ -13,12 +13,12 @@
 namespace rcme {
 namespace {
 
-const StreamName kName{1, 0, 0, 0};
+const StreamName kSequenceName{1, 0, 0, 0};
 
 std::vector<SequencePair> MakeSequence(int num_images, const Settings& more) {
   Settings settings = {{"scene", "uniform_volume"}, {"motion", "orbit"}, {"num_matches", "200"}};
   settings.insert(settings.end(), more.begin(), more.end());
-  return SimulateSequence(*MakeSimulatedData(settings), kName, num_images);
+  return SimulateSequence(*MakeSimulatedData(settings), kSequenceName, num_images);
 }
 
 const SequencePair& FindPair(const std::vector<SequencePair>& pairs, int image1, int image2) {
