@@ -49,8 +49,8 @@ def read_lines(options):
     differing = [key for key in KEYS if rows[key].nunique() > 1]
 
     def name_line(row):
-        words = {"shared_errors": f"shared errors {row.shared_errors}"}
-        return "; ".join(words.get(key, row[key]) for key in differing) or row.estimator
+        words = {"shared_errors": f"shared errors {row.shared_errors}", "estimator": style.label_of(row.estimator)}
+        return "; ".join(words.get(key, row[key]) for key in differing) or style.label_of(row.estimator)
 
     return {name: part.sort_values("images") for name, part in rows.groupby(rows.apply(name_line, axis=1), sort=False)}
 

@@ -17,12 +17,16 @@ std::vector<ColumnOf<LengthClosure>> ClosureColumns() {
   return {
       {Column::Count("images"),
        [](const LengthClosure& r) { return static_cast<std::int64_t>(r.num_images); }},
-      {Column::Text("shared_errors"), [](const LengthClosure& r) { return DescribeShared(r.shared); }},
+      {{.name = "shared_errors", .heading = "shared errors"},
+       [](const LengthClosure& r) { return DescribeShared(r.shared); }},
       {Column::Text("of"), [](const LengthClosure& r) { return r.is_of_twins ? "twins" : "pairs"; }},
       {Column::Count("loops"), [](const LengthClosure& r) { return r.num_loops; }},
       {Column::Count("apart"), [](const LengthClosure& r) { return r.num_apart; }},
       {Column::Estimated("covered", {100.0, "%", ".0f"}), [](const LengthClosure& r) { return r.covered; }},
-      {Column::Estimated("rms_over_sd", {1.0, "", ".2f"}),
+      {{.name = "rms_over_sd",
+        .type = ColumnType::kEstimate,
+        .format = {1.0, "", ".2f"},
+        .heading = "rms over sd"},
        [](const LengthClosure& r) { return r.rms_over_sd; }}};
 }
 
@@ -45,8 +49,8 @@ std::string ClosuresAsTable(const std::vector<SetReport>& reports) {
   return text +
          FormatParagraph(
              "covered: share of the loops within the 95 % region of the covariances, propagated around "
-             "the loop; rms_over_sd: root mean square of the closure over its standard deviation, 1 is "
-             "right. shared_errors: whether the region allows for key points that several pairs of the "
+             "the loop; rms over sd: root mean square of the closure over its standard deviation, 1 is "
+             "right. shared errors: whether the region allows for key points that several pairs of the "
              "loop share. apart: loops of which no two share an image. Intervals 95 %.");
 }
 

@@ -107,13 +107,17 @@ TEST(MeasureClosureByLength, IntervalsHoldWhatIsRight) {
   EXPECT_GT(num_covered, 0.95 * n);
 }
 
-// The twins here are the pairs, whose closure is what is expected of them: no distance at all.
+// The twins here are the pairs, whose closure is what is expected of them: no distance at all. Two twins of a
+// loop share no error.
 TEST(MeasureClosureByLength, OfTwinsIsAboutTheirTruth) {
+  std::vector<PairAnswers> answers = AnswerSequences(1.0, 3);
+  for (PairAnswers& answer : answers) answer.twins.push_back(answer.whole);
   int num_of_twins = 0;
-  for (const LengthClosure& closure : MeasureClosureByLength(AnswerSequences(1.0, 3), 4)) {
+  for (const LengthClosure& closure : MeasureClosureByLength(answers, 4)) {
     if (!closure.is_of_twins) continue;
     ++num_of_twins;
-    EXPECT_EQ(closure.num_loops, 3);
+    EXPECT_EQ(closure.num_loops, 6);
+    EXPECT_EQ(closure.num_apart, 6);
     EXPECT_NEAR(closure.rms_over_sd.value, 0.0, 1e-9);
     EXPECT_EQ(closure.covered.value, 1.0);
   }
