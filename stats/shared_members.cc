@@ -46,12 +46,12 @@ SharedGroupMean AverageGroups(std::span<const GroupValue> groups) {
   SharedGroupMean mean{std::ssize(groups), 0, 0.0, {}};
   std::set<std::int64_t> taken;
   for (const auto& [members, value] : groups) {
-    mean.value += value / static_cast<double>(groups.size());
+    mean.value += value;
     if (std::ranges::any_of(members, [&](std::int64_t member) { return taken.contains(member); })) continue;
     taken.insert(members.begin(), members.end());
     ++mean.num_apart;
   }
-  if (groups.empty()) mean.value = kNaN;
+  mean.value /= static_cast<double>(groups.size());  // NaN without groups; 1 to the bit of ones
   return mean;
 }
 

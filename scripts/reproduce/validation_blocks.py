@@ -3,7 +3,7 @@
 import math
 import statistics
 
-from tables import levels_of, markdown, read_table, select, the_row, words_of
+from tables import levels_of, markdown, read_table, rms_over_sd, select, the_row, words_of
 
 
 def truth_free(spec):
@@ -98,8 +98,7 @@ def closures(spec):
     """Of `rcme validate --loops`, a row per set and number of images: the loops, and for each table (tables: NAME as WORDS; ...) the share
     within the 95 % region and the root mean square over its standard deviation, shared errors allowed for and ignored."""
     def cell(row):
-        lower, upper = (float(row[f"rms_over_sd_{end}"] or math.inf) for end in ("lower", "upper"))
-        return f"{100 * float(row['covered']):.0f} %; {float(row['rms_over_sd']):.2g} [{lower:.2g}, {upper:.2g}]"
+        return f"{100 * float(row['covered']):.0f} %; {rms_over_sd(row)}"
 
     tables = [(select(read_table(name), "of=pairs"), words) for name, words in spec.parts("tables")]
     kinds = ("allowed for", "ignored")

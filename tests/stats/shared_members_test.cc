@@ -172,6 +172,9 @@ TEST(SharedGroupRate, IsExactOfGroupsApart) {
   const std::vector<GroupValue> twice = {{{1, 2, 3}, 1.0}, {{3, 4, 5}, 1.0}, {{5, 6, 7}, 1.0}};  // two apart
   EXPECT_NEAR(MeasureSharedGroupRate(twice).interval.lower, ExactBinomialInterval(2, 2).lower, 1e-9);
   EXPECT_EQ(MeasureSharedGroupRate({}).interval.upper, 1.0);
+  const std::vector<GroupValue> all(6, {{1}, 1.0});  // a rate of one to the bit
+  EXPECT_EQ(MeasureSharedGroupRate(all).value, 1.0);
+  EXPECT_EQ(MeasureSharedGroupRate(all).interval.upper, 1.0);
 }
 
 // Sums of four consecutive normal numbers of 40: the interval covers their mean, zero, in 95 % or more; one
