@@ -124,7 +124,8 @@ def covered(row):
 
 def rms_over_sd(row):
     value, lower, upper = (float(row[name] or "inf") for name in ("rms_over_sd", "rms_over_sd_lower", "rms_over_sd_upper"))
-    return f"{value:.2g} [{lower:.2g}, {upper:.2g}]"
+    words = [f"{each:.2f}" if each < 10 else f"{each:.0f}" for each in (value, lower, upper)]
+    return f"{words[0]} [{words[1]}, {words[2]}]"
 
 
 FORMATS = {
