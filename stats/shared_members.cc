@@ -41,6 +41,20 @@ Interval BetaInterval(double successes, double n, double confidence) {
           successes >= n ? 1.0 : quantile(Beta(successes + 1.0, n - successes), 1.0 - tail)};
 }
 
+// The mean, and how many groups are apart; no interval yet.
+SharedGroupMean AverageGroups(std::span<const GroupValue> groups) {
+  SharedGroupMean mean{std::ssize(groups), 0, 0.0, {}};
+  std::set<std::int64_t> taken;
+  for (const auto& [members, value] : groups) {
+    mean.value += value;
+    if (std::ranges::any_of(members, [&](std::int64_t member) { return taken.contains(member); })) continue;
+    taken.insert(members.begin(), members.end());
+    ++mean.num_apart;
+  }
+  mean.value /= static_cast<double>(groups.size());  // NaN without groups; 1 to the bit of ones
+  return mean;
+}
+
 double ReductionForFewMembers(std::int64_t n, std::int64_t num_members, double confidence) {
   if (n < 2 || num_members < 2) return 1.0;
   const double p = 0.5 * (1.0 + confidence);
@@ -106,6 +120,26 @@ SharedMemberMean MeasureSharedMemberMean(std::span<const PairValue> pairs, doubl
       mean.standard_error * StudentQuantile(static_cast<int>(members.size()) - 1, 0.5 * (1.0 + confidence));
   mean.interval = {mean.value - half, mean.value + half};
   return mean;
+}
+
+SharedGroupMean MeasureSharedGroupMean(std::span<const GroupValue> groups, double confidence) {
+  SharedGroupMean mean = AverageGroups(groups);
+  mean.interval = {-kInfinity, kInfinity};
+  if (mean.num_apart < 2) return mean;
+  double squares = 0.0;
+  for (const GroupValue& group : groups) squares += (group.value - mean.value) * (group.value - mean.value);
+  const double n = static_cast<double>(mean.n), apart = static_cast<double>(mean.num_apart);
+  const double half = StudentQuantile(static_cast<int>(mean.num_apart) - 1, 0.5 * (1.0 + confidence)) *
+                      std::sqrt(squares / n / (apart - 1.0));
+  mean.interval = {mean.value - half, mean.value + half};
+  return mean;
+}
+
+SharedGroupMean MeasureSharedGroupRate(std::span<const GroupValue> groups, double confidence) {
+  SharedGroupMean rate = AverageGroups(groups);
+  const double apart = static_cast<double>(rate.num_apart);
+  rate.interval = groups.empty() ? Interval{0.0, 1.0} : BetaInterval(rate.value * apart, apart, confidence);
+  return rate;
 }
 
 }  // namespace rcme

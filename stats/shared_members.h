@@ -56,4 +56,28 @@ struct SharedMemberMean {
 // t_(G-1) standard errors.
 SharedMemberMean MeasureSharedMemberMean(std::span<const PairValue> pairs, double confidence = 0.95);
 
+// A number that is of any number of members, as one of a loop of images is.
+struct GroupValue {
+  std::vector<std::int64_t> members;
+  double value = 0.0;
+};
+
+struct SharedGroupMean {
+  std::int64_t n = 0;
+  std::int64_t num_apart = 0;  // groups of a set (found greedily) in which no two share a member
+  double value = 0.0;          // NaN at n = 0
+  Interval interval;
+};
+
+// The mean over groups that share members, and what is known of it. Where groups are runs of consecutive
+// members, of L each, they fall into L classes whose groups are apart, and the mean over all is that of the
+// classes' means: its variance is at most that of a class, sigma^2 / a with a = num_apart, whatever the
+// correlation of groups that share a member. Neither interval supposes less.
+//   a mean   value +- t_(a-1) s / sqrt(a); s^2 = a / (a - 1) sum u_i^2 / n, since the deviations u_i from
+//            the mean lack the mean's own variance, of at most sigma^2 / a. Unbounded below two apart.
+//   a rate   of values 0 and 1: the exact binomial interval of a events at the same rate (Korn & Graubard
+//            1998)
+SharedGroupMean MeasureSharedGroupMean(std::span<const GroupValue> groups, double confidence = 0.95);
+SharedGroupMean MeasureSharedGroupRate(std::span<const GroupValue> groups, double confidence = 0.95);
+
 }  // namespace rcme

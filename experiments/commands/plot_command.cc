@@ -33,6 +33,7 @@ const std::vector<Kind>& Kinds() {
       {"audit", "FOLDER", "the figures of `rcme audit`"},
       {"validity_map", "FOLDER", "where first-order covariances hold, from `rcme map`"},
       {"validation", "VALIDATION.json", "the figure of `rcme validate`"},
+      {"closure", "CLOSURE.csv ...", "closure by the length of loops, from `rcme validate --loops`"},
       {"audit_power", "POWER.csv", "how often the audit detects a wrong sigma"},
       {"benchmarks", "BENCHMARKS.json", "times of `scripts/benchmark`"}};
   return kinds;

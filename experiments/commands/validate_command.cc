@@ -12,7 +12,9 @@
 #include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
+#include "experiments/data/simulated_sequence.h"
 #include "experiments/real/truth_free/advice.h"
+#include "experiments/real/truth_free/closure_output.h"
 #include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/planted_fault.h"
 #include "experiments/real/truth_free/validate_output.h"
@@ -34,14 +36,16 @@ struct ValidateArguments {
   double sigma_px = 0.5;
   std::int64_t seed = 1;
   int num_twins = 3, trials = 0;
+  int num_images = 2;                // of each trial of a study
+  int longest_loop = 0;              // images; 0: no closure by length
   std::vector<std::string> planted;  // NAME=VALUE each
   bool draws_no_figure = false, tests_alone = false;
 };
 
 std::vector<PairSet> ReadSets(const std::string& pairs, const ValidateArguments& arguments) {
   if (std::filesystem::is_directory(pairs)) {
-    if (!arguments.data.empty() || arguments.trials > 0)
-      throw InputError("validate: --data and --trials need a study; PAIRS is a folder");
+    if (!arguments.data.empty() || arguments.trials > 0 || arguments.num_images > 2)
+      throw InputError("validate: --data, --trials and --images need a study; PAIRS is a folder");
     return PairSetsOfFolder(pairs, arguments.sigma_px);
   }
   Study study = LoadStudy(pairs);
@@ -52,7 +56,8 @@ std::vector<PairSet> ReadSets(const std::string& pairs, const ValidateArguments&
     Override(&study, setting.substr(0, equals), setting.substr(equals + 1));
   }
   if (arguments.trials > 0) study.trials = arguments.trials;
-  return PairSetsOfStudy(MakePlan(study, PlanEstimators::kNotMade));
+  const StudyPlan plan = MakePlan(study, PlanEstimators::kNotMade);
+  return arguments.num_images > 2 ? SequencesOfStudy(plan, arguments.num_images) : PairSetsOfStudy(plan);
 }
 
 // Of several folders or studies a set has the name of its own before its name.
@@ -107,6 +112,13 @@ WorkPlan PlanValidationSteps(const ValidateArguments& arguments, const Estimator
   return {"validation", "step", identity, {}, true};
 }
 
+// "rcme_calibrated, covariance=robust".
+std::string NameEstimator(const ValidateArguments& arguments) {
+  std::string name = arguments.estimator.file ? *arguments.estimator.file : arguments.estimator.name;
+  for (const std::string& changed : arguments.estimator.overrides) name += ", " + changed;
+  return name;
+}
+
 void RunValidate(const ValidateArguments& arguments) {
   const StopOnSignals stop;
   StartTimeLimit(arguments.max_time);
@@ -124,17 +136,20 @@ void RunValidate(const ValidateArguments& arguments) {
     kept.emplace(&*runner);
   }
   KeptSteps* steps = kept ? &*kept : nullptr;
-  const ValidationOptions options = {static_cast<std::uint64_t>(arguments.seed), arguments.num_twins};
+  const ValidationOptions options = {static_cast<std::uint64_t>(arguments.seed), arguments.num_twins,
+                                     static_cast<size_t>(arguments.longest_loop)};
   std::vector<SetReport> reports;
   for (const PairSet& set : sets)
     reports.push_back(arguments.tests_alone ? Validate(set, *estimator.make({}), options, steps)
                                             : ValidateAndAdvise(set, estimator, options, steps));
-  const std::string table = ValidationAsTable(reports);
+  const std::string table = ValidationAsTable(reports) + ClosuresAsTable(reports);
   fmt::print("{}", table);
   if (arguments.out.empty()) return;
   const std::filesystem::path folder(arguments.out);
   WriteFileWhole((folder / "validation.txt").string(), table);
   WriteFileWhole((folder / "validation.csv").string(), ValidationAsCsv(reports));
+  if (arguments.longest_loop > 0)
+    WriteFileWhole((folder / "closure.csv").string(), ClosuresAsCsv(reports, NameEstimator(arguments)));
   const std::string json = (folder / "validation.json").string();
   WriteFileWhole(json, ValidationAsJson(reports));
   if (!arguments.draws_no_figure)
@@ -166,6 +181,12 @@ small by ..., or undecided with the number of pairs that would decide), its caus
 data or the estimator), and advice. The program tries each advised change, validates the
 scene again, and reports the result.
 
+--loops 8 also measures how well rotations close around loops of 3, 4, ... and 8 images
+and compares that with the covariances propagated around the loop. The loops go forth along
+the images in the order of their names and back by one pair; `rcme pairs --window 7` makes
+such pairs. With --images 8 each trial of a study is a simulated sequence of 8 images. The
+numbers are in closure.csv, for `rcme plot closure`.
+
 If the command is stopped or killed, run it again with --out: finished work is kept in
 OUT/unfinished.part until the end.
 
@@ -173,6 +194,7 @@ Examples:
   rcme validate PAIRS --out validation
   rcme validate PAIRS --set covariance=robust --scene kitti00
   rcme validate studies/indoor_like.yaml --data noise=correlated --trials 40
+  rcme validate studies/indoor_like.yaml --images 8 --loops 8 --trials 20 --no-advice
   rcme validate PAIRS --plant focal_length=0.01 --no-advice   would these pairs show it?)");
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("pairs", arguments->pairs, "folders of match files, or study files (YAML)")->required();
@@ -192,6 +214,15 @@ Examples:
       ->allow_extra_args(false);
   command->add_option("--trials", arguments->trials, "trials per condition of a study; default: the study's")
       ->transform(WholeNumberIn(1, 1'000'000));
+  command
+      ->add_option("--images", arguments->num_images,
+                   "images of each trial of a study: a simulated sequence, where there are more than two")
+      ->transform(WholeNumberIn(2, kMostSequenceImages))
+      ->capture_default_str();
+  command
+      ->add_option("--loops", arguments->longest_loop,
+                   "also measure the closure of loops of 3 to this many images, by their number")
+      ->transform(WholeNumberIn(3, static_cast<std::int64_t>(kMostLoopImages)));
   command->add_option("--twins", arguments->num_twins, "simulated twins of each pair")
       ->transform(WholeNumberIn(1, 100))
       ->capture_default_str();

@@ -168,7 +168,8 @@ TrialData SimulatedData::MakeFrom(const Scene& scene, std::span<const double> no
                                   RandomStream& outlier_rng) const {
   RandomStream unused = StreamFor({}, StreamPurpose::kNoise);
   const GivenNoise noise(noise_->sigma_px(), normals);
-  Observation observation = Simulate([&] { return Observe(scene, noise, outliers_, unused, outlier_rng); });
+  Observation observation =
+      Simulate([&] { return Observe(scene, noise, outliers_, unused, outlier_rng, defects_); });
   return Give(scene, std::move(observation), outlier_rng);
 }
 

@@ -60,6 +60,7 @@ class SimulatedData : public DataSource {
   double sigma_px() const { return noise_->sigma_px(); }
   // Whether the noise is sigma_px times standard normal numbers (`noise: gaussian`).
   bool HasNormalNoise() const { return choices_.noise == "gaussian"; }
+  bool HasRollingShutter() const { return defects_.rolling_shutter != 0.0; }
   // The second half with these numbers, four for each point of the scene (x1, y1, x2, y2), and outliers from
   // a stream of one's own, then the noise of priors. Severity is not measured.
   TrialData MakeFrom(const Scene& scene, std::span<const double> normals, RandomStream& outlier_rng) const;

@@ -6,7 +6,7 @@ import re
 
 from recipes import MADE, RESULTS, ROOT, data, read_recipes
 from tables import as_number, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
-from validation_blocks import caught, median_ratios, truth_free, validation_values
+from validation_blocks import caught, closures, median_ratios, truth_free, validation_values
 
 REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
 
@@ -312,4 +312,4 @@ SPECIAL = {"made": made, "list": all_results, "largest_sigma": largest_sigma, "p
            "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
            "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "against": against, "transfer": transfer,
            "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,
-           "caught": caught, "validation_values": validation_values, "median_ratios": median_ratios, "twins": twins, "twin_values": twin_values}
+           "caught": caught, "closures": closures, "validation_values": validation_values, "median_ratios": median_ratios, "twins": twins, "twin_values": twin_values}

@@ -116,11 +116,24 @@ def natural(row):
     return share(row, 3) if row.get("lower") else number(row)
 
 
+def covered(row):
+    """The share of loops within their region, of `rcme validate --loops`."""
+    value, lower, upper = (100 * float(row[name]) for name in ("covered", "covered_lower", "covered_upper"))
+    return f"{value:.0f} [{lower:.0f}, {upper:.0f}] %"
+
+
+def rms_over_sd(row):
+    value, lower, upper = (float(row[name] or "inf") for name in ("rms_over_sd", "rms_over_sd_lower", "rms_over_sd_upper"))
+    words = [f"{each:.2f}" if each < 10 else f"{each:.0f}" for each in (value, lower, upper)]
+    return f"{words[0]} [{words[1]}, {words[2]}]"
+
+
 FORMATS = {
     "rate": rate, "percent": lambda row: rate(row, 1, " %"), "percent2": lambda row: rate(row, 2, " %"),
     "rate2": lambda row: rate(row, 2), "value": lambda row: f"{100 * float(value_of(row)):.1f}",
     "share": share, "share4": lambda row: share(row, 4), "number": number, "scientific": scientific,
     "n": lambda row: f"{int(row['n']):,}", "natural": natural,
+    "covered": covered, "rms_over_sd": rms_over_sd,
     "verdict": lambda row: row["verdict"], "claim": lambda row: row["claim_verdict"],
 }
 

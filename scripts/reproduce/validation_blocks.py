@@ -3,7 +3,7 @@
 import math
 import statistics
 
-from tables import levels_of, markdown, read_table, select, the_row, words_of
+from tables import levels_of, markdown, read_table, rms_over_sd, select, the_row, words_of
 
 
 def truth_free(spec):
@@ -92,3 +92,22 @@ def median_ratios(spec):
         ratios = [sorted(float(row["value"]) for row in select(rows, f"test={test}") if row["value"]) for test in tests]
         body.append([words, *(f"{statistics.median(each):.2f} ({each[0]:.2f} to {each[-1]:.2f})" for each in ratios)])
     return markdown(["", *tests], body)
+
+
+def closures(spec):
+    """Of `rcme validate --loops`, a row per set and number of images: the loops, and for each table (tables: NAME as WORDS; ...) the share
+    within the 95 % region and the root mean square over its standard deviation, shared errors allowed for and ignored."""
+    def cell(row):
+        return f"{100 * float(row['covered']):.0f} %; {rms_over_sd(row)}"
+
+    tables = [(select(read_table(name), "of=pairs"), words) for name, words in spec.parts("tables")]
+    kinds = ("allowed for", "ignored")
+    head = ["set", "images", *(f"{words}: {what}" for _, words in tables for what in ("loops", *(f"shared errors {kind}" for kind in kinds)))]
+    body = []
+    for place in dict.fromkeys((row["set"], row["images"]) for rows, _ in tables for row in rows):
+        line = list(place)
+        for rows, _ in tables:
+            here = {row["shared_errors"]: row for row in rows if (row["set"], row["images"]) == place}
+            line += [next(iter(here.values()))["loops"] if here else "0", *(cell(here[kind]) if kind in here else "-" for kind in kinds)]
+        body.append(line)
+    return markdown(head, body)

@@ -64,6 +64,7 @@ SHORTER = [
     (r"^rcme rare (.*)$", r"rcme rare \1 --set sigma_px=0.65 --particles 20 --replicates 4 --moves 1"),
     (r"^rcme model-choice (.*)$", r"rcme model-choice \1 --trials 1 --set outlier_ratio=0.2"),
     (r"^rcme budget (.*)$", r"rcme budget \1 --calls 1 --set outlier_ratio=0.3"),
+    (r"^rcme validate (.*--trials )\d+ --twins 1 ", r"rcme validate \g<1>3 "),
     (r"^rcme (validate|twin) (.*)$", r"rcme \1 \2 --twins 1"),
 ]
 

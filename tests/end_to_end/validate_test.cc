@@ -80,5 +80,30 @@ TEST_F(ValidateProgram, SaysWhatIsWrong) {
   EXPECT_TRUE(IsRefused(Call(pairs_.path(), {}), {"b.csv"}));
 }
 
+// Closure by length is written where it is asked for, and nothing else changes.
+TEST_F(ValidateProgram, MeasuresClosureByTheLengthOfLoops) {
+  const std::vector<std::string> options = {"--images", "5", "--trials", "4", "--twins", "1", "--no-advice"};
+  ASSERT_EQ(Call(study_, options).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(out_ + "/closure.csv"));
+  const std::string without = Written("validation.csv"), text = Written("validation.txt");
+  std::vector<std::string> with_loops = options;
+  with_loops.insert(with_loops.end(), {"--loops", "6"});
+  const ProgramResult result = Call(study_, with_loops);
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(Written("validation.csv"), without);
+  EXPECT_EQ(result.out.find(text), 0u);
+  const std::string csv = Written("closure.csv");
+  EXPECT_EQ(csv.find("set,estimator,images,shared_errors,of,loops,apart,covered,covered_lower,covered_upper,"
+                     "rms_over_sd,rms_over_sd_lower,rms_over_sd_upper\n"),
+            0u)
+      << csv;
+  for (const char* row : {"rcme_calibrated,3,allowed for,pairs,", "rcme_calibrated,5,ignored,twins,"})
+    EXPECT_NE(csv.find(row), std::string::npos) << row << "\n" << csv;
+  EXPECT_EQ(csv.find("rcme_calibrated,6,"), std::string::npos) << csv;
+  pairs_.Write("a.csv", "# scene: a\n" + MatchHeader() + MatchRows(20));
+  EXPECT_TRUE(IsRefused(Call(pairs_.path(), {"--images", "3"}), {"--images", "PAIRS is a folder"}));
+  EXPECT_TRUE(IsRefused(Call(study_, {"--images", "3", "--data", "noise=laplace"}), {"noise", "gaussian"}));
+}
+
 }  // namespace
 }  // namespace rcme

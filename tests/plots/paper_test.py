@@ -21,6 +21,7 @@ from unittest import mock
 
 from plot_test_case import PLOTS, PlotTestCase
 
+import closure_test
 import crossings_test
 import fake_audit
 import fake_integrity
@@ -82,6 +83,7 @@ def cases(folder):
         ("stanford", [written("integrity.json", fake_integrity.content())], False),
         ("validation", [written("validation.json", validation_test.fake())], False),
         ("audit_power", [written("power.csv", POWER)], False),
+        ("closure", [written("closure.csv", closure_test.TABLE)], False),
         ("benchmarks", [written("benchmarks.json", benchmarks())], False),
         ("tune", [written("tune.json", fake_tune.tune([fake_tune.option("mu", ("0", "1", "2"), "nats"), fake_tune.option("lambda", ("0.5", "2"))]))], False),
         ("transfer", [written("transfer.json", fake_tune.transfer(3))], False),

@@ -145,5 +145,62 @@ TEST(SharedMemberMean, ItsIntervalCoversWhereImagesAreShared) {
   EXPECT_LT(student_covers.interval().upper, 0.90) << student_covers;
 }
 
+// Groups 1 2, 2 3, 3 4 with values 1, 2, 6: two apart, mean 3, squared deviations 14; s^2 = 2 / 1 * 14 / 3,
+// the standard error sqrt(s^2 / 2), and t_1 = 12.7062.
+TEST(SharedGroupMean, ByHand) {
+  const SharedGroupMean mean =
+      MeasureSharedGroupMean(std::vector<GroupValue>{{{1, 2}, 1.0}, {{2, 3}, 2.0}, {{3, 4}, 6.0}});
+  EXPECT_EQ(mean.n, 3);
+  EXPECT_EQ(mean.num_apart, 2);
+  EXPECT_DOUBLE_EQ(mean.value, 3.0);
+  EXPECT_NEAR(mean.interval.upper - 3.0, 12.706205 * std::sqrt(14.0 / 3.0), 1e-5);
+  EXPECT_NEAR(mean.interval.lower + mean.interval.upper, 6.0, 1e-12);
+  const SharedGroupMean alone = MeasureSharedGroupMean(std::vector<GroupValue>{{{1, 2}, 1.0}, {{2, 3}, 2.0}});
+  EXPECT_EQ(alone.num_apart, 1);
+  EXPECT_TRUE(std::isinf(alone.interval.lower) && std::isinf(alone.interval.upper));
+  EXPECT_TRUE(std::isnan(MeasureSharedGroupMean({}).value));
+}
+
+TEST(SharedGroupRate, IsExactOfGroupsApart) {
+  std::vector<GroupValue> groups;
+  for (int i = 0; i < 20; ++i) groups.push_back({{2 * i, 2 * i + 1}, i < 8 ? 1.0 : 0.0});
+  const Interval exact = ExactBinomialInterval(8, 20);
+  const SharedGroupMean apart = MeasureSharedGroupRate(groups);
+  EXPECT_DOUBLE_EQ(apart.value, 0.4);
+  EXPECT_NEAR(apart.interval.lower, exact.lower, 1e-9);
+  EXPECT_NEAR(apart.interval.upper, exact.upper, 1e-9);
+  const std::vector<GroupValue> twice = {{{1, 2, 3}, 1.0}, {{3, 4, 5}, 1.0}, {{5, 6, 7}, 1.0}};  // two apart
+  EXPECT_NEAR(MeasureSharedGroupRate(twice).interval.lower, ExactBinomialInterval(2, 2).lower, 1e-9);
+  EXPECT_EQ(MeasureSharedGroupRate({}).interval.upper, 1.0);
+  const std::vector<GroupValue> all(6, {{1}, 1.0});  // a rate of one to the bit
+  EXPECT_EQ(MeasureSharedGroupRate(all).value, 1.0);
+  EXPECT_EQ(MeasureSharedGroupRate(all).interval.upper, 1.0);
+}
+
+// Sums of four consecutive normal numbers of 40: the interval covers their mean, zero, in 95 % or more; one
+// that takes the 37 sums for independent covers in less than 75 %.
+TEST(SharedGroupMean, CoversWhereGroupsOverlap) {
+  CoverageCount allowed_for, ignored;
+  for (std::uint32_t trial = 0; trial < 2000; ++trial) {
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 96});
+    std::vector<double> of_member(40);
+    rng.FillNormal(of_member);
+    std::vector<GroupValue> groups, independent;
+    for (std::int64_t first = 0; first + 4 <= 40; ++first) {
+      GroupValue group;
+      for (std::int64_t member = first; member < first + 4; ++member) {
+        group.members.push_back(member);
+        group.value += of_member[static_cast<size_t>(member)];
+      }
+      groups.push_back(group);
+      independent.push_back({{first}, group.value});
+    }
+    allowed_for.Add(MeasureSharedGroupMean(groups).interval.Contains(0.0));
+    ignored.Add(MeasureSharedGroupMean(independent).interval.Contains(0.0));
+  }
+  EXPECT_GT(allowed_for.interval().upper, 0.95) << allowed_for;
+  EXPECT_LT(ignored.interval().upper, 0.75) << ignored;
+}
+
 }  // namespace
 }  // namespace rcme

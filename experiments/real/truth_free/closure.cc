@@ -53,9 +53,10 @@ class Moves {
     const MotionProblem& problem = step.pair->problem;
     const std::vector<int>& inliers = step.estimate->inliers;
     const MatchScores scores = ScoreFitted(problem, inliers, step.estimate->cam2_from_cam1);
+    const NamedPair& named = step.key_points ? *step.key_points : *step.pair;
     const Eigen::LDLT<Matrix5d> ldlt(scores.information);
     for (size_t k = 0; k < inliers.size(); ++k) {
-      const Correspondence& match = problem.matches[static_cast<size_t>(inliers[k])];
+      const Correspondence& match = named.problem.matches[static_cast<size_t>(inliers[k])];
       const Vector5d gain = ldlt.solve(scores.rows[k]);
       const double kept = std::max(1.0 - gain.dot(scores.rows[k]), 0.05);
       moves_.emplace_back(jacobian * gain * (scores.residuals[k] / kept));
@@ -103,29 +104,35 @@ LoopError DirectionClosure(AnsweredLoop triple) {
   return LoopError::Constant(1, first.dot(second.cross(last)));
 }
 
-std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of, const LoopError& expected) {
+std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of, const LoopError& expected,
+                                        SharedErrors shared) {
   LoopCovariance sigma = LoopCovariance::Zero(expected.size(), expected.size());
   Moves moves;
   for (size_t k = 0; k < loop.size(); ++k) {
     const LoopJacobian jacobian = ComputeLoopJacobian(loop, k, error_of);
     sigma += jacobian * loop[k].estimate->pose_cov * jacobian.transpose();
+    if (shared == SharedErrors::kIgnored) continue;
     const size_t next = (k + 1) % loop.size();
     moves.Add(loop[k], jacobian, loop[k].is_forward ? k : next, loop[k].is_forward ? next : k);
   }
+  const Eigen::LLT<LoopCovariance> llt(sigma);
+  if (llt.info() != Eigen::Success) return std::nullopt;
+  const LoopError whitened = llt.matrixL().solve(LoopError(error_of(loop) - expected));
+  if (shared == SharedErrors::kIgnored) return whitened.squaredNorm();
   if (moves.IsEmpty()) return std::nullopt;
-  const Eigen::LLT<LoopCovariance> llt(sigma), llt_single(moves.OfSingleMatches());
-  if (llt.info() != Eigen::Success || llt_single.info() != Eigen::Success) return std::nullopt;
+  const Eigen::LLT<LoopCovariance> llt_single(moves.OfSingleMatches());
+  if (llt_single.info() != Eigen::Success) return std::nullopt;
   const LoopCovariance half = llt_single.matrixL().solve(moves.OfSharedKeyPoints());
   const LoopCovariance half_turned = half.transpose();
   const LoopCovariance ratio = llt_single.matrixL().solve(half_turned);
   const Eigen::LLT<LoopCovariance> llt_ratio(ratio);
   if (llt_ratio.info() != Eigen::Success) return std::nullopt;
-  const LoopError whitened = llt.matrixL().solve(LoopError(error_of(loop) - expected));
   return whitened.dot(llt_ratio.solve(whitened));
 }
 
 std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
-                                        const std::vector<Loop>& loops, LoopErrorOf error_of) {
+                                        const std::vector<Loop>& loops, LoopErrorOf error_of,
+                                        SharedErrors shared, TwinKeyPoints twins) {
   std::vector<UnitValues> closures;
   for (const Loop& loop : loops) {
     if (error_of == DirectionClosure && loop.size() != 3) continue;
@@ -135,7 +142,8 @@ std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
       for (const LoopStep& step : loop) {
         const Answered* answered = choose(answers[step.pair]);
         if (!answered || !answered->IsOk()) return std::vector<AnsweredStep>();
-        steps.push_back({&answered->pair, &answered->estimate, step.is_forward});
+        const NamedPair* named = twins == TwinKeyPoints::kOfPairs ? &answers[step.pair].whole.pair : nullptr;
+        steps.push_back({&answered->pair, &answered->estimate, step.is_forward, named});
       }
       return steps;
     };
@@ -146,7 +154,7 @@ std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
     const auto add = [&](const std::vector<AnsweredStep>& of, const LoopError& expected,
                          std::vector<double>* to) {
       if (of.empty()) return;
-      const std::optional<double> closure = NormalizedClosure(of, error_of, expected);
+      const std::optional<double> closure = NormalizedClosure(of, error_of, expected, shared);
       if (closure) to->push_back(*closure);
     };
     add(steps, LoopError::Zero(truth_of_twins.size()), &values.observed);

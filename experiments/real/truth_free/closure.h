@@ -17,6 +17,8 @@ struct AnsweredStep {
   const NamedPair* pair;
   const MotionEstimate* estimate;
   bool is_forward = true;  // from the pair's image 1 to its image 2
+  // Whose matches, of the same numbers, tell by equal coordinates which share a key point; null: the pair's.
+  const NamedPair* key_points = nullptr;
 };
 using AnsweredLoop = std::span<const AnsweredStep>;
 
@@ -31,18 +33,29 @@ LoopError RotationClosure(AnsweredLoop loop);
 // more images any directions can be sides of a polygon.
 LoopError DirectionClosure(AnsweredLoop triple);
 
+// Whether Sigma knows that key points are shared by the pairs of a loop.
+enum class SharedErrors { kAllowedFor, kIgnored };
+
 // (c - c_0)' Sigma^-1 (c - c_0), chi-square with as many degrees of freedom as c has coordinates. To first
 // order dc = sum G_k q_k, q_k (5x1) the errors of motion k, G_k = dc/dq_k by differences, so that Sigma is
 // Sigma_0 = sum G_k C_k G_k' where pairs are independent. They are not: a key point's error is in every match
 // of it. The moves of c that the residuals of single matches make, G_k A^-1 J' r / (1 - h), have the outer
 // products V_i, match by match, and V_c, summed first over the matches that share key points; Sigma = L_0
-// (L_i^-1 V_c L_i^-T) L_0', L_0 and L_i the roots of Sigma_0 and V_i. Nothing where either is not positive
-// definite. `expected` is c_0: zero, or, of a twin, what its truth closes to.
-std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of, const LoopError& expected);
+// (L_i^-1 V_c L_i^-T) L_0', L_0 and L_i the roots of Sigma_0 and V_i. Where they are ignored it is
+// Sigma_0. Nothing where a matrix is not positive definite. `expected` is c_0: zero, or, of a twin, what its
+// truth closes to.
+std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of, const LoopError& expected,
+                                        SharedErrors shared = SharedErrors::kAllowedFor);
+
+// Which coordinates tell that matches of two twins share a key point: their own, which differ from pair to
+// pair, since each twin is moved to the geometry of its pair; or those of the pairs that they were made of.
+enum class TwinKeyPoints { kOwn, kOfPairs };
 
 // Of each loop whose pairs are answered: the value above, and those of its twins. A pair that is in several
 // loops makes these dependent. Directions: of the loops of three images.
 std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
-                                        const std::vector<Loop>& loops, LoopErrorOf error_of);
+                                        const std::vector<Loop>& loops, LoopErrorOf error_of,
+                                        SharedErrors shared = SharedErrors::kAllowedFor,
+                                        TwinKeyPoints twins = TwinKeyPoints::kOwn);
 
 }  // namespace rcme

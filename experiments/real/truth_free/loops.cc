@@ -122,7 +122,53 @@ class Sums {
   std::map<size_t, std::vector<size_t>> with_least_;  // by the least pair in each
 };
 
+// Ways from an image to later ones, that end where a pair leads back to it.
+class WaysForth {
+ public:
+  WaysForth(const Network& network, size_t first) : network_(network) {
+    for (const Way& way : network.WaysFrom(first)) {
+      if (way.to > first) back_from_[way.to] = {way.step.pair, !way.step.is_forward};
+    }
+  }
+
+  // Forth by `num_steps` from the image and back by one. Empty: there is no such way.
+  Loop Find(size_t image, size_t num_steps) {
+    if (num_steps == 0) {
+      const auto back = back_from_.find(image);
+      return back == back_from_.end() ? Loop() : Loop{back->second};
+    }
+    if (dead_ends_.contains({image, num_steps})) return {};
+    std::map<size_t, LoopStep> later;  // by the image it leads to
+    for (const Way& way : network_.WaysFrom(image)) {
+      if (way.to > image) later[way.to] = way.step;
+    }
+    for (const auto& [to, step] : later) {
+      Loop rest = Find(to, num_steps - 1);
+      if (rest.empty()) continue;
+      rest.insert(rest.begin(), step);
+      return rest;
+    }
+    dead_ends_.insert({image, num_steps});
+    return {};
+  }
+
+ private:
+  const Network& network_;
+  std::map<size_t, LoopStep> back_from_;
+  std::set<std::pair<size_t, size_t>> dead_ends_;  // image, number of steps
+};
+
 }  // namespace
+
+std::vector<Loop> FindLoopsOfLength(const std::vector<NamedPair>& pairs, size_t length) {
+  const Network network(pairs);
+  std::vector<Loop> loops;
+  for (size_t first = 0; first < network.num_images(); ++first) {
+    Loop loop = WaysForth(network, first).Find(first, length - 1);
+    if (!loop.empty()) loops.push_back(std::move(loop));
+  }
+  return loops;
+}
 
 std::vector<Loop> FindLoops(const std::vector<NamedPair>& pairs, size_t longest) {
   const Network network(pairs);

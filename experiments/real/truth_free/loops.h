@@ -27,4 +27,9 @@ using Loop = std::vector<LoopStep>;  // from each image to the next, at least th
 // finds it (Horton 1987; Mehlhorn and Michail 2009).
 std::vector<Loop> FindLoops(const std::vector<NamedPair>& pairs, size_t longest = kLongestLoop);
 
+// Loops of `length` images whose errors grow with it: forth from image to image in the order of their names,
+// and back by one pair. From each image at most one, whose steps forth are the smallest. A video whose images
+// are matched with the next w has them up to a length of w + 1.
+std::vector<Loop> FindLoopsOfLength(const std::vector<NamedPair>& pairs, size_t length);
+
 }  // namespace rcme

@@ -5,10 +5,19 @@
 #include <filesystem>
 #include <map>
 
+#include "experiments/data/make_data.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
+#include "experiments/data/simulated_sequence.h"
 
 namespace rcme {
+namespace {
+
+std::string NameSet(const StudyPlan& plan, const Condition& condition) {
+  return condition.levels.empty() ? plan.study.name : fmt::format("{}", fmt::join(condition.levels, ", "));
+}
+
+}  // namespace
 
 std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px) {
   std::map<std::string, PairSet> sets;
@@ -32,9 +41,7 @@ std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px
 std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan) {
   std::vector<PairSet> all;
   for (const Condition& condition : plan.conditions) {
-    PairSet set{
-        condition.levels.empty() ? plan.study.name : fmt::format("{}", fmt::join(condition.levels, ", ")),
-        {}};
+    PairSet set{NameSet(plan, condition), {}};
     // A simulated motion is even in time, and each pair has the same; real pairs of a study do not say.
     const double seconds_between =
         condition.source->SharedScene() ? std::numeric_limits<double>::quiet_NaN() : 1.0;
@@ -43,6 +50,28 @@ std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan) {
       set.pairs.push_back({fmt::format("{} trial {}", set.name, trial), "", "",
                            condition.source->Make(NameOfScene(plan, condition, number)).problem,
                            seconds_between});
+    }
+    all.push_back(std::move(set));
+  }
+  return all;
+}
+
+std::vector<PairSet> SequencesOfStudy(const StudyPlan& plan, int num_images) {
+  std::vector<PairSet> all;
+  for (const Condition& condition : plan.conditions) {
+    if (!condition.source->FindScene(NameOfScene(plan, condition, 0)))
+      throw InputError(fmt::format("study {}: a sequence of images needs simulated scenes, not real pairs",
+                                   plan.study.name));
+    const std::shared_ptr<const SimulatedData> data =
+        MakeSimulatedData(CombineSettings(plan.study, condition.levels), BaselineSearch::kWithFirstScene);
+    PairSet set{NameSet(plan, condition), {}};
+    for (int trial = 0; trial < condition.num_trials; ++trial) {
+      const StreamName name = NameOfScene(plan, condition, static_cast<std::uint32_t>(trial));
+      const auto name_image = [&](int image) { return fmt::format("trial {:06} image {:02}", trial, image); };
+      for (SequencePair& pair : SimulateSequence(*data, name, num_images))
+        set.pairs.push_back(
+            {fmt::format("{} trial {} images {} and {}", set.name, trial, pair.image1, pair.image2),
+             name_image(pair.image1), name_image(pair.image2), std::move(pair.data.problem)});
     }
     all.push_back(std::move(set));
   }

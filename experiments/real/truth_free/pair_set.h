@@ -28,5 +28,8 @@ struct PairSet {
 std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px);
 // Every trial of every condition of a study.
 std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan);
+// Each trial a sequence of images (experiments/data/simulated_sequence.h), whose pairs name them. Throws
+// InputError for a study of real pairs.
+std::vector<PairSet> SequencesOfStudy(const StudyPlan& plan, int num_images);
 
 }  // namespace rcme

@@ -238,6 +238,7 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
   report.correlations = MeasureCorrelations(results, rng);
   report.calibration = Calibrate(answers, estimator, options.seed, steps);
   report.sizes = TestKeyPointSizes(answers);
+  report.closures = MeasureClosureByLength(answers, options.longest_loop);
   report.advice = FindReasons(report);
   return report;
 }

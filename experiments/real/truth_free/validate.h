@@ -8,6 +8,7 @@
 #include "estimator/motion_estimator.h"
 #include "experiments/core/work/kept_steps.h"
 #include "experiments/real/truth_free/calibration_test.h"
+#include "experiments/real/truth_free/closure_by_length.h"
 #include "experiments/real/truth_free/covariance_test.h"
 #include "experiments/real/truth_free/pair_set.h"
 #include "experiments/real/truth_free/size_test.h"
@@ -41,12 +42,14 @@ struct SetReport {
   std::vector<DistanceCorrelation> correlations;
   CalibrationReport calibration;
   SizeReport sizes;
-  std::vector<std::string> advice;  // what to change, in words
+  std::vector<LengthClosure> closures;  // where they are asked for
+  std::vector<std::string> advice;      // what to change, in words
 };
 
 struct ValidationOptions {
   std::uint64_t seed = 1;
-  int num_twins = 3;  // of each pair
+  int num_twins = 3;        // of each pair
+  size_t longest_loop = 0;  // images, of the closure by length; 0: it is not asked for
 };
 
 // What is computed of a pair is a step. Pure in the options' seed and the pairs' names. The random numbers of

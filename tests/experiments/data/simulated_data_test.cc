@@ -177,5 +177,22 @@ TEST(SimulatedData, ABiasTurnsTheMeasurementAndNotItsCovariance) {
   EXPECT_NEAR(RotationAngleBetween(right.R, wrong.R), 5.0 * kRadPerDeg, 1e-9);
 }
 
+// Catches noise of given numbers that leaves the defects out.
+TEST(SimulatedData, GivenNoiseComesOnTopOfTheDefects) {
+  const std::vector<double> none(160, 0.0);
+  const auto matches_with = [&](const Settings& more) {
+    Settings settings = {{"outlier_ratio", "0"}};
+    settings.insert(settings.end(), more.begin(), more.end());
+    const auto data = DataWith(settings);
+    RandomStream rng = StreamFor(kName, StreamPurpose::kOutliers);
+    return data->MakeFrom(data->DrawScene(kName), none, rng).problem.matches;
+  };
+  const std::vector<Correspondence> ideal = matches_with({}), bent = matches_with({{"distortion_k1", "0.1"}});
+  double greatest_px = 0.0;
+  for (size_t i = 0; i < ideal.size(); ++i)
+    greatest_px = std::max(greatest_px, (ideal[i].x1_px - bent[i].x1_px).norm());
+  EXPECT_GT(greatest_px, 1.0);
+}
+
 }  // namespace
 }  // namespace rcme

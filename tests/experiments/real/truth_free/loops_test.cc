@@ -55,5 +55,39 @@ TEST(FindLoops, AreOfAtMostTheLongest) {
   EXPECT_EQ(FindLoops(MakeNamedPairs(ring), 5).size(), 1u);
 }
 
+// Six images, each matched with the next three, some pairs turned: loops of three and four go forth by the
+// smallest steps and back by one pair; of five there is none. Without the pair of b and c the loop of a goes
+// by d.
+TEST(FindLoopsOfLength, GoForthBySmallStepsAndBackByOnePair) {
+  std::vector<std::pair<std::string, std::string>> window;
+  const std::vector<std::string> names = {"a", "b", "c", "d", "e", "f"};
+  for (size_t i = 0; i < 6; ++i) {
+    for (size_t j = i + 1; j < std::min<size_t>(i + 4, 6); ++j)
+      window.push_back(i % 2 == 0 ? std::pair{names[i], names[j]} : std::pair{names[j], names[i]});
+  }
+  const auto images_of = [](const std::vector<NamedPair>& pairs, size_t length) {
+    std::vector<std::string> all;
+    for (const Loop& loop : FindLoopsOfLength(pairs, length)) {
+      EXPECT_EQ(loop.size(), length);
+      std::string images;
+      for (size_t k = 0; k < loop.size(); ++k) {
+        images += FindStepEnds(pairs, loop[k]).first;
+        EXPECT_EQ(FindStepEnds(pairs, loop[k]).second,
+                  FindStepEnds(pairs, loop[(k + 1) % loop.size()]).first);
+      }
+      all.push_back(images);
+    }
+    return all;
+  };
+  using Images = std::vector<std::string>;
+  const std::vector<NamedPair> pairs = MakeNamedPairs(window);
+  EXPECT_EQ(images_of(pairs, 3), (Images{"abc", "bcd", "cde", "def"}));
+  EXPECT_EQ(images_of(pairs, 4), (Images{"abcd", "bcde", "cdef"}));
+  EXPECT_EQ(images_of(pairs, 5), Images{});
+  std::erase(window, std::pair<std::string, std::string>{"c", "b"});
+  std::erase(window, std::pair<std::string, std::string>{"b", "c"});
+  EXPECT_EQ(images_of(MakeNamedPairs(window), 3), (Images{"abd", "bde", "cde", "def"}));
+}
+
 }  // namespace
 }  // namespace rcme

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/data/match_file.h"
+#include "experiments/real/truth_free/loops.h"
 #include "experiments/trial/trial.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -56,6 +57,33 @@ TEST(PairSetsOfStudy, AreTheTrialsOfItsConditions) {
       EXPECT_EQ(found.matches[3].x2_px, expected.matches[3].x2_px) << c << " " << trial;
     }
   }
+}
+
+// Each trial of four images is five pairs that name its images, and shares none with another trial.
+TEST(SequencesOfStudy, NameTheImagesOfEachTrial) {
+  const std::vector<PairSet> sets = SequencesOfStudy(MakePlan(SmallStudy()), 4);
+  ASSERT_EQ(sets.size(), 2u);
+  ASSERT_EQ(sets[0].pairs.size(), 30u);
+  EXPECT_EQ(sets[0].pairs[0].image1, "trial 000000 image 00");
+  EXPECT_EQ(sets[0].pairs[0].image2, "trial 000000 image 01");
+  EXPECT_EQ(sets[0].pairs[4].image1, "trial 000000 image 00");
+  EXPECT_EQ(sets[0].pairs[4].image2, "trial 000000 image 03");
+  EXPECT_EQ(sets[0].pairs[5].image1, "trial 000001 image 00");
+  EXPECT_EQ(FindLoopsOfLength(sets[0].pairs, 4).size(), 6u);
+}
+
+TEST(SequencesOfStudy, RefusesRealPairs) {
+  const TempFolder folder;
+  const MotionProblem problem = TwoCameraProblem(20, 0.5, 0.0, 1);
+  MatchFile file;
+  file.camera1 = problem.camera1;
+  file.camera2 = problem.camera2;
+  file.matches = problem.matches;
+  WriteMatchFile(file, folder.Path("pair.csv"));
+  Study study = SmallStudy();
+  study.factors.clear();
+  study.data = {{"scene", "match_files"}, {"folder", folder.path()}};
+  EXPECT_THROW(SequencesOfStudy(MakePlan(study), 4), InputError);
 }
 
 }  // namespace
