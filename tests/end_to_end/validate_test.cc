@@ -38,7 +38,7 @@ TEST_F(ValidateProgram, OfAFolderSaysOfEachSceneWhatItFound) {
        {"a: 2 pairs, 2 answered, 0 loops", "b: 1 pairs", "spatial_halves", "closure", "no data"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in\n" << result.out;
   EXPECT_NE(Written("validation.csv").find("\na,2,2,spatial_halves,"), std::string::npos);
-  EXPECT_NE(Written("validation.json").find("rcme validation 2"), std::string::npos);
+  EXPECT_NE(Written("validation.json").find("rcme validation 3"), std::string::npos);
   const std::string once = Written("validation.json");
   ASSERT_EQ(Call(pairs_.path(), {}).exit_code, 0);
   EXPECT_EQ(Written("validation.json"), once);

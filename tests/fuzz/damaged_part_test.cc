@@ -175,20 +175,20 @@ class DamagedParts : public testing::Test {
   DividedTables Splitting() const {
     const RareEffort effort{{20, 2, 0.2}, 6};
     return Checkpoint("splitting", PlanSplitting(plan_, 1, effort), [this, effort](Runner* runner) {
-      return RareAsJson(plan_, effort, SplitFailures(plan_, 1, effort, runner));
+      return MakeRareResult(plan_, effort, SplitFailures(plan_, 1, effort, runner)).json;
     });
   }
 
   DividedTables Strata() const {
     const StratifiedEffort effort{600, 0.1};
     return Checkpoint("strata", PlanStrata(plan_, effort), [this, effort](Runner* runner) {
-      return StratifiedAsJson(plan_, effort, StratifyFailures(plan_, effort, runner));
+      return MakeStratifiedResult(plan_, effort, StratifyFailures(plan_, effort, runner)).json;
     });
   }
 
   DividedTables Choices() const {
     return Checkpoint("choices", PlanChoices(plan_), [this](Runner* runner) {
-      return ChoicesAsJson(plan_, CountChoices(plan_, {}, runner));
+      return MakeChoiceResult(plan_, CountChoices(plan_, {}, runner)).json;
     });
   }
 
@@ -205,7 +205,7 @@ class DamagedParts : public testing::Test {
     return Checkpoint("validation", Steps(), [this](Runner* runner) {
       KeptSteps steps(runner);
       const PairSet set = PairSetsOfStudy(plan_).front();
-      return ValidationAsJson({Validate(set, *plan_.estimators.back(), {1, 1}, &steps)});
+      return MakeValidationResult({Validate(set, *plan_.estimators.back(), {1, 1}, &steps)}).json;
     });
   }
 

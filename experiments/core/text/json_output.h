@@ -20,9 +20,9 @@ inline constexpr const char* kIntegrityFormat = "rcme integrity 1";
 inline constexpr const char* kFailuresFormat = "rcme failures 1";
 inline constexpr const char* kListFormat = "rcme list 1";
 inline constexpr const char* kMarginalsFormat = "rcme marginals 1";
-inline constexpr const char* kModelChoiceFormat = "rcme model choice 1";
+inline constexpr const char* kModelChoiceFormat = "rcme model choice 2";
 inline constexpr const char* kPaperTableFormat = "rcme paper table 1";
-inline constexpr const char* kRareFormat = "rcme rare 1";
+inline constexpr const char* kRareFormat = "rcme rare 2";
 inline constexpr const char* kReliabilityFormat = "rcme reliability 1";
 inline constexpr const char* kReportFormat = "rcme report 1";
 inline constexpr const char* kSummaryFormat = "rcme summary 1";
@@ -32,7 +32,7 @@ inline constexpr const char* kTrialFormat = "rcme trial 2";
 inline constexpr const char* kTruthCheckFormat = "rcme truth check 1";
 inline constexpr const char* kTuningFormat = "rcme tuning 1";
 inline constexpr const char* kTwinFormat = "rcme twin 1";
-inline constexpr const char* kValidationFormat = "rcme validation 2";
+inline constexpr const char* kValidationFormat = "rcme validation 3";
 inline constexpr const char* kWorstFormat = "rcme worst 1";  // written by plots/worst_search/report.py
 
 // The text of an object with `format` as its first key. Names are whatever bytes the input held: what is no
