@@ -7,6 +7,7 @@
 
 #include "tests/end_to_end/bad_input.h"
 #include "tests/test_support/match_text.h"
+#include "tests/test_support/result_formats.h"
 
 namespace rcme {
 namespace {
@@ -42,6 +43,7 @@ TEST_F(ValidateProgram, OfAFolderSaysOfEachSceneWhatItFound) {
   const std::string once = Written("validation.json");
   ASSERT_EQ(Call(pairs_.path(), {}).exit_code, 0);
   EXPECT_EQ(Written("validation.json"), once);
+  ExpectFormatsAgree({"validate", pairs_.path(), "--twins", "1", "--no-advice"});
   ASSERT_EQ(Call(pairs_.path(), {"--seed", "2"}).exit_code, 0);
   EXPECT_NE(Written("validation.json"), once);
   const ProgramResult one = Call(pairs_.path(), {"--scene", "b", "--set", "covariance=robust"});

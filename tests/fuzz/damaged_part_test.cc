@@ -18,6 +18,7 @@
 #include "experiments/audit/claims/audit_work.h"
 #include "experiments/audit/model_choice/choice_output.h"
 #include "experiments/audit/validity/map_work.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/rare/rare_output.h"
 #include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/twin_output.h"
@@ -152,8 +153,8 @@ class DamagedParts : public testing::Test {
       const WorkPlan pieces = PlanMapWork(work);
       const WorkResults merged = MergeParts(pieces, paths);
       RequireWhole(pieces, merged);
-      return ValidityMapCsv(work.map, TrialsIn(work, pieces, merged)) +
-             ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, merged));
+      return RenderCsv(MakeValidityMapTable(work.map, TrialsIn(work, pieces, merged))) +
+             RenderCsv(MakeValidityReferenceTable(*work.reference, CountsIn(work, pieces, merged)));
     };
     return {"map", paths, tables};
   }
