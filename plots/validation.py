@@ -23,7 +23,8 @@ example:
   rcme plot validation validation/validation.json --out validation
 draws validation.png and validation.pdf.
 """
-FORMAT = "rcme validation 2"
+FORMAT = "rcme validation 3"
+PARTS = ("tests", "correlations", "camera_faults")  # tables with a column `set`
 CAPTION = ("In brackets: pairs of the scene; bars: intervals; grey: what counts as nominal; correlation of neighbouring residuals "
            "minus that of the simulated twin; camera faults over what is nominal (below 1), linear up to there.")
 TESTS = {"spatial_halves": "halves of the image", "random_halves": "random halves", "closure": "rotations around loops",
@@ -72,12 +73,12 @@ def draw_ratios(axes, sets):
     for row, one_set in enumerate(sets):
         for number, test in enumerate(drawn_tests(one_set)):
             y = row + row_height(looks) * (number - (len(looks) - 1) / 2)
-            lower, upper = (x if x is not None and x > 0 else test["ratio"] for x in test["interval"])
+            lower, upper = (x if x is not None and x > 0 else test["ratio"] for x in test["ratio_interval"])
             color = COLORS.get(test["verdict"], "0.45")
             axes.plot([lower, upper], [y, y], color=color, linewidth=1.6)
             axes.plot([test["ratio"]], [y], looks[test["test"]].marker, color=color, markersize=4.5)
     number_log_axis(axes)
-    axes.set_yticks(range(len(sets)), [f"{style.label_of(s['name'])} ({s['pairs']})" for s in sets])
+    axes.set_yticks(range(len(sets)), [f"{style.label_of(s['set'])} ({s['pairs']})" for s in sets])
     axes.set_ylim(len(sets) - 0.5, -0.5)
     axes.set_xlabel("covariances too small by, in variance")
     return [mark(look.label, look.marker, "0.45") for look in looks.values()] + [
@@ -85,11 +86,11 @@ def draw_ratios(axes, sets):
 
 
 def has_faults(one_set):
-    return any(is_known(fault["beside_others"]) for fault in one_set["camera_faults"])
+    return any(is_known(fault) for fault in one_set["camera_faults"])
 
 
-def is_known(found):
-    return found["value"] is not None and found["interval"][0] is not None
+def is_known(fault):
+    return fault["beside_others"] is not None and fault["beside_others_interval"][0] is not None
 
 
 def draw_faults(axes, sets):
@@ -100,12 +101,11 @@ def draw_faults(axes, sets):
     axes.axvline(0, color="0.6", linewidth=0.8, zorder=1)
     for row, one_set in enumerate(sets):
         for number, fault in enumerate(one_set["camera_faults"]):
-            found = fault["beside_others"]
-            if not is_known(found):
+            if not is_known(fault):
                 continue
             look = looks[fault["fault"]]
             value, lower, upper = (min(max(x / fault["nominal"], -FARTHEST_FAULT), FARTHEST_FAULT)
-                                   for x in (found["value"], *found["interval"]))
+                                   for x in (fault["beside_others"], *fault["beside_others_interval"]))
             y = row + row_height(looks) * (number - (len(looks) - 1) / 2)
             axes.plot([lower, upper], [y, y], color=look.color, linewidth=1.2)
             axes.plot([value], [y], look.marker, color=look.color, markersize=4,
@@ -115,7 +115,7 @@ def draw_faults(axes, sets):
     axes.set_xticks([-100, -10, -1, 0, 1, 10, 100] if sheet.current().width is None else [-100, -1, 1, 100])
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_yticks(range(len(sets)), [style.label_of(s["name"]) for s in sets])
+    axes.set_yticks(range(len(sets)), [style.label_of(s["set"]) for s in sets])
     axes.set_ylim(len(sets) - 0.5, -0.5)
     axes.set_xlabel("camera faults over nominal")
     return [mark(f"camera: {look.label}", look.marker, look.color) for look in looks.values()]
@@ -124,9 +124,9 @@ def draw_faults(axes, sets):
 def draw_correlations(axes, sets):
     """Where the sets' lines end, for their names."""
     axes.axhline(0, color="0.6", linewidth=0.8)
-    looks, ends = style.looks_of([one_set["name"] for one_set in sets]), []
+    looks, ends = style.looks_of([one_set["set"] for one_set in sets]), []
     for number, one_set in enumerate(sets):
-        look, known = looks[one_set["name"]], [c for c in one_set["correlations"] if c["difference_interval"][0] is not None]
+        look, known = looks[one_set["set"]], [c for c in one_set["correlations"] if c["difference_interval"][0] is not None]
         if not known:
             continue
         x = [math.sqrt(max(c["from_px"], 0.25) * c["to_px"]) * 1.03 ** number for c in known]
@@ -140,8 +140,14 @@ def draw_correlations(axes, sets):
     return ends
 
 
+def sets_with_parts(validation):
+    """The rows of the table of sets, each with the rows of its parts."""
+    return [one_set | {part: [row for row in validation[part] if row["set"] == one_set["set"]] for part in PARTS}
+            for one_set in validation["sets"]]
+
+
 def draw(validation):
-    sets = validation["sets"]
+    sets = sets_with_parts(validation)
     width, height = sheet.current().width or 13, 1.4 + 0.45 * len(sets)
     if width < SIDE_BY_SIDE:
         figure = Figure(figsize=(width, 2 * height + 2.6), layout="constrained")

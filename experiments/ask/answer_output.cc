@@ -62,6 +62,19 @@ nlohmann::ordered_json EstimatorAsJson(const AskedEstimator& estimator) {
       {"label", estimator.label}, {"success", RenderJson(estimator.success)}, {"time_ms", estimator.time_ms}};
 }
 
+// The best estimator and the next.
+Table MakeAskedTable(const Answer& answer) {
+  std::vector<AskedEstimator> asked = {answer.best};
+  if (answer.next) asked.push_back(*answer.next);
+  using A = const AskedEstimator&;
+  return MakeTable<AskedEstimator>(
+      {{Column::Key("estimator"), [](A a) { return a.label; }},
+       {Column::Number("success"), [](A a) { return a.success.value; }},
+       {{"lower,upper", ColumnType::kInterval}, [](A a) { return a.success.interval; }},
+       {Column::Number("time_ms"), [](A a) { return a.time_ms; }}},
+      asked);
+}
+
 }  // namespace
 
 std::string AnswerAsText(const Answer& answer, const std::string& question, const std::string& folder) {
@@ -80,11 +93,9 @@ std::string AnswerAsText(const Answer& answer, const std::string& question, cons
 }
 
 std::string AnswerAsJson(const Answer& a, const std::string& question) {
-  nlohmann::ordered_json json = {{"question", question},
-                                 {"trials", a.num_trials},
-                                 {"estimators", a.num_estimators},
-                                 {"at_most", a.at_most},
-                                 {"best", EstimatorAsJson(a.best)}};
+  nlohmann::ordered_json json = {
+      {"question", question}, {"trials", a.num_trials},          {"estimators", a.num_estimators},
+      {"at_most", a.at_most}, {"best", EstimatorAsJson(a.best)}, {"rows", RenderJson(MakeAskedTable(a))}};
   if (a.next) json["next"] = EstimatorAsJson(*a.next);
   if (a.difference) {
     json["difference"] = RenderJson(a.difference->difference);
@@ -104,6 +115,10 @@ std::string AnswerAsJson(const Answer& a, const std::string& question) {
   }
   json["coverage"] = RenderJson(a.coverage);
   return JsonText(kAnswerFormat, json);
+}
+
+CommandResult MakeAnswerResult(const Answer& answer, const std::string& question, const std::string& folder) {
+  return {AnswerAsText(answer, question, folder), MakeAskedTable(answer), AnswerAsJson(answer, question)};
 }
 
 }  // namespace rcme

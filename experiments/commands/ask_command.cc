@@ -8,6 +8,7 @@
 #include "experiments/ask/answer_output.h"
 #include "experiments/ask/question.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/duration.h"
@@ -85,8 +86,7 @@ void RunAsk(AskArguments arguments) {
   }
   const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.at_most);
   const std::string question = DescribeQuestion(arguments.question);
-  PrintOrWrite("", arguments.format == "json" ? AnswerAsJson(answer, question)
-                                              : AnswerAsText(answer, question, arguments.out));
+  PrintResult(MakeAnswerResult(answer, question, arguments.out), arguments.format);
 }
 
 }  // namespace
@@ -151,9 +151,7 @@ Examples:
   command->add_option("--seed", question.seed, "seed of all random streams")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
-  command->add_option("--format", arguments->format, "table (for people) or json (for programs)")
-      ->check(MakeChoiceValidator({"table", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->add_option("-o,--out", arguments->out, "folder for study.yaml and run.sqlite, created if missing")
       ->capture_default_str();
   command

@@ -11,6 +11,7 @@
 #include "experiments/audit/claims/study_claims.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
@@ -28,7 +29,7 @@ struct AuditArguments {
   std::string study;  // empty: the built-in scenes
   StudyChanges changes;
   std::vector<std::string> only;
-  std::string budget = "quick", out, round;
+  std::string budget = "quick", out, round, format = "table";
   ShardArguments shards;
   bool only_plan = false;
   int threads = 0;
@@ -76,9 +77,10 @@ void RunAuditPart(const Audit& plan, const AuditArguments& arguments) {
   PrintPartIsDone(runner.shard(), arguments.out);
 }
 
-void WriteAudit(const Audit& audit, const std::string& out) {
-  fmt::print("{}", AuditAsTable(audit));
-  WriteFileWhole(out + "/audit.json", AuditAsJson(audit));
+void WriteAudit(const Audit& audit, const std::string& out, const std::string& format) {
+  const CommandResult result = MakeAuditResult(audit);
+  PrintResult(result, format);
+  WriteFileWhole(out + "/audit.json", result.json);
   WriteFileWhole(out + "/audit.md", AuditAsMarkdown(audit));
   DrawFigures("audit", {out, "--page"});
   PrintMessage("done: {0}/audit.html, {0}/audit.md, {0}/audit.json, {0}/audit_FAMILY.png and .pdf\n", out);
@@ -93,8 +95,7 @@ void RunAuditCommand(const AuditArguments& arguments) {
   options.num_threads = arguments.threads;
   const std::vector<Claim> all = ListAuditedClaims(arguments, &options);
   if (arguments.only_plan) {
-    fmt::print("{}", PlanAsTable(PlanAudit(all, options)));
-    return;
+    return PrintResult(MakePlanResult(PlanAudit(all, options)), arguments.format);
   }
   if (arguments.out.empty())
     throw InputError("--out is missing; give the folder for the results, or ask for --plan");
@@ -105,12 +106,12 @@ void RunAuditCommand(const AuditArguments& arguments) {
   if (!arguments.shards.parts.empty()) {
     const Audit audit = MergeAudit(all, options, arguments);
     MakeResultFolder(arguments.out);
-    return WriteAudit(audit, arguments.out);
+    return WriteAudit(audit, arguments.out, arguments.format);
   }
   MakeResultFolder(arguments.out);
   Runner runner = Runner::WithCheckpoint(PlanAuditChecks(PlanAudit(all, options)),
                                          FindCheckpointInFolder(arguments.out), kChecksAtATime);
-  WriteAudit(RunAudit(all, options, &runner), arguments.out);
+  WriteAudit(RunAudit(all, options, &runner), arguments.out, arguments.format);
   runner.RemoveCheckpoint();
 }
 
@@ -168,6 +169,7 @@ code 75 (docs/many_machines.md):
   CLI::Option* plan = command->add_flag(
       "--plan", arguments->only_plan,
       "only print the plan: margins, trials, and the departures found with probability 0.9");
+  AddFormatOption(command, &arguments->format);
   const ShardOptions shards = AddShardOptions(command, "trials", &arguments->shards);
   command->add_option("--round", arguments->round,
                       "with --merge: file to write if trials are missing; "

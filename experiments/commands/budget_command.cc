@@ -3,11 +3,14 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
-#include "experiments/core/text/columns.h"
+#include "experiments/core/table/interval_columns.h"
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
@@ -18,7 +21,7 @@ namespace rcme {
 namespace {
 
 struct BudgetArguments {
-  std::string study, out;
+  std::string study, out, format = "table";
   StudyChanges changes;
   double time_ms = 0.0;
   std::uint32_t calls = 5;
@@ -41,12 +44,38 @@ std::string DescribeEffortEnd(const FoundEffort& found) {
 }
 
 // What was found for an estimator, with its times on trials that took no part in the search.
-std::vector<std::string> Row(const FoundEffort& found, const std::vector<TimedProblem>& fresh) {
+struct BudgetRow {
+  std::string estimator, effort, note;
+  Estimate ms;
+};
+
+BudgetRow MakeBudgetRow(const FoundEffort& found, const std::vector<TimedProblem>& fresh) {
   const Moments ms = TimeCalls(found.spec, fresh);
-  const Interval interval = StudentInterval(ms);
-  return {found.spec.label, DescribeEffort(found.spec),
-          fmt::format("{:.3g} [{:.3g}, {:.3g}]", ms.mean(), interval.lower, interval.upper),
-          DescribeEffortEnd(found)};
+  return {found.spec.label,
+          DescribeEffort(found.spec),
+          DescribeEffortEnd(found),
+          {ms.mean(), StudentInterval(ms)}};
+}
+
+CommandResult MakeBudgetResult(const BudgetArguments& arguments, const std::string& study,
+                               const std::vector<BudgetRow>& rows, size_t num_fresh) {
+  using R = const BudgetRow&;
+  Column ms = Column::Estimated("ms");
+  ms.heading = "ms a call, fresh trials";
+  Column note = Column::Text("note");
+  note.heading = " ";
+  const Table table = MakeTable<BudgetRow>({{Column::Key("estimator"), [](R r) { return r.estimator; }},
+                                            {Column::Text("effort"), [](R r) { return r.effort; }},
+                                            {ms, [](R r) { return r.ms; }},
+                                            {note, [](R r) { return r.note; }}},
+                                           rows);
+  return MakeResult(
+      fmt::format("{}\nMeans of {} calls with Student's 95 % interval over the problems; processor time of "
+                  "one thread\n",
+                  RenderText(table), num_fresh),
+      kBudgetFormat,
+      {{"study", study}, {"time_ms", arguments.time_ms}, {"calls", static_cast<std::int64_t>(num_fresh)}},
+      WithIntervalColumns(table));
 }
 
 void RunBudget(const BudgetArguments& arguments) {
@@ -58,21 +87,19 @@ void RunBudget(const BudgetArguments& arguments) {
   CheckProcessEstimators(plan.study.estimators);
   const std::vector<TimedProblem> problems = TimedProblems(plan, 0, arguments.calls),
                                   fresh = TimedProblems(plan, arguments.calls, arguments.calls);
-  std::vector<std::vector<std::string>> rows = {{"estimator", "effort", "ms a call, fresh trials", ""}};
+  std::vector<BudgetRow> rows;
   Progress progress("estimators", std::ssize(study.estimators));
   for (EstimatorSpec& spec : study.estimators) {
     if (IsStopRequested()) throw Stopped("budget: stopped, nothing written");
     const FoundEffort found = FindEffort(spec, problems, arguments.time_ms);
     spec = found.spec;
-    rows.push_back(Row(found, fresh));
+    rows.push_back(MakeBudgetRow(found, fresh));
     progress.Advance(1);
   }
   WriteFileWhole(arguments.out,
                  fmt::format("# Efforts for {:g} ms a call, found by `rcme budget {} --time-ms {:g}`.\n{}",
                              arguments.time_ms, arguments.study, arguments.time_ms, ToYaml(study)));
-  fmt::print(
-      "{}\nMeans of {} calls with Student's 95 % interval over the problems; processor time of one thread\n",
-      FormatColumns(rows), fresh.size());
+  PrintResult(MakeBudgetResult(arguments, study.name, rows, fresh.size()), arguments.format);
   PrintMessage("{}: the study with these efforts; next: rcme run {} --out run.sqlite\n", arguments.out,
                arguments.out);
 }
@@ -107,6 +134,7 @@ Examples:
                    "calls per condition and search step, and fresh calls for the table (default: 5)")
       ->transform(WholeNumberIn(1, 100'000));
   command->add_option("-o,--out", arguments->out, "study file to write, with the efforts (YAML)")->required();
+  AddFormatOption(command, &arguments->format);
   command->callback([arguments] { RunBudget(*arguments); });
 }
 

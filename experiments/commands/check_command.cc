@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/core/text/columns.h"
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/run/store/new_trials.h"
 #include "experiments/run/store/salvage.h"
 #include "experiments/statistics/preregistration.h"
@@ -20,7 +22,7 @@ namespace {
 constexpr size_t kMaxRanges = 8, kMaxConditions = 40;  // printed
 
 struct CheckArguments {
-  std::string run, save_good, study;
+  std::string run, save_good, study, format = "table";
   StudyChanges changes;  // of that study
 };
 
@@ -45,22 +47,50 @@ std::string NotSoundText(const SalvagedCondition& condition, std::int64_t num_pl
                      num_more > 0 ? fmt::format(" and {} more", num_more) : "");
 }
 
-std::string DamageAsTable(const RunDescription& run, const std::vector<SalvagedCondition>& conditions) {
-  std::vector<std::vector<std::string>> rows = {
-      {"condition", "sound", "counted", "damaged, lost or not run"}};
-  size_t num_more = 0;
+// The conditions of which something is damaged, lost or not run.
+Table MakeDamageTable(const RunDescription& run, const std::vector<SalvagedCondition>& conditions) {
+  Table table{{Column::Key("condition"),
+               Column::Text("sound"),
+               Column::Text("counted"),
+               {.name = "not_sound", .heading = "damaged, lost or not run"}}};
   for (size_t c = 0; c < conditions.size(); ++c) {
     const SalvagedCondition& condition = conditions[c];
     if (condition.num_sound == condition.num_counted) continue;
-    num_more += rows.size() > kMaxConditions;
-    if (rows.size() > kMaxConditions) continue;
     const std::string counted =
         condition.num_counted ? fmt::format("{}", *condition.num_counted) : "not known";
-    rows.push_back({fmt::format("{}", c), fmt::format("{}", condition.num_sound), counted,
-                    NotSoundText(condition, run.conditions[c].num_trials)});
+    table.rows.push_back({fmt::format("{}", c), fmt::format("{}", condition.num_sound), counted,
+                          NotSoundText(condition, run.conditions[c].num_trials)});
   }
-  const std::string more = num_more > 0 ? fmt::format("... and {} more conditions\n", num_more) : "";
-  return rows.size() > 1 ? FormatColumns(rows) + more : "";
+  return table;
+}
+
+std::string DamageAsText(Table damage) {
+  const size_t num_more = damage.rows.size() - std::min(damage.rows.size(), kMaxConditions);
+  damage.rows.resize(damage.rows.size() - num_more);
+  if (damage.rows.empty()) return "";
+  return RenderText(damage) + (num_more > 0 ? fmt::format("... and {} more conditions\n", num_more) : "");
+}
+
+// What is said of a file.
+struct FileCheck {
+  std::string text;                           // for people
+  std::string state = "sound", kept = "all";  // kept: trials or counts, as `rcme run --keep` names them
+  std::int64_t num_trials = 0;                // that are sound
+  TrialOrigin origin;
+  std::vector<std::string> findings = {};  // of damage, and of what departs from a lock
+  Table damage = {};
+};
+
+void PrintCheck(const CheckArguments& arguments, const FileCheck& check) {
+  Table row{{Column::Text("file"), Column::Text("state"), Column::Text("kept"), Column::Count("trials"),
+             Column::Text("program"), Column::Text("instruction_set")}};
+  row.rows.push_back({arguments.run, check.state, check.kept, check.num_trials, check.origin.program,
+                      check.origin.instruction_set});
+  Table findings{{Column::Text("finding")}};
+  for (const std::string& finding : check.findings) findings.rows.push_back({finding});
+  PrintResult(
+      MakeResult(check.text, kCheckFormat, {}, row, {{"findings", findings}, {"damage", check.damage}}),
+      arguments.format);
 }
 
 std::vector<SalvagedCondition> SaveGood(Salvage* salvage, const std::string& out) {
@@ -73,24 +103,29 @@ std::vector<SalvagedCondition> SaveGood(Salvage* salvage, const std::string& out
   return conditions;
 }
 
-void PrintSound(const std::string& run, const ResultStore& store) {
-  const TrialOrigin origin = store.Description().origin;
-  fmt::print("{}: sound: {} trials, every checksum is right; of {} ({})\n", run, store.NumTrials(),
-             origin.program.empty() ? "a program not noted" : origin.program,
-             origin.instruction_set.empty() ? "instruction set not noted" : origin.instruction_set);
+// What the hash of its lock says of the run. True: it departs from the lock without a reason.
+bool DescribeLock(const RunDescription& run, const std::string& path, FileCheck* check) {
+  if (run.lock.empty()) return false;
+  const Preregistration lock = *DescribePreregistered(run, path);
+  check->text += fmt::format("{}: locked at {} by {}; the locked text has the SHA-256 {}\n", path,
+                             lock.locked_at, lock.program, lock.sha256);
+  if (lock.deviations.empty()) check->text += "  the run is as it was locked\n";
+  for (const std::string& deviation : lock.deviations) {
+    check->text += fmt::format("  not as locked: {}\n", deviation);
+    check->findings.push_back("not as locked: " + deviation);
+  }
+  for (const std::string& reason : lock.reasons) {
+    check->text += fmt::format("  reason: {}\n", reason);
+    check->findings.push_back("reason: " + reason);
+  }
+  return !lock.deviations.empty() && lock.reasons.empty();
 }
 
-// What the hash of its lock says of the run; throws where the hash is not that of the text.
-void PrintLock(const RunDescription& run, const std::string& path) {
-  if (run.lock.empty()) return;
-  const Preregistration lock = *DescribePreregistered(run, path);
-  fmt::print("{}: locked at {} by {}; the locked text has the SHA-256 {}\n", path, lock.locked_at,
-             lock.program, lock.sha256);
-  if (lock.deviations.empty()) fmt::print("  the run is as it was locked\n");
-  for (const std::string& deviation : lock.deviations) fmt::print("  not as locked: {}\n", deviation);
-  for (const std::string& reason : lock.reasons) fmt::print("  reason: {}\n", reason);
-  if (!lock.deviations.empty() && lock.reasons.empty())
-    throw InputError(path +
+void PrintCheckWithLock(const CheckArguments& arguments, const RunDescription& run, FileCheck check) {
+  const bool departs = DescribeLock(run, arguments.run, &check);
+  PrintCheck(arguments, check);
+  if (departs)
+    throw InputError(arguments.run +
                      ": departs from its lock without a reason, which `rcme run` does not allow: the "
                      "file was changed");
 }
@@ -103,44 +138,61 @@ void ReportDamage(const CheckArguments& arguments, const InputError& error) {
   const std::vector<SalvagedCondition> conditions = arguments.save_good.empty()
                                                         ? salvage.ForEachSoundTrial([](const StoredTrial&) {})
                                                         : SaveGood(&salvage, arguments.save_good);
-  std::int64_t num_sound = 0;
-  for (const SalvagedCondition& condition : conditions) num_sound += condition.num_sound;
-  fmt::print("{}: damaged; {} trials are sound\n", arguments.run, num_sound);
-  for (const std::string& finding : salvage.findings()) fmt::print("  {}\n", finding);
-  fmt::print("{}", DamageAsTable(salvage.description(), conditions));
-  if (arguments.save_good.empty()) {
-    const bool is_study_lost = num_sound == 0 && arguments.study.empty();
-    fmt::print(
-        "Next: rcme check {} --save-good NEW.sqlite{}, then rcme run its study with --out NEW.sqlite\n",
-        arguments.run, is_study_lost ? " --study ITS_STUDY.yaml" : "");
-    throw error;
-  }
-  fmt::print("{}: {} trials saved; `rcme run` of the study with --out {} adds the others\n",
-             arguments.save_good, num_sound, arguments.save_good);
+  FileCheck check;
+  check.state = "damaged";
+  for (const SalvagedCondition& condition : conditions) check.num_trials += condition.num_sound;
+  check.origin = salvage.description().origin;
+  check.findings = salvage.findings();
+  check.damage = MakeDamageTable(salvage.description(), conditions);
+  check.text = fmt::format("{}: damaged; {} trials are sound\n", arguments.run, check.num_trials);
+  for (const std::string& finding : check.findings) check.text += fmt::format("  {}\n", finding);
+  check.text += DamageAsText(check.damage);
+  const bool is_study_lost = check.num_trials == 0 && arguments.study.empty();
+  check.text +=
+      arguments.save_good.empty()
+          ? fmt::format(
+                "Next: rcme check {} --save-good NEW.sqlite{}, then rcme run its study with --out "
+                "NEW.sqlite\n",
+                arguments.run, is_study_lost ? " --study ITS_STUDY.yaml" : "")
+          : fmt::format("{}: {} trials saved; `rcme run` of the study with --out {} adds the others\n",
+                        arguments.save_good, check.num_trials, arguments.save_good);
+  PrintCheck(arguments, check);
+  if (arguments.save_good.empty()) throw error;
 }
 
-void CheckCounts(const std::string& run) {
-  const RunCounts counts = OpenCounts(run);
-  fmt::print("{}: sound: the counts of {} trials\n", run, counts.NumTrials());
-  PrintLock(counts.run, run);
+void CheckCounts(const CheckArguments& arguments) {
+  const RunCounts counts = OpenCounts(arguments.run);
+  FileCheck check;
+  check.kept = "counts";
+  check.num_trials = counts.NumTrials();
+  check.origin = counts.run.origin;
+  check.text = fmt::format("{}: sound: the counts of {} trials\n", arguments.run, check.num_trials);
+  PrintCheckWithLock(arguments, counts.run, check);
 }
 
-void CheckTrials(const std::string& run) {
-  const ResultStore store = ResultStore::OpenForReading(run);
+void CheckTrials(const CheckArguments& arguments) {
+  const ResultStore store = ResultStore::OpenForReading(arguments.run);
   store.CheckTrials();
-  PrintSound(run, store);
-  PrintLock(store.Description(), run);
+  const RunDescription run = store.Description();
+  FileCheck check;
+  check.num_trials = store.NumTrials();
+  check.origin = run.origin;
+  check.text = fmt::format(
+      "{}: sound: {} trials, every checksum is right; of {} ({})\n", arguments.run, check.num_trials,
+      run.origin.program.empty() ? "a program not noted" : run.origin.program,
+      run.origin.instruction_set.empty() ? "instruction set not noted" : run.origin.instruction_set);
+  PrintCheckWithLock(arguments, run, check);
 }
 
 void CheckFile(const CheckArguments& arguments) {
-  if (KeepsCounts(arguments.run)) return CheckCounts(arguments.run);
+  if (KeepsCounts(arguments.run)) return CheckCounts(arguments);
   try {
-    CheckTrials(arguments.run);
+    CheckTrials(arguments);
   } catch (const DamagedFileError& error) {
     ReportDamage(arguments, error);
   } catch (const InputError& error) {
     // The run was killed while it wrote: to open its file for reading trials has undone the half of a write.
-    if (KeepsCounts(arguments.run)) return CheckCounts(arguments.run);
+    if (KeepsCounts(arguments.run)) return CheckCounts(arguments);
     if (arguments.study.empty()) throw;
     ReportDamage(arguments, error);  // it does not look like a result file, but is said to be one
   }
@@ -177,6 +229,7 @@ Examples:
   command->add_option("--study", arguments->study,
                       "study file (YAML) of the run, if the study inside the result file is damaged");
   AddStudyOptions(command, &arguments->changes);
+  AddFormatOption(command, &arguments->format);
   command->callback([arguments] { CheckFile(*arguments); });
 }
 

@@ -5,6 +5,7 @@
 
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/failure_bounds_option.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/twin_commands.h"
 #include "experiments/core/files/file_output.h"
@@ -31,17 +32,14 @@ void RunCheckTruth(const CheckTruthArguments& arguments) {
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   CheckProcessEstimators({spec});
   const std::vector<CheckedPair> pairs = CheckTruths(arguments.folders, *Make(spec), options);
-  const std::string text = TruthCheckAsText(pairs, options), csv = TruthCheckAsCsv(pairs),
-                    json = TruthCheckAsJson(pairs, options);
+  const CommandResult result = MakeTruthCheckResult(pairs, options);
   if (!arguments.out.empty()) {
     MakeResultFolder(arguments.out);
     const std::filesystem::path folder(arguments.out);
-    WriteFileWhole((folder / "truth_check.txt").string(), text);
-    WriteFileWhole((folder / "truth_check.csv").string(), csv);
-    WriteFileWhole((folder / "truth_check.json").string(), json);
+    WriteResultFiles(result, (folder / "truth_check").string());
     WriteFileWhole((folder / "truth_in_doubt.csv").string(), TruthDoubtsAsCsv(pairs));
   }
-  fmt::print("{}", arguments.format == "json" ? json : arguments.format == "csv" ? csv : text);
+  PrintResult(result, arguments.format);
 }
 
 }  // namespace
@@ -89,9 +87,7 @@ Examples:
   command->add_option("--threads", arguments->threads, "0: one per core. The result does not depend on it")
       ->transform(WholeNumberIn(0, 1024))
       ->capture_default_str();
-  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(MakeChoiceValidator({"table", "csv", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->callback([arguments] { RunCheckTruth(*arguments); });
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/statistics/comparison_output.h"
@@ -44,9 +45,7 @@ void RunCompare(const CompareArguments& arguments) {
                                  arguments.run, comparison.study, comparison.reference));
   }
   if (comparison.rows.empty()) throw InputError(fmt::format("{}: {}", arguments.run, comparison.caution));
-  PrintOrWrite(arguments.out, arguments.format == "csv"    ? ComparisonAsCsv(comparison)
-                              : arguments.format == "json" ? ComparisonAsJson(comparison)
-                                                           : ComparisonAsTable(comparison));
+  PrintResult(MakeComparisonResult(comparison), arguments.format, arguments.out);
 }
 
 }  // namespace
@@ -99,9 +98,7 @@ Examples:
                     "population where the conditions are draws of one, else for these very conditions");
   command->add_flag("--anytime", arguments->options.is_anytime_valid,
                     "intervals and p-values that stay valid however often you look");
-  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(MakeChoiceValidator({"table", "csv", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {
     if (arguments->is_pooled) arguments->options.pooling = Pooling::kPooled;

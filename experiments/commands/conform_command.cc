@@ -8,6 +8,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_run_options.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/time_limit.h"
@@ -126,8 +127,7 @@ void Conform(const ConformArguments& arguments) {
   if (!answers) return;
   const ConformReport report =
       checked ? CheckConform(plan, *checked, *answers) : Calibrate(arguments, plan, new_problem, *answers);
-  PrintOrWrite(is_check ? arguments.out : "",
-               arguments.format == "json" ? ConformAsJson(report) : ConformAsText(report));
+  PrintResult(MakeConformResult(report), arguments.format, is_check ? arguments.out : "");
   runner.RemoveCheckpoint();
   if (report.shift && report.shift->noticed_after) throw EndWith{kShiftIsNoticed};
 }
@@ -198,9 +198,7 @@ Examples:
       ->capture_default_str();
   command->add_flag("--needs", arguments->is_needs, "print how many answers the promises need, and end");
   AddTrialsOption(command, arguments.get());
-  command->add_option("--format", arguments->format, "table (for people) or json (for programs)")
-      ->check(MakeChoiceValidator({"table", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   AddRunOptions(command, arguments.get());
   command->callback([arguments] { Conform(*arguments); });
 }

@@ -11,8 +11,8 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/failure_bounds_option.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/make_in_order.h"
@@ -21,7 +21,7 @@
 #include "experiments/data/colmap_camera.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
-#include "experiments/real/answer/estimate_output.h"
+#include "experiments/real/answer/answer_report.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
@@ -31,6 +31,7 @@ namespace rcme {
 namespace {
 
 constexpr const char* kStandardInput = "-";
+constexpr const char* kJsonLines = "jsonl";
 
 struct EstimateArguments {
   std::vector<std::string> matches;  // files and folders, or kStandardInput
@@ -41,7 +42,7 @@ struct EstimateArguments {
   std::vector<std::string> bounds;
   std::optional<double> integrity_risk;  // nothing: no protection levels are asked for
   int threads = 0;                       // 0: one per core
-  bool as_json = false;
+  std::string format = "table";
 };
 
 std::vector<FailureBounds> ParseAllBounds(const std::vector<std::string>& texts) {
@@ -118,9 +119,8 @@ class Answerer {
     CheckProcessEstimators({spec_});
   }
 
-  const EstimatorSpec& spec() const { return spec_; }
+  AnswerTerms terms() const { return {spec_, bounds_, arguments_.integrity_risk}; }
   const MotionEstimator& estimator() const { return *estimator_; }
-  const std::vector<FailureBounds>& bounds() const { return bounds_; }
 
   // Throws InputError (match_file.h). `doubts`: about the file's cameras.
   TrialData Read(const std::string& path, std::vector<CameraDoubt>* doubts) const {
@@ -176,83 +176,9 @@ void PrintCaution(const LoopInspection& inspection, const MotionProblem& problem
       StatusName(estimate.status), estimate.message);
 }
 
-// The answer as JSON, with the doubts about the file's cameras, if there are any.
-nlohmann::ordered_json MakeJson(const PairAnswer& answer, const EstimatorSpec& spec,
-                                const std::vector<CameraDoubt>& doubts) {
-  nlohmann::ordered_json json = AnswerAsJson(answer, spec);
-  for (const CameraDoubt& doubt : doubts)
-    json["warnings"].push_back(fmt::format("{}: {}", doubt.place, doubt.what));
-  return json;
-}
-
-void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, const std::string& path) {
-  std::vector<CameraDoubt> doubts;
-  const TrialData data = answerer.Read(path, &doubts);
-  CameraWarnings warnings;
-  warnings.Add(doubts);
-  warnings.Print();
-  const PairAnswer answer = answerer.Answer(data);
-  if (arguments.as_json) {
-    fmt::print("{}", JsonText(kEstimateFormat, MakeJson(answer, answerer.spec(), doubts)));
-  } else {
-    fmt::print("{}", AnswerAsText(answer, answerer.spec()));
-    const LoopInspection* const inspection = FindInspection(answerer.estimator());
-    if (inspection && answer.estimate.status == MotionStatus::kOk)
-      PrintCaution(*inspection, data.problem, arguments.seed);
-  }
-  // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
-  // answer.
-  if (IsBadInput(answer.estimate.status))
-    throw InputError(fmt::format("{}: {}", data.origin, answer.estimate.message));
-}
-
-// The table of many pairs, filled as they are answered.
-class AnswerTable {
- public:
-  AnswerTable(const std::vector<FailureBounds>& bounds, std::optional<double> integrity_risk)
-      : bounds_(bounds), integrity_risk_(integrity_risk) {}
-  void Add(const std::string& path, const PairAnswer& answer) {
-    std::string name = std::filesystem::path(path).filename().string();
-    rows_.emplace_back(name.substr(0, name.find(".csv")), answer);
-    has_errors_ |= !std::isnan(answer.record.rotation_error_deg);
-    num_motions_ += answer.estimate.status == MotionStatus::kOk;
-  }
-  void AddUnreadable() { ++num_unreadable_; }
-
-  std::string Text() const {
-    const AnswerTableColumns columns{bounds_, integrity_risk_.has_value(), has_errors_};
-    std::vector<std::vector<std::string>> rows = {ListAnswerColumns(columns)};
-    for (const auto& [name, answer] : rows_) rows.push_back(FormatAnswerRow(name, answer, columns));
-    const size_t num_refused = rows_.size() - num_motions_;
-    return FormatColumns(rows) + "\n" + AnswerLegend(has_errors_, integrity_risk_) +
-           fmt::format("{} pairs: {} motions, {} without one, {} not read\n", rows_.size() + num_unreadable_,
-                       num_motions_, num_refused, num_unreadable_);
-  }
-
- private:
-  const std::vector<FailureBounds>& bounds_;
-  std::optional<double> integrity_risk_;
-  std::vector<std::pair<std::string, PairAnswer>> rows_;
-  bool has_errors_ = false;
-  size_t num_motions_ = 0, num_unreadable_ = 0;
-};
-
-// One line of JSON.
-std::string JsonLine(const std::string& path, nlohmann::ordered_json object) {
-  nlohmann::ordered_json line = {{"format", kEstimateFormat}, {"file", path}};
-  line.update(object);
-  return line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
-}
-
-// What becomes of one of many files.
-struct FileAnswer {
-  std::string path, error;  // error: why it could not be read; else empty
-  std::vector<CameraDoubt> doubts;
-  PairAnswer answer;
-};
-
+// Answers a file; an error in it is part of the result.
 FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
-  FileAnswer file{.path = path, .error = {}, .doubts = {}, .answer = {}};
+  FileAnswer file{.path = path};
   try {
     file.answer = answerer.Answer(answerer.Read(path, &file.doubts));
   } catch (const InputError& error) {
@@ -261,71 +187,70 @@ FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
   return file;
 }
 
-// What is printed of many files.
-class AnswerReport {
- public:
-  AnswerReport(const Answerer& answerer, const EstimateArguments& arguments)
-      : answerer_(answerer),
-        as_json_(arguments.as_json),
-        table_(answerer.bounds(), arguments.integrity_risk) {}
+// One line of JSON, at once: whoever reads along gets each when it is there.
+void PrintJsonLine(const FileAnswer& file, const AnswerTerms& terms) {
+  nlohmann::ordered_json line = {{"format", kEstimateFormat}, {"file", file.path}};
+  line.update(FileAnswerAsJson(file, terms));
+  fmt::print("{}\n", line.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  std::fflush(stdout);
+}
 
-  void Add(const FileAnswer& file) {
-    warnings_.Add(file.doubts);
-    if (!file.error.empty()) {
-      is_any_bad_ = true;
-      table_.AddUnreadable();
-      PrintMessage("rcme: {}\n", Printable(file.error));
-      if (as_json_)
-        PrintLine(file.path, {{"status", StatusName(MotionStatus::kInvalidInput)}, {"message", file.error}});
-      return;
-    }
-    is_any_bad_ |= IsBadInput(file.answer.estimate.status);
-    if (as_json_) {
-      PrintLine(file.path, MakeJson(file.answer, answerer_.spec(), file.doubts));
-    } else {
-      table_.Add(file.path, file.answer);
-    }
+void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, const std::string& path) {
+  FileAnswer file{.path = path};
+  const TrialData data = answerer.Read(path, &file.doubts);
+  CameraWarnings warnings;
+  warnings.Add(file.doubts);
+  warnings.Print();
+  file.answer = answerer.Answer(data);
+  const AnswerTerms terms = answerer.terms();
+  if (arguments.format == kJsonLines) {
+    PrintJsonLine(file, terms);
+  } else {
+    PrintResult({AnswerAsText(file.answer, terms.spec), MakeFileAnswerTable({file}, terms),
+                 JsonText(kEstimateFormat, FileAnswerAsJson(file, terms))},
+                arguments.format);
   }
-  void Finish() const {
-    if (!as_json_) fmt::print("{}", table_.Text());
-    warnings_.Print();
-  }
-  bool is_any_bad() const { return is_any_bad_; }
-
- private:
-  // Whoever reads along gets each when it is there.
-  static void PrintLine(const std::string& path, const nlohmann::ordered_json& object) {
-    fmt::print("{}", JsonLine(path, object));
-    std::fflush(stdout);
-  }
-
-  const Answerer& answerer_;
-  bool as_json_, is_any_bad_ = false;
-  AnswerTable table_;
-  CameraWarnings warnings_;
-};
+  const LoopInspection* const inspection = FindInspection(answerer.estimator());
+  if (arguments.format == "table" && inspection && file.answer.estimate.status == MotionStatus::kOk)
+    PrintCaution(*inspection, data.problem, arguments.seed);
+  // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
+  // answer.
+  if (IsBadInput(file.answer.estimate.status))
+    throw InputError(fmt::format("{}: {}", data.origin, file.answer.estimate.message));
+}
 
 // Every file is answered, whatever becomes of the others; in the end the program fails if one could not be.
 void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
                 const std::vector<std::string>& files) {
   const StopOnSignals stop;
-  AnswerReport report(answerer, arguments);
+  const AnswerTerms terms = answerer.terms();
+  std::vector<FileAnswer> answers;
   std::int64_t num_done = 0;
+  bool is_any_bad = false;
+  CameraWarnings warnings;
+  const auto add = [&](FileAnswer file) {
+    warnings.Add(file.doubts);
+    if (!file.error.empty()) PrintMessage("rcme: {}\n", Printable(file.error));
+    is_any_bad |= !file.error.empty() || IsBadInput(file.answer.estimate.status);
+    ++num_done;
+    if (arguments.format == kJsonLines) return PrintJsonLine(file, terms);
+    answers.push_back(std::move(file));
+  };
   try {
     Progress progress("pairs", std::ssize(files), 0);
     MakeInOrder(
         std::ssize(files), arguments.threads,
         [&](std::int64_t i) { return AnswerFile(answerer, files[static_cast<size_t>(i)]); },
-        [&](const FileAnswer& file) {
-          report.Add(file);
+        [&](FileAnswer file) {
+          add(std::move(file));
           progress.Advance(1);
-          ++num_done;
         });
   } catch (const Stopped&) {  // also while an estimator outside the program was waited for
   }
-  report.Finish();
+  if (arguments.format != kJsonLines) PrintResult(MakeAnswersResult(answers, terms), arguments.format);
+  warnings.Print();
   if (IsStopRequested()) throw Stopped(fmt::format("stopped after {} of {} pairs", num_done, files.size()));
-  if (report.is_any_bad()) throw EndWith{2};
+  if (is_any_bad) throw EndWith{2};
 }
 
 void RunEstimate(const EstimateArguments& arguments) {
@@ -346,8 +271,9 @@ inliers, the noise of their residuals compared with the assumed one, parallax, a
 share of matches that could lie on one plane. If there is no motion, it says why and
 what to try.
 
-For several files, or a folder, it prints a table with a line per file, or with --json a
-line of JSON per file. '-' reads standard input. A file may have just four columns
+For several files, or a folder, it prints a table with a row per file. --format json is
+one document; --format jsonl prints a line of JSON for each file as soon as it is
+answered. '-' reads standard input. A file may have just four columns
 x1 y1 x2 y2, separated by commas or blanks; give the intrinsics with --K, once for both
 images or once for each. A K that does not fit the size of the images or the positions
 of the key points gives a warning; an impossible K is refused.
@@ -367,8 +293,9 @@ options. Its answer has its label. For example:
 `rcme run STUDY --add-estimator tuned.yaml` reads the same file.
 
 Examples:
-  rcme estimate matches.csv.gz --sigma 0.7 --json
+  rcme estimate matches.csv.gz --sigma 0.7 --format json
   rcme estimate pairs/                                  a line per file
+  rcme estimate pairs/ --format jsonl                   a line of JSON per file
   rcme estimate matches.csv.gz --bounds 1,5 --bounds 5,20
   rcme estimate bare.txt --K 800,800,319.5,239.5        four columns, no header
   rcme estimate raw.txt --camera OPENCV,458.7,457.3,367.2,248.4,-.283,.074,.0002,.00002
@@ -421,9 +348,15 @@ matches, all matches on a line).)");
                    "of many files; 0: one per core. Answers and their order do not depend on it")
       ->transform(WholeNumberIn(0, 1024))
       ->capture_default_str();
-  command->add_flag("--json", arguments->as_json,
-                    "one JSON object per file: R (9) and pose_cov (36, of [w, dt]), row-major; "
-                    "without a direction (direction_not_observable) only R and rotation_cov (9)");
+  std::vector<std::string> formats = ListResultFormats();
+  formats.emplace_back(kJsonLines);
+  command
+      ->add_option("--format", arguments->format,
+                   "of what is printed: table (for people), csv, json, latex, markdown, or jsonl (a line of "
+                   "JSON per file). In JSON R (9) and pose_cov (36, of [w, dt]) are row-major; without a "
+                   "direction (direction_not_observable) there are only R and rotation_cov (9)")
+      ->check(MakeChoiceValidator(formats))
+      ->capture_default_str();
   command->callback([arguments] { RunEstimate(*arguments); });
 }
 

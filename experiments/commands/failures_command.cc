@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/statistics/failing_trials.h"
@@ -44,18 +45,13 @@ Examples:
   command->add_option("--limit", arguments->query.limit, "list so many; 0: all")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
-  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(MakeChoiceValidator({"table", "csv", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments, condition] {
     if (condition->count() > 0) arguments->query.condition = arguments->condition;
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     const FailingTrials trials = ListFailingTrials(store, arguments->query);
-    PrintOrWrite(arguments->out, arguments->format == "csv" ? FailingTrialsAsCsv(trials)
-                                 : arguments->format == "json"
-                                     ? FailingTrialsAsJson(trials)
-                                     : FailingTrialsAsTable(trials, arguments->run));
+    PrintResult(MakeFailuresResult(trials, arguments->run), arguments->format, arguments->out);
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
@@ -25,7 +26,7 @@ namespace {
 constexpr int kIsWorse = 1, kIsUndecided = 3;  // exit codes
 
 struct GateArguments {
-  std::string first, second, old_name, new_name, out, max_time = "5m";
+  std::string first, second, old_name, new_name, out, max_time = "5m", format = "table";
   std::vector<std::string> of = GateQuantityNames(), margins;
   bool is_of_given = false;
   double failure_at_most = -1.0, refusal_at_most = -1.0;
@@ -198,7 +199,7 @@ void RunGate(const GateArguments& arguments) {
                             : has_file                ? GateAgainstBaseline(arguments)
                                                       : GateStudy(arguments);
   if (!arguments.out.empty()) WriteGateReport(report, arguments.out);
-  fmt::print("{}", GateAsText(report));
+  PrintResult(MakeGateResult(report), arguments.format);
   if (report.is_out_of_time) PrintMessage("the same command goes on for another {}\n", arguments.max_time);
   if (report.look.verdict == GateVerdict::kWorse) throw EndWith{kIsWorse};
   if (report.look.verdict == GateVerdict::kUndecided) throw EndWith{kIsUndecided};
@@ -266,6 +267,7 @@ Examples:
   command->add_option("--refusal-at-most", arguments->refusal_at_most, "the same of its refusals")
       ->transform(NumberIn({1e-6, 1.0 - 1e-6}));
   command->add_option("-o,--out", arguments->out, "folder for the report and the trials; it is made");
+  AddFormatOption(command, &arguments->format);
   AddTimeLimit(command, "trials", &arguments->max_time)
       ->description("undecided after this time (55m, 1h30m, 90s)")
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/estimator_run_options.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
@@ -22,6 +23,7 @@ constexpr int kRiskIsExceeded = 1;  // exit code
 
 struct IntegrityArguments : EstimatorRunArguments {
   IntegrityTerms terms;
+  std::string format = "table";
 };
 
 StudyPlan MakeIntegrityPlan(const IntegrityArguments& arguments) {
@@ -35,14 +37,11 @@ StudyPlan MakeIntegrityPlan(const IntegrityArguments& arguments) {
   return plan;
 }
 
-void WriteReport(const IntegrityReport& report, const std::string& out) {
-  const std::string text = IntegrityAsText(report);
-  fmt::print("{}", text);
-  if (out.empty()) return;
+void WriteReport(const CommandResult& result, const std::string& out) {
   MakeResultFolder(out);
   const std::filesystem::path folder(out);
-  WriteFileWhole((folder / "integrity.txt").string(), text);
-  WriteFileWhole((folder / "integrity.json").string(), IntegrityAsJson(report));
+  WriteFileWhole((folder / "integrity.txt").string(), result.text);
+  WriteFileWhole((folder / "integrity.json").string(), result.json);
 }
 
 void RunIntegrity(const IntegrityArguments& arguments) {
@@ -67,7 +66,9 @@ void RunIntegrity(const IntegrityArguments& arguments) {
                          plan.study.common_scenes,
                          plan.factor_names,
                          ReadIntegrity(plan, runner)};
-  WriteReport(report, arguments.out);
+  const CommandResult result = MakeIntegrityResult(report);
+  PrintResult(result, arguments.format);
+  if (!arguments.out.empty()) WriteReport(result, arguments.out);
   runner.RemoveCheckpoint();
   if (IsRiskExceeded(report)) throw EndWith{kRiskIsExceeded};
 }
@@ -118,6 +119,7 @@ Examples:
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,
                       "folder for the results; it is made. With --shard the file of the part");
+  AddFormatOption(command, &arguments->format);
   AddTrialsOption(command, arguments.get());
   AddRunOptions(command, arguments.get());
   command->callback([arguments] { RunIntegrity(*arguments); });

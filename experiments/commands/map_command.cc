@@ -8,11 +8,14 @@
 #include "experiments/audit/validity/map_work.h"
 #include "experiments/audit/validity/study_samples.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"
@@ -26,7 +29,7 @@ constexpr int kDrawsPerSample = 100;
 struct MapArguments {
   std::string study;  // empty: the built-in scene
   StudyChanges changes;
-  std::string out;
+  std::string out, format = "table";
   ShardArguments shards;
   int trials = ValidityMapOptions{}.trials;
   int threads = 0;
@@ -56,10 +59,28 @@ MapWork WorkOnBuiltInScene(const MapArguments& arguments) {
   return work;
 }
 
-void WriteTable(const MapArguments& arguments, const std::string& name, const std::string& table) {
-  const std::string path = (std::filesystem::path(arguments.out) / name).string();
-  WriteFileWhole(path, table);
-  fmt::print("{}\n", path);
+// The tables of a run, the first of which is the map.
+std::vector<NamedTable> MakeMapTables(const MapWork& work, const Runner& runner) {
+  std::vector<NamedTable> tables = {
+      {"map", MakeValidityMapTable(work.map, TrialsIn(work, runner.plan(), runner.results()))}};
+  if (work.reference) {
+    tables.push_back({"reference", MakeValidityReferenceTable(
+                                       *work.reference, CountsIn(work, runner.plan(), runner.results()))});
+  }
+  return tables;
+}
+
+// Writes a file for each of them, and prints the names of the files to people.
+CommandResult WriteMap(const MapArguments& arguments, const std::vector<NamedTable>& tables) {
+  std::string paths;
+  for (const NamedTable& each : tables) {
+    const std::string path =
+        (std::filesystem::path(arguments.out) / ("validity_" + each.name + ".csv")).string();
+    WriteFileWhole(path, RenderCsv(each.table));
+    paths += path + "\n";
+  }
+  return MakeResult(paths, kMapFormat, {{"trials", std::int64_t{arguments.trials}}}, tables.front().table,
+                    {tables.begin() + 1, tables.end()});
 }
 
 void Map(const MapArguments& arguments) {
@@ -81,12 +102,7 @@ void Map(const MapArguments& arguments) {
   if (is_part) return PrintPartIsDone(runner.shard(), arguments.out);
   PrintCosts(runner);
   MakeResultFolder(arguments.out);
-  WriteTable(arguments, "validity_map.csv",
-             ValidityMapCsv(work.map, TrialsIn(work, runner.plan(), runner.results())));
-  if (work.reference) {
-    WriteTable(arguments, "validity_reference.csv",
-               ValidityReferenceCsv(*work.reference, CountsIn(work, runner.plan(), runner.results())));
-  }
+  PrintResult(WriteMap(arguments, MakeMapTables(work, runner)), arguments.format);
   runner.RemoveCheckpoint();
 }
 
@@ -130,6 +146,7 @@ Examples:
       ->add_option("-o,--out", arguments->out,
                    "folder for the tables, created if missing; with --shard the file of the part")
       ->required();
+  AddFormatOption(command, &arguments->format);
   AddShardOptions(command, "trials", &arguments->shards);
   command
       ->add_option(

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/statistics/marginals_output.h"
@@ -41,20 +42,14 @@ Examples:
   command->add_option("--top", arguments->num_shown, "rows of the table's second part")
       ->transform(WholeNumberIn(1, 100'000))
       ->capture_default_str();
-  command
-      ->add_option("--format", arguments->format, "table (for people), csv or json (for programs, all rows)")
-      ->check(MakeChoiceValidator({"table", "csv", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {
     const ResultStore run = ResultStore::OpenForReading(arguments->run);
     const Marginals marginals = MeasureMarginals(run, arguments->options);
     const std::string study = run.Description().study;
-    PrintOrWrite(arguments->out,
-                 arguments->format == "csv" ? MarginalsAsCsv(marginals)
-                 : arguments->format == "json"
-                     ? MarginalsAsJson(study, marginals)
-                     : MarginalsAsTable(study, marginals, static_cast<size_t>(arguments->num_shown)));
+    PrintResult(MakeMarginalsResult(study, marginals, static_cast<size_t>(arguments->num_shown)),
+                arguments->format, arguments->out);
   });
 }
 

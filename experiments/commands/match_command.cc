@@ -3,9 +3,11 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/front_end_options.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/data/match_file.h"
 #include "experiments/real/images/match_images.h"
@@ -40,7 +42,9 @@ Examples:
       ->expected(4);
   AddFrontEndOptions(command, &arguments->detector, &arguments->matcher, &arguments->has_scores);
   command->add_option("-o,--out", *out, "match file to write")->required();
-  command->callback([arguments, out] {
+  auto format = std::make_shared<std::string>("table");
+  AddFormatOption(command, format.get());
+  command->callback([arguments, out, format] {
     CheckIsNoInput(*out, {arguments->image1, arguments->image2});
     const MatchFile file = MatchImages(*arguments);
     CameraWarnings warnings;
@@ -52,6 +56,10 @@ Examples:
     } else {
       PrintMessage("{} matches -> {}; next: rcme estimate {}\n", file.matches.size(), *out, *out);
     }
+    Table table{
+        {Column::Text("image1"), Column::Text("image2"), Column::Count("matches"), Column::Text("file")}};
+    table.rows.push_back({arguments->image1, arguments->image2, std::ssize(file.matches), *out});
+    PrintResult(MakeResult("", kMatchFormat, {}, table), *format);
   });
 }
 

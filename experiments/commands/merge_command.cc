@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/core/files/file_output.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/runner.h"
 #include "experiments/core/work/shard.h"
@@ -19,7 +21,7 @@ namespace {
 
 struct MergeArguments {
   std::vector<std::string> parts;
-  std::string out;
+  std::string out, format = "table";
   bool is_check = false, is_partial = false;
   MergeOptions options;
 };
@@ -39,6 +41,18 @@ std::string DescribeMissing(const MergeReport& report) {
 // Parts of both kinds are refused, whichever of them comes first.
 bool KeepCounts(const std::vector<std::string>& parts) { return std::ranges::any_of(parts, KeepsCounts); }
 
+// `text`: what goes to standard output for people and for the shell.
+CommandResult MakeMergeResult(const MergeArguments& arguments, const MergeReport& report,
+                              const std::string& text) {
+  Table table{{Column::Count("parts"), Column::Count("trials"), Column::Count("read_twice"),
+               Column::Count("missing"), Column::Count("shards"), Column::Text("missing_shards"),
+               Column::Count("unreadable"), Column::Text("file")}};
+  table.rows.push_back({std::ssize(arguments.parts), report.num_trials, report.num_twice, report.num_missing,
+                        std::int64_t{report.num_shards}, ArrayText(report.missing_shards),
+                        std::ssize(report.unreadable), arguments.out});
+  return MakeResult(text, kMergeFormat, {}, table);
+}
+
 // The shards alone go to standard output, for the shell.
 void CheckMissing(const MergeArguments& arguments) {
   const auto check = KeepCounts(arguments.parts) ? CheckCounts : CheckParts;
@@ -46,11 +60,13 @@ void CheckMissing(const MergeArguments& arguments) {
   for (const std::string& part : report.unreadable) PrintMessage("{}\n", part);
   if (report.num_missing == 0) {
     PrintMessage("{} trials, none is missing\n", report.num_trials);
+    PrintResult(MakeMergeResult(arguments, report, ""), arguments.format);
     if (report.unreadable.empty()) return;
     throw InputError("the parts above cannot be merged; the other parts have all trials");
   }
   PrintMessage("{}\n", DescribeMissing(report));
-  if (report.num_shards > 1) fmt::print("{}\n", ArrayText(report.missing_shards));
+  const std::string shards = report.num_shards > 1 ? ArrayText(report.missing_shards) + "\n" : "";
+  PrintResult(MakeMergeResult(arguments, report, shards), arguments.format);
   throw EndWith{kTryAgain};
 }
 
@@ -84,6 +100,7 @@ void MergeResultFiles(const MergeArguments& arguments) {
                report.num_twice > 0 ? fmt::format(" ({} read twice, and equal)", report.num_twice) : "",
                arguments.out, arguments.out);
   if (report.num_missing > 0) PrintMessage("{}\n", DescribeMissing(report));
+  PrintResult(MakeMergeResult(arguments, report, ""), arguments.format);
 }
 
 }  // namespace
@@ -118,6 +135,7 @@ Examples:
       ->add_flag("--partial", arguments->is_partial,
                  "write the trials that there are, even if some are missing")
       ->excludes(check);
+  AddFormatOption(command, &arguments->format);
   command->add_flag("--mixed-instruction-sets", arguments->options.are_instruction_sets_mixed,
                     "accept parts of different instruction sets, whose numbers may differ in the last bits");
   command->callback([arguments] {

@@ -5,6 +5,7 @@
 
 #include "experiments/audit/model_choice/choice_output.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
@@ -16,7 +17,7 @@ namespace rcme {
 namespace {
 
 struct ModelChoiceArguments {
-  std::string study, out, max_time;
+  std::string study, out, max_time, format = "table";
   StudyChanges changes;
   std::vector<std::string> by;
   int trials = 0;  // 0: the study's own
@@ -32,14 +33,10 @@ void RunModelChoice(const ModelChoiceArguments& arguments) {
   MakeResultFolder(arguments.out);
   Runner runner =
       Runner::WithCheckpoint(PlanChoices(plan), FindCheckpointInFolder(arguments.out), arguments.threads);
-  const ChoiceCounts counts = CountChoices(plan, arguments.by, &runner);
-  const std::filesystem::path folder(arguments.out);
-  const std::string table = ChoicesAsTable(plan, counts);
-  WriteFileWhole((folder / "model_choice.txt").string(), table);
-  WriteFileWhole((folder / "model_choice.csv").string(), ChoicesAsCsv(plan, counts));
-  WriteFileWhole((folder / "model_choice.json").string(), ChoicesAsJson(plan, counts));
+  const CommandResult result = MakeChoiceResult(plan, CountChoices(plan, arguments.by, &runner));
+  WriteResultFiles(result, (std::filesystem::path(arguments.out) / "model_choice").string());
   runner.RemoveCheckpoint();
-  fmt::print("{}", table);
+  PrintResult(result, arguments.format);
 }
 
 }  // namespace
@@ -76,6 +73,7 @@ Examples:
       ->add_option("-o,--out", arguments->out,
                    "folder for model_choice.txt, .csv and .json, created if missing")
       ->required();
+  AddFormatOption(command, &arguments->format);
   command
       ->add_option("--by", arguments->by,
                    "factor, repeatable: a matrix for each of its levels; default: one matrix for all")

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/front_end_options.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/text/message.h"
@@ -22,7 +23,7 @@ namespace {
 struct PairsArguments {
   DatasetOptions dataset;
   PairsOptions pairs;
-  std::string layout, lens = "pinhole", gate = "orb_slam2";
+  std::string layout, lens = "pinhole", gate = "orb_slam2", format = "table";
   std::vector<double> truth_sd;
 };
 
@@ -140,7 +141,7 @@ void RunPairs(PairsArguments arguments) {
   } else {
     MakePairsOfImages(sequences, arguments.pairs, &journal);
   }
-  fmt::print("{}", WritePairTables(journal, notes, out));
+  PrintResult(WritePairTables(journal, notes, out), arguments.format);
   const bool is_any_kept =
       std::ranges::any_of(journal.rows(), [](const PairRow& row) { return row.reason == kKeptPair; });
   if (!is_any_kept)
@@ -161,6 +162,7 @@ void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
       ->add_option("-o,--out", arguments->pairs.out,
                    "folder for match files, INDEX.csv and pairs.txt; an unfinished one is continued")
       ->required();
+  AddFormatOption(command, &arguments->format);
   command
       ->add_option("--sequence", arguments->dataset.only,
                    "kitti, euroc, tum: name of a sequence's folder, repeatable; default: all")

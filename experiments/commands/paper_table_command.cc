@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/twin_commands.h"
 #include "experiments/core/files/file_output.h"
@@ -26,16 +27,12 @@ void RunPaperTable(const PaperTableArguments& arguments) {
       MakePaperTable(ResultStore::OpenForReading(arguments.run), groups.empty() ? UsualSceneGroups() : groups,
                      arguments.clusters == "images" ? TableClusters::kImages : TableClusters::kSequences,
                      arguments.bounds_deg);
-  const std::string text = PaperTableAsText(table), csv = PaperTableAsCsv(table),
-                    json = PaperTableAsJson(table);
+  const CommandResult result = MakePaperResult(table);
   if (!arguments.out.empty()) {
     MakeResultFolder(arguments.out);
-    const std::filesystem::path folder(arguments.out);
-    WriteFileWhole((folder / "paper_table.txt").string(), text);
-    WriteFileWhole((folder / "paper_table.csv").string(), csv);
-    WriteFileWhole((folder / "paper_table.json").string(), json);
+    WriteResultFiles(result, (std::filesystem::path(arguments.out) / "paper_table").string());
   }
-  fmt::print("{}", arguments.format == "json" ? json : arguments.format == "csv" ? csv : text);
+  PrintResult(result, arguments.format);
 }
 
 }  // namespace
@@ -77,9 +74,7 @@ Examples:
                    "error of rotation or direction above DEG, with the AUC up to it and the median time")
       ->transform(NumberIn({1e-6, 180.0}))
       ->allow_extra_args(false);
-  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(MakeChoiceValidator({"table", "csv", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->callback([arguments] { RunPaperTable(*arguments); });
 }
 

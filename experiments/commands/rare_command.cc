@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
@@ -18,33 +19,12 @@ namespace rcme {
 namespace {
 
 struct RareArguments {
-  std::string study, out, max_time, method = "splitting";
+  std::string study, out, max_time, method = "splitting", format = "table";
   StudyChanges changes;
   RareEffort splitting;
   StratifiedEffort stratified;
   int threads = 0;
 };
-
-struct RareTexts {
-  std::string table, csv, json;
-};
-
-RareTexts Split(const StudyPlan& plan, const RareArguments& arguments, Runner* runner) {
-  const std::vector<RareCell> cells = SplitFailures(plan, plan.study.seed, arguments.splitting, runner);
-  std::vector<RareRow> rows;
-  for (const RareCell& cell : cells) rows.push_back(MakeRareRow(cell));
-  const RareEvent& event = arguments.splitting.event;
-  return {RareAsTable(plan, event, cells), RareAsCsv(plan, event, rows),
-          RareAsJson(plan, arguments.splitting, cells)};
-}
-
-RareTexts Stratify(const StudyPlan& plan, const RareArguments& arguments, Runner* runner) {
-  const std::vector<StratifiedCell> cells = StratifyFailures(plan, arguments.stratified, runner);
-  std::vector<RareRow> rows;
-  for (const StratifiedCell& cell : cells) rows.push_back(MakeRareRow(cell));
-  return {StratifiedAsTable(plan, cells), RareAsCsv(plan, {}, rows),
-          StratifiedAsJson(plan, arguments.stratified, cells)};
-}
 
 void RequireEventOfMethod(const RareArguments& arguments) {
   if (arguments.method == "splitting" || arguments.splitting.event.kind == RareEvent::Kind::kFailure) return;
@@ -64,13 +44,14 @@ void RunRare(const RareArguments& arguments) {
       Runner::WithCheckpoint(is_splitting ? PlanSplitting(plan, plan.study.seed, arguments.splitting)
                                           : PlanStrata(plan, arguments.stratified),
                              FindCheckpointInFolder(arguments.out), arguments.threads);
-  const RareTexts texts = is_splitting ? Split(plan, arguments, &runner) : Stratify(plan, arguments, &runner);
-  const std::filesystem::path folder(arguments.out);
-  WriteFileWhole((folder / "rare.txt").string(), texts.table);
-  WriteFileWhole((folder / "rare.csv").string(), texts.csv);
-  WriteFileWhole((folder / "rare.json").string(), texts.json);
+  const CommandResult result =
+      is_splitting ? MakeRareResult(plan, arguments.splitting,
+                                    SplitFailures(plan, plan.study.seed, arguments.splitting, &runner))
+                   : MakeStratifiedResult(plan, arguments.stratified,
+                                          StratifyFailures(plan, arguments.stratified, &runner));
+  WriteResultFiles(result, (std::filesystem::path(arguments.out) / "rare").string());
   runner.RemoveCheckpoint();
-  fmt::print("{}", texts.table);
+  PrintResult(result, arguments.format);
 }
 
 void AddEventOptions(CLI::App* command, RareEvent* event) {
@@ -127,6 +108,7 @@ Examples:
       ->required();
   command->add_option("-o,--out", arguments->out, "folder for rare.txt, .csv and .json, created if missing")
       ->required();
+  AddFormatOption(command, &arguments->format);
   AddTimeLimit(command, "replicates, or blocks of trials", &arguments->max_time);
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);

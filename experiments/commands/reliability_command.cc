@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/statistics/forecast_output.h"
@@ -39,9 +40,7 @@ Examples:
       ->required();
   command->add_option("--by", arguments->by,
                       "factor of the study: a line per level instead of one for all trials");
-  command->add_option("--format", arguments->format, "table (for people) or json (for programs and figures)")
-      ->check(MakeChoiceValidator({"table", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {
     std::vector<ResultStore> runs;
@@ -51,10 +50,8 @@ Examples:
       studies.push_back(runs.back().Description().study);
     }
     const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(runs, arguments->by);
-    PrintOrWrite(arguments->out,
-                 arguments->format == "json"
-                     ? ForecastsAsJson(fmt::format("{}", fmt::join(studies, ", ")), arguments->by, measures)
-                     : ForecastsAsTable(measures, arguments->by));
+    PrintResult(MakeForecastResult(fmt::format("{}", fmt::join(studies, ", ")), arguments->by, measures),
+                arguments->format, arguments->out);
   });
 }
 

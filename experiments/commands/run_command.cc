@@ -6,13 +6,16 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/lock_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/core/files/first_difference.h"
-#include "experiments/core/text/columns.h"
+#include "experiments/core/table/interval_columns.h"
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
@@ -24,7 +27,7 @@ namespace rcme {
 namespace {
 
 struct RunArguments {
-  std::string study, out;
+  std::string study, out, format = "table";
   StudyChanges changes;
   LockArguments lock;
   std::int64_t trials = 0, repeats_per_scene = 0;  // 0: the study's own
@@ -71,19 +74,20 @@ void RemoveForRetry(const StudyPlan& plan, const RunArguments& arguments, Result
                num_removed > 0 ? ", which the file notes" : "");
 }
 
-// What every condition took, as a table.
-std::string SpentAsTable(const StudyPlan& plan, const std::vector<CellPrecision>& cells) {
-  std::vector<std::vector<std::string>> rows = {plan.factor_names};
-  rows[0].insert(rows[0].end(), {"trials", "widest interval", "rate", "target"});
-  for (const CellPrecision& cell : cells) {
-    rows.push_back(plan.conditions[cell.condition].levels);
-    rows.back().insert(rows.back().end(),
-                       {fmt::format("{}", cell.num_trials), plan.study.estimators[cell.estimator].label,
-                        fmt::format("{:.3f} % [{:.3f}, {:.3f}]", 100.0 * cell.rate,
-                                    100.0 * cell.interval.lower, 100.0 * cell.interval.upper),
-                        cell.is_reached ? "reached" : "not reached"});
-  }
-  return FormatColumns(rows);
+// What every condition took: of its widest interval the estimator and the rate.
+Table MakeSpentTable(const StudyPlan& plan, const std::vector<CellPrecision>& cells) {
+  using C = const CellPrecision&;
+  const auto levels_of = [&](C c) -> const auto& { return plan.conditions[c.condition].levels; };
+  std::vector<ColumnOf<CellPrecision>> columns = LevelColumns<CellPrecision>(plan.factor_names, levels_of);
+  Column estimator = Column::Text("estimator");
+  estimator.heading = "widest interval";
+  columns.push_back({Column::Count("trials"), [](C c) { return c.num_trials; }});
+  columns.push_back({estimator, [&](C c) { return plan.study.estimators[c.estimator].label; }});
+  columns.push_back({Column::Estimated("rate", {100.0, "%", ".3f"}), [](C c) {
+                       return Estimate{c.rate, c.interval};
+                     }});
+  columns.push_back({Column::Text("target"), [](C c) { return c.is_reached ? "reached" : "not reached"; }});
+  return MakeTable(columns, cells);
 }
 
 UntilOptions UntilOptionsFrom(const RunArguments& arguments) {
@@ -126,12 +130,27 @@ void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, Result
   store->NoteUntilOptions(fmt::format("--until {} --until-event {} --max-trials {}", arguments.until,
                                       arguments.until_event, arguments.max_trials),
                           spent);
-  fmt::print("Trials spent until {} of {} (anytime-valid 95 %): {}\n\n{}", arguments.until,
-             arguments.until_event, spent, SpentAsTable(plan, cells));
+  const Table table = MakeSpentTable(plan, cells);
+  std::string text = fmt::format("Trials spent until {} of {} (anytime-valid 95 %): {}\n\n{}",
+                                 arguments.until, arguments.until_event, spent, RenderText(table));
   if (num_open > 0) {
-    fmt::print("\n{} of {} conditions did not reach it within --max-trials {}\n", num_open, cells.size(),
-               arguments.max_trials);
+    text += fmt::format("\n{} of {} conditions did not reach it within --max-trials {}\n", num_open,
+                        cells.size(), arguments.max_trials);
   }
+  const Facts facts = {{"study", plan.study.name},           {"file", arguments.out},
+                       {"until", arguments.until},           {"event", arguments.until_event},
+                       {"max_trials", arguments.max_trials}, {"trials", spent}};
+  PrintResult(MakeResult(text, kRunFormat, facts, WithIntervalColumns(table)), arguments.format);
+}
+
+// What became of the trials; to people the messages of the run say it.
+CommandResult MakeRunResult(const StudyPlan& plan, const RunReport& report, const std::string& file) {
+  Table table{{Column::Key("study"), Column::Count("conditions"), Column::Count("estimators"),
+               Column::Count("trials"), Column::Count("trials_before"), Column::Number("seconds"),
+               Column::Text("file")}};
+  table.rows.push_back({plan.study.name, std::ssize(plan.conditions), std::ssize(plan.estimators),
+                        report.num_trials, report.num_trials - report.num_run_now, report.seconds, file});
+  return MakeResult("", kRunFormat, {}, table);
 }
 
 void Run(const RunArguments& arguments) {
@@ -165,6 +184,7 @@ void Run(const RunArguments& arguments) {
           : "rcme summarize " + arguments.out;
   PrintMessage("done: {} trials ({} were there already) in {}; next: {}\n", report.num_trials,
                report.num_trials - report.num_run_now, DescribeDuration(report.seconds), next);
+  PrintResult(MakeRunResult(plan, report, arguments.out), arguments.format);
 }
 
 }  // namespace
@@ -193,6 +213,7 @@ Examples:
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
   AddLockOptions(command, &arguments->lock);
+  AddFormatOption(command, &arguments->format);
   CLI::Option* trials =
       command
           ->add_option("--trials", arguments->trials, "trials per condition; a greater number extends a run")

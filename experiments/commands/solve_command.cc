@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
@@ -21,7 +22,7 @@ namespace rcme {
 namespace {
 
 struct SolveArguments {
-  std::string study, out, max_time, quantity = "failure", scale = "linear";
+  std::string study, out, max_time, quantity = "failure", scale = "linear", format = "table";
   std::vector<std::string> estimators;
   StudyChanges changes;
   CrossingQuestion question;
@@ -76,13 +77,10 @@ void Solve(SolveArguments arguments, const CLI::Option& from, const CLI::Option&
     steps.emplace(&*runner);
   }
   const CrossingAnswer answer = FindCrossings(study, question, arguments.threads, steps ? &*steps : nullptr);
-  const std::string table = CrossingsAsTable(study, question, answer);
-  fmt::print("{}", table);
+  const CommandResult result = MakeCrossingsResult(study, question, answer);
+  PrintResult(result, arguments.format);
   if (arguments.out.empty()) return;
-  const std::filesystem::path folder(arguments.out);
-  WriteFileWhole((folder / "crossings.txt").string(), table);
-  WriteFileWhole((folder / "crossings.csv").string(), CrossingsAsCsv(question, answer));
-  WriteFileWhole((folder / "crossings.json").string(), CrossingsAsJson(study, question, answer));
+  WriteResultFiles(result, (std::filesystem::path(arguments.out) / "crossings").string());
   runner->RemoveCheckpoint();
 }
 
@@ -141,6 +139,7 @@ Examples:
       ->add_option("--trials", arguments->question.num_trials, "trials for each estimator in each condition")
       ->transform(WholeNumberIn(100, 100'000'000))
       ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->add_option("-o,--out", arguments->out,
                       "folder for crossings.txt, .csv and .json, created if missing");
   AddTimeLimit(command, "batches of trials", &arguments->max_time);

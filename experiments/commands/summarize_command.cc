@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/message.h"
 #include "experiments/statistics/forecast_output.h"
 #include "experiments/statistics/quantity_table.h"
@@ -66,6 +68,10 @@ std::string RenderSummary(Summary summary, const Arguments& arguments) {
     return SummaryAsLatex(summary, quantities.empty() ? DefaultLatexQuantities() : quantities,
                           ParseLabels(arguments.labels));
   }
+  if (arguments.format == "markdown") {
+    return RenderMarkdown(
+        MakeQuantityTable(summary, quantities.empty() ? DefaultLatexQuantities() : quantities));
+  }
   if (arguments.format == "table")
     return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
   if (!quantities.empty()) KeepQuantities(quantities, &summary);
@@ -102,13 +108,7 @@ Examples:
   rcme summarize run.sqlite --raw csv --out trials.csv)");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
-  CLI::Option* format =
-      command
-          ->add_option(
-              "--format", arguments->format,
-              "table (for people), csv or json (every quantity), latex (a table of a paper, booktabs)")
-          ->check(MakeChoiceValidator({"table", "csv", "json", "latex"}))
-          ->capture_default_str();
+  CLI::Option* format = AddFormatOption(command, &arguments->format);
   command
       ->add_option("--quantities", arguments->quantities,
                    "a,b,...: these alone (rcme list quantities); default: the main ones in a table, all in "

@@ -6,9 +6,13 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/files/scratch_folder.h"
+#include "experiments/core/files/yaml_input.h"
+#include "experiments/core/table/read_csv_table.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/statistics/surface_data.h"
 #include "parameters/input_error.h"
 
@@ -19,7 +23,7 @@ constexpr int kCandidatesPerProposal = 32, kLeastCandidates = 512, kMostCandidat
 
 struct SurfaceArguments {
   std::vector<std::string> runs;
-  std::string quantity = "failure", estimator, out;
+  std::string quantity = "failure", estimator, out, format = "table";
   int num_proposed = 0;
   std::optional<double> level;
   bool has_no_figures = false;
@@ -29,6 +33,20 @@ MarginalQuantity FindQuantity(const std::string& name) {
   if (name == "failure") return MarginalQuantity::kFailure;
   if (name == "coverage") return MarginalQuantity::kSureCoverage;
   return MarginalQuantity::kFailedLessStated;
+}
+
+// What the script has written: the held-out conditions, and the other tables as far as there are any.
+CommandResult ReadSurface(const std::string& folder) {
+  const auto path = [&](const std::string& name) {
+    return (std::filesystem::path(folder) / (name + ".csv")).string();
+  };
+  const auto read = [&](const std::string& name) {
+    return ReadCsvTable(ReadInputText(path(name), {"table", "a table of `rcme surface`"}));
+  };
+  std::vector<NamedTable> others;
+  for (const char* name : {"indices", "curves", "maps", "proposed"})
+    if (std::filesystem::exists(path(name))) others.push_back({name, read(name)});
+  return MakeResult("", kSurfaceFormat, {}, read("cross_validation"), others);
 }
 
 void MakeSurface(const SurfaceArguments& arguments) {
@@ -43,9 +61,12 @@ void MakeSurface(const SurfaceArguments& arguments) {
                                     fmt::format("{}", arguments.num_proposed)};
   if (arguments.level) words.insert(words.end(), {"--level", fmt::format("{}", *arguments.level)});
   if (arguments.has_no_figures) words.push_back("--no-figures");
-  const ScriptEnd end = RunPlotScript("surface_report", words, ScriptOutput::kShown);
+  const bool is_for_people = arguments.format == "table";
+  const ScriptEnd end =
+      RunPlotScript("surface_report", words, is_for_people ? ScriptOutput::kShown : ScriptOutput::kDropped);
   if (end == ScriptEnd::kNoPython) ThrowNoPython("surface");
   if (end == ScriptEnd::kFailed) throw InputError("surface: no surface was made, for the reason above");
+  if (!is_for_people) PrintResult(ReadSurface(arguments.out), arguments.format);
 }
 
 }  // namespace
@@ -91,6 +112,7 @@ Examples:
       ->needs("--propose");
   command->add_flag("--no-figures", arguments->has_no_figures, "write the report and the tables alone");
   command->add_option("-o,--out", arguments->out, "folder to write into; it is made")->required();
+  AddFormatOption(command, &arguments->format);
   command->callback([arguments] { MakeSurface(*arguments); });
 }
 

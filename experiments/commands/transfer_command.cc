@@ -5,6 +5,7 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/commands/tuning_source.h"
@@ -17,7 +18,7 @@ namespace rcme {
 namespace {
 
 struct TransferArguments : TuningArguments {
-  std::string out, by;
+  std::string out, by, format = "table";
   ShardArguments shards;
 };
 
@@ -43,10 +44,11 @@ void RunTransfer(const TransferArguments& arguments) {
       MeasureTransfer(plan, settings, arguments.by, CountsIn(plan, settings, work, runner.results()));
   MakeResultFolder(arguments.out);
   const std::filesystem::path folder(arguments.out);
-  const std::string table = TransferAsTable(plan, result), json = (folder / "transfer.json").string();
-  WriteFileWhole((folder / "transfer.txt").string(), table);
-  WriteFileWhole(json, TransferAsJson(plan, settings, result));
-  fmt::print("{}", table);
+  const CommandResult report = MakeTransferResult(plan, settings, result);
+  const std::string json = (folder / "transfer.json").string();
+  WriteFileWhole((folder / "transfer.txt").string(), report.text);
+  WriteFileWhole(json, report.json);
+  PrintResult(report, arguments.format);
   DrawFigures("transfer", {json, "--out", (folder / "transfer").string()});
   runner.RemoveCheckpoint();
 }
@@ -79,6 +81,7 @@ Examples:
           "-o,--out", arguments->out,
           "folder for transfer.txt, transfer.json and the figures; with --shard the file of the part")
       ->required();
+  AddFormatOption(command, &arguments->format);
   AddShardOptions(command, "trials", &arguments->shards);
   command->callback([arguments] { RunTransfer(*arguments); });
 }

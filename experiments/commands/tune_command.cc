@@ -5,6 +5,7 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/time_limit.h"
@@ -22,7 +23,7 @@ namespace rcme {
 namespace {
 
 struct TuneArguments : TuningArguments {
-  std::string out, figures;
+  std::string out, figures, format = "table";
   ShardArguments shards;
   std::vector<std::string> merged;  // parts of the first round
   int repeat = 0;
@@ -74,10 +75,10 @@ void RunRepetitions(const TuneArguments& arguments, const StudyPlan& plan, const
   if (!out.empty()) CheckCanBeWritten(out);
   Runner runner = MakeRunner(PlanRepetitions(plan, arguments.repeat),
                              out.empty() ? "" : FindCheckpointBeside(out), arguments.threads);
-  const std::string table = RepetitionsAsTable(plan, settings, RepeatTuning(plan, settings, &runner));
-  if (!out.empty()) WriteFileWhole(out, table);
+  const CommandResult result = MakeRepetitionsResult(plan, settings, RepeatTuning(plan, settings, &runner));
+  if (!out.empty()) WriteFileWhole(out, result.text);
   runner.RemoveCheckpoint();
-  fmt::print("{}", table);
+  PrintResult(result, arguments.format);
 }
 
 void RunTune(const TuneArguments& arguments) {
@@ -107,10 +108,12 @@ void RunTune(const TuneArguments& arguments) {
   const TuneResult result = Tune(plan, settings, unreached, CountsIn(plan, settings, work, runner.results()));
   std::vector<EntropyRoc> rocs;
   if (!result.verified.empty()) rocs = ComputeRocs(plan, EntropiesIn(plan, work, runner.results()));
-  fmt::print("{}", TuneAsTable(plan, result, rocs));
+  const CommandResult report = {TuneAsTable(plan, result, rocs), MakeSettingTable(plan, settings, result),
+                                TuneAsJson(plan, settings, result, rocs)};
+  PrintResult(report, arguments.format);
   if (result.choice.setting) WriteEstimator(arguments, plan, settings, result);
   if (!arguments.figures.empty()) {
-    WriteFigures(arguments.figures, TuneAsJson(plan, settings, result, rocs));
+    WriteFigures(arguments.figures, report.json);
   }
   runner.RemoveCheckpoint();
   if (!result.choice.setting) throw InputError(fmt::format("{}: {}", arguments.study, result.choice.why));
@@ -165,6 +168,7 @@ Examples:
   CLI::Option* figures =
       command->add_option("--figures", arguments->figures,
                           "folder for tune.json and the figures: surface, Pareto front, ROC of psi");
+  AddFormatOption(command, &arguments->format);
   const ShardOptions shards = AddShardOptions(command, "trials", &arguments->shards);
   shards.shard->excludes(figures);
   command

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/time_limit.h"
@@ -142,14 +143,10 @@ void RunTwin(const TwinArguments& arguments) {
     if (!report.simulated.empty())
       WriteStudy(report, "simulated", report.simulated, 400, spec, places.simulated_study);
   }
-  const std::string text = TwinsAsText(reports), csv = TwinsAsCsv(reports), json = TwinsAsJson(reports);
-  if (!is_one_study) {
-    WriteFileWhole((out / "twin.txt").string(), text);
-    WriteFileWhole((out / "twin.csv").string(), csv);
-    WriteFileWhole((out / "twin.json").string(), json);
-  }
+  const CommandResult result = MakeTwinsResult(reports);
+  if (!is_one_study) WriteResultFiles(result, (out / "twin").string());
   runner.RemoveCheckpoint();
-  fmt::print("{}", arguments.format == "json" ? json : arguments.format == "csv" ? csv : text);
+  PrintResult(result, arguments.format);
 }
 
 }  // namespace
@@ -195,9 +192,7 @@ Examples:
       ->transform(WholeNumberIn(1, 100))
       ->capture_default_str();
   AddTimeLimit(command, "pairs", &arguments->max_time);
-  command->add_option("--format", arguments->format, "table (for people), csv or json (for programs)")
-      ->check(MakeChoiceValidator({"table", "csv", "json"}))
-      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
   command->add_option("--seed", arguments->seed, "seed of samples, halves and twins")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();

@@ -7,10 +7,12 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/simulated_sequence.h"
 #include "experiments/real/truth_free/advice.h"
@@ -29,7 +31,7 @@ namespace {
 
 struct ValidateArguments {
   std::vector<std::string> pairs;
-  std::string out, max_time;
+  std::string out, max_time, format = "table";
   EstimatorChoice estimator;
   std::vector<std::string> data;  // key=value each, of a study
   std::string scene;              // empty: all
@@ -142,18 +144,17 @@ void RunValidate(const ValidateArguments& arguments) {
   for (const PairSet& set : sets)
     reports.push_back(arguments.tests_alone ? Validate(set, *estimator.make({}), options, steps)
                                             : ValidateAndAdvise(set, estimator, options, steps));
-  const std::string table = ValidationAsTable(reports) + ClosuresAsTable(reports);
-  fmt::print("{}", table);
+  const CommandResult result = MakeValidationResult(reports);
+  PrintResult(result, arguments.format);
   if (arguments.out.empty()) return;
   const std::filesystem::path folder(arguments.out);
-  WriteFileWhole((folder / "validation.txt").string(), table);
-  WriteFileWhole((folder / "validation.csv").string(), ValidationAsCsv(reports));
-  if (arguments.longest_loop > 0)
-    WriteFileWhole((folder / "closure.csv").string(), ClosuresAsCsv(reports, NameEstimator(arguments)));
-  const std::string json = (folder / "validation.json").string();
-  WriteFileWhole(json, ValidationAsJson(reports));
-  if (!arguments.draws_no_figure)
-    DrawFigures("validation", {json, "--out", (folder / "validation").string()});
+  const std::string stem = (folder / "validation").string();
+  WriteResultFiles(result, stem);
+  if (arguments.longest_loop > 0) {
+    const Table closures = MakeClosureTable(reports, NameEstimator(arguments));
+    WriteFileWhole((folder / "closure.csv").string(), RenderCsv(closures));
+  }
+  if (!arguments.draws_no_figure) DrawFigures("validation", {stem + ".json", "--out", stem});
   runner->RemoveCheckpoint();
 }
 
@@ -204,6 +205,7 @@ Examples:
   AddEstimatorOptions(command, estimator, &arguments->estimator);
   command->add_option("-o,--out", arguments->out,
                       "folder for validation.txt, .csv, .json and the figure, created if missing");
+  AddFormatOption(command, &arguments->format);
   command->add_option("--scene", arguments->scene, "only this scene, or this condition of a study");
   command
       ->add_option("--sigma", arguments->sigma_px,

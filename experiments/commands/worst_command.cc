@@ -7,11 +7,13 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
+#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/files/yaml_input.h"
+#include "experiments/core/table/read_csv_table.h"
 #include "experiments/study/find_estimator.h"
 #include "experiments/study/population.h"
 #include "experiments/study/study_file.h"
@@ -23,7 +25,7 @@ namespace {
 constexpr int kPoolDraws = 20'000;  // of the population, among which the search chooses
 
 struct WorstArguments {
-  std::string study, out, estimator, against, quantity = "failure";
+  std::string study, out, estimator, against, quantity = "failure", format = "table";
   StudyChanges changes;
   int trials = 0, minutes = 0, regions = 3, fresh = 300, threads = 0;
   double claim = -1.0;
@@ -90,10 +92,17 @@ void FindWorst(const WorstArguments& arguments) {
   for (const EstimatorSpec& spec : study.estimators) words.insert(words.end(), {"--estimator", spec.label});
   if (arguments.claim >= 0.0) words.insert(words.end(), {"--claim", fmt::format("{}", arguments.claim)});
   if (arguments.changes.allow_process) words.push_back("--allow-process");
-  const ScriptEnd end = RunPlotScript("worst", words, ScriptOutput::kShown);
+  const bool is_for_people = arguments.format == "table";
+  const ScriptEnd end =
+      RunPlotScript("worst", words, is_for_people ? ScriptOutput::kShown : ScriptOutput::kDropped);
   if (end == ScriptEnd::kNoPython) ThrowNoPython("worst");
   if (end == ScriptEnd::kFailed)
     throw InputError("worst: not finished, for the reason above; the same command goes on");
+  if (is_for_people) return;
+  const auto read = [&](const char* name) {
+    return ReadInputText((folder / name).string(), {"result", "a result of `rcme worst`"});
+  };
+  PrintResult({"", ReadCsvTable(read("worst.csv")), read("worst.json")}, arguments.format);
 }
 
 }  // namespace
@@ -152,6 +161,7 @@ Examples:
                    "0.1, coverage 0.05, difference 0")
       ->transform(NumberIn({0.0, 1.0}));
   command->add_option("-o,--out", arguments->out, "folder to write into; it is made")->required();
+  AddFormatOption(command, &arguments->format);
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
   command

@@ -346,4 +346,8 @@ std::string ConformAsJson(const ConformReport& report) {
   return JsonText(kConformReportFormat, json);
 }
 
+CommandResult MakeConformResult(const ConformReport& report) {
+  return {ConformAsText(report), WithIntervalColumns(MakeRegionTable(report)), ConformAsJson(report)};
+}
+
 }  // namespace rcme

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "experiments/conform/conform_report.h"
+#include "experiments/core/table/command_result.h"
 
 namespace rcme {
 
@@ -15,5 +16,7 @@ std::string DescribeNeeds(const ConformPromise& promise);
 
 std::string ConformAsText(const ConformReport& report);
 std::string ConformAsJson(const ConformReport& report);
+
+CommandResult MakeConformResult(const ConformReport& report);
 
 }  // namespace rcme

@@ -236,4 +236,8 @@ std::string GateAsJUnit(const GateReport& report) {
                             XmlText(GateSentence(report)));
 }
 
+CommandResult MakeGateResult(const GateReport& report) {
+  return {GateAsText(report), MakeFileTable(report), GateAsJson(report)};
+}
+
 }  // namespace rcme

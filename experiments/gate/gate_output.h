@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/gate/gate.h"
 
 namespace rcme {
@@ -35,5 +36,7 @@ std::string GateAsMarkdown(const GateReport& report);
 std::string GateAsJson(const GateReport& report);
 // A test case per test: worse is a failure, undecided an error, what was not measured is skipped.
 std::string GateAsJUnit(const GateReport& report);
+
+CommandResult MakeGateResult(const GateReport& report);
 
 }  // namespace rcme

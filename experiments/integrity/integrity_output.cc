@@ -118,7 +118,9 @@ void AddRate(const std::string& name, Estimate IntegrityRates::*rate, TableFor t
     return;
   }
   columns->push_back({Column::Number(name), [rate](R row) { return (row.rates.*rate).value; }});
-  columns->push_back({{.name = "", .type = ColumnType::kInterval, .json_name = name + "_interval"},
+  columns->push_back({{.name = name + "_lower," + name + "_upper",
+                       .type = ColumnType::kInterval,
+                       .json_name = name + "_interval"},
                       [rate](R row) { return (row.rates.*rate).interval; }});
 }
 
@@ -285,6 +287,11 @@ std::string IntegrityAsJson(const IntegrityReport& report) {
       {"all", RenderJson(MakeTableOfAll(report, TableFor::kFile))},
       {"conditions", RenderJson(MakeTableOfConditions(report, TableFor::kFile, report.conditions.size()))}};
   return JsonText(kIntegrityFormat, json);
+}
+
+CommandResult MakeIntegrityResult(const IntegrityReport& report) {
+  return {IntegrityAsText(report), MakeTableOfConditions(report, TableFor::kFile, report.conditions.size()),
+          IntegrityAsJson(report)};
 }
 
 }  // namespace rcme

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/core/table/table.h"
 #include "experiments/integrity/integrity_work.h"
 #include "experiments/trial/trial_grouping.h"
@@ -45,5 +46,7 @@ bool IsRiskExceeded(const IntegrityReport& report);
 
 std::string IntegrityAsText(const IntegrityReport& report);
 std::string IntegrityAsJson(const IntegrityReport& report);
+
+CommandResult MakeIntegrityResult(const IntegrityReport& report);
 
 }  // namespace rcme

@@ -6,18 +6,14 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
 #include "stats/moments.h"
 
 namespace rcme {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kBruteForceLegend =
     "of brute force: calls, of those after which plain trials would have the same standard error.";
@@ -112,46 +108,77 @@ Table MakeRateTable(const StudyPlan& plan, const RareEvent& event, const std::ve
   return table;
 }
 
-Json RenderSplittingLevels(const RareCell& cell) {
-  std::vector<double> values = cell.pilot.levels.levels;
-  values.push_back(1.0);
-  Json levels = Json::array();
-  for (size_t k = 0; k < values.size() && !cell.replicates.empty(); ++k) {
-    Moments rates, acceptance;
-    for (const SplittingReplicate& replicate : cell.replicates) {
-      double rate = 1.0;
-      for (size_t j = 0; j <= k; ++j) rate *= j < replicate.shares.size() ? replicate.shares[j] : 0.0;
-      rates.Add(rate);
-      if (k < replicate.acceptance.size()) acceptance.Add(replicate.acceptance[k]);
+// What a rate is of, in files.
+Table MakeKeyTable(const StudyPlan& plan) {
+  Table table{{Column::Count("condition")}};
+  for (const std::string& factor : plan.factor_names)
+    table.columns.push_back({.name = factor, .group = "levels", .is_key = true});
+  table.columns.push_back(Column::Key("estimator"));
+  return table;
+}
+
+std::vector<Value> MakeKeyValues(const StudyPlan& plan, size_t condition, size_t estimator) {
+  std::vector<Value> values = {static_cast<std::int64_t>(condition)};
+  std::ranges::copy(MakeRowHead(plan, condition, estimator), std::back_inserter(values));
+  return values;
+}
+
+// A row per level of the error: the rate of errors beyond it, and the share of the moves there that were
+// accepted, both as means of the replicates.
+Table MakeLevelTable(const StudyPlan& plan, const std::vector<RareCell>& cells) {
+  Table table = MakeKeyTable(plan);
+  table.AddColumns({Column::Number("error_over_bound"), Column::Number("rate_beyond"),
+                    Column::Number("standard_error"), Column::Number("acceptance")});
+  for (const RareCell& cell : cells) {
+    std::vector<double> levels = cell.pilot.levels.levels;
+    levels.push_back(1.0);
+    for (size_t k = 0; k < levels.size() && !cell.replicates.empty(); ++k) {
+      Moments rates, acceptance;
+      for (const SplittingReplicate& replicate : cell.replicates) {
+        double rate = 1.0;
+        for (size_t j = 0; j <= k; ++j) rate *= j < replicate.shares.size() ? replicate.shares[j] : 0.0;
+        rates.Add(rate);
+        if (k < replicate.acceptance.size()) acceptance.Add(replicate.acceptance[k]);
+      }
+      std::vector<Value>& row = table.rows.emplace_back(MakeKeyValues(plan, cell.condition, cell.estimator));
+      row.insert(row.end(), {levels[k], rates.mean(), rates.standard_error(), acceptance.mean()});
     }
-    levels.push_back({{"error_over_bound", values[k]},
-                      {"rate_beyond", JsonNumber(rates.mean())},
-                      {"standard_error", JsonNumber(rates.standard_error())},
-                      {"acceptance", JsonNumber(acceptance.mean())}});
   }
-  return levels;
+  return table;
 }
 
-Json RowAsJson(const StudyPlan& plan, const RareRow& row) {
-  return {{"condition", row.condition},
-          {"levels", plan.conditions[row.condition].levels},
-          {"estimator", plan.study.estimators[row.estimator].label},
-          {"value", JsonNumber(row.estimate)},
-          {"lower", JsonNumber(row.interval.lower)},
-          {"upper", JsonNumber(row.interval.upper)},
-          {"standard_error", JsonNumber(row.standard_error)},
-          {"is_trusted", row.doubts.empty()},
-          {"doubts", row.doubts},
-          {"unseen_up_to", JsonNumber(row.unseen_up_to)},
-          {"num_calls", row.num_calls},
-          {"brute_force_share", JsonNumber(row.BruteForceShare())}};
+Table MakeReplicateTable(const StudyPlan& plan, const std::vector<RareCell>& cells) {
+  Table table = MakeKeyTable(plan);
+  table.AddColumns({Column::Count("replicate"), Column::Number("estimate"), Column::Count("ancestors")});
+  for (const RareCell& cell : cells) {
+    for (size_t r = 0; r < cell.replicates.size(); ++r) {
+      std::vector<Value>& row = table.rows.emplace_back(MakeKeyValues(plan, cell.condition, cell.estimator));
+      row.insert(row.end(), {static_cast<std::int64_t>(r), cell.replicates[r].estimate,
+                             static_cast<std::int64_t>(cell.replicates[r].num_ancestors)});
+    }
+  }
+  return table;
 }
 
-Json StudyAsJson(const StudyPlan& plan, const char* method) {
-  return {{"study", plan.study.name},
-          {"seed", plan.study.seed},
-          {"factors", plan.factor_names},
-          {"method", method}};
+Table MakeStratumTable(const StudyPlan& plan, const std::vector<StratifiedCell>& cells) {
+  Table table = MakeKeyTable(plan);
+  table.AddColumns({Column::Count("one_in"), Column::Count("num_trials"), Column::Count("num_run"),
+                    Column::Count("num_failed")});
+  for (const StratifiedCell& cell : cells) {
+    for (size_t k = 0; k < kNumStrata; ++k) {
+      const StratumCount& count = cell.strata[k];
+      std::vector<Value>& row = table.rows.emplace_back(MakeKeyValues(plan, cell.condition, cell.estimator));
+      row.insert(row.end(), {std::int64_t{1} << k, count.num_trials, count.num_run, count.num_failed});
+    }
+  }
+  return table;
+}
+
+template <typename Cell>
+std::vector<RareRow> MakeRareRows(const std::vector<Cell>& cells) {
+  std::vector<RareRow> rows;
+  for (const Cell& cell : cells) rows.push_back(MakeRareRow(cell));
+  return rows;
 }
 
 }  // namespace
@@ -242,67 +269,58 @@ std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<Stratifie
          FormatParagraph("1 in k: of the trials of a stratum one in k is run: failed/run/drawn.");
 }
 
-std::string RareAsCsv(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows) {
-  Table table{{Column::Text("study"), Column::Count("condition")}};
-  table.AddColumns(HeadColumns(plan));
-  table.AddColumns({Column::Text("quantity"), Column::Text("kind"), Column::Number("value"),
-                    Column::Number("lower"), Column::Number("upper"), Column::Number("standard_error"),
-                    Column::Count("n"), Column::Count("trusted"), Column::Text("doubts"),
-                    Column::Number("unseen_up_to"), Column::Number("relative_spread"),
+Table MakeRareFileTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows) {
+  Table table{{{.name = "study", .json_name = kNotInJson}}};
+  table.AddColumns(MakeKeyTable(plan).columns);
+  table.AddColumns({Column::Text("quantity"),
+                    Column::Text("kind"),
+                    Column::Number("value"),
+                    {"lower,upper", ColumnType::kInterval},
+                    Column::Number("standard_error"),
+                    Column::Count("n"),
+                    Column::Count("trusted"),
+                    Column::Text("doubts"),
+                    Column::Number("unseen_up_to"),
+                    Column::Number("relative_spread"),
                     Column::Number("brute_force_share")});
   for (const RareRow& row : rows) {
-    std::vector<Value>& values = table.rows.emplace_back(
-        std::vector<Value>{plan.study.name, static_cast<std::int64_t>(row.condition)});
-    std::ranges::copy(MakeRowHead(plan, row.condition, row.estimator), std::back_inserter(values));
+    std::vector<Value>& values = table.rows.emplace_back(std::vector<Value>{plan.study.name});
+    std::ranges::copy(MakeKeyValues(plan, row.condition, row.estimator), std::back_inserter(values));
     const std::int64_t is_trusted = row.doubts.empty() ? 1 : 0;
-    values.insert(values.end(), {Name(event.kind), "rate", row.estimate, row.interval.lower,
-                                 row.interval.upper, row.standard_error, row.num_calls, is_trusted,
-                                 fmt::format("{}", fmt::join(row.doubts, " ")), row.unseen_up_to,
-                                 row.relative_spread, KnownShare(row)});
+    values.insert(values.end(), {Name(event.kind), "rate", row.estimate, row.interval, row.standard_error,
+                                 row.num_calls, is_trusted, fmt::format("{}", fmt::join(row.doubts, " ")),
+                                 row.unseen_up_to, row.relative_spread, KnownShare(row)});
   }
-  return RenderCsv(table);
+  return table;
 }
 
-std::string RareAsJson(const StudyPlan& plan, const RareEffort& effort, const std::vector<RareCell>& cells) {
-  Json all = Json::array();
-  for (const RareCell& cell : cells) {
-    Json estimates = Json::array();
-    for (const SplittingReplicate& replicate : cell.replicates) estimates.push_back(replicate.estimate);
-    all.push_back(RowAsJson(plan, MakeRareRow(cell)));
-    all.back().update({{"relative_spread", JsonNumber(cell.rate.relative_spread)},
-                       {"num_ancestors", cell.rate.num_ancestors},
-                       {"error_levels", RenderSplittingLevels(cell)},
-                       {"replicates", estimates}});
-  }
-  Json json = StudyAsJson(plan, "splitting");
-  if (effort.event.kind != RareEvent::Kind::kFailure)
-    json.update({{"event", Name(effort.event.kind)}, {"risk", effort.event.risk}});
-  json.update({{"num_particles", effort.splitting.num_particles},
-               {"num_moves", effort.splitting.num_moves},
-               {"kept_share", effort.splitting.kept_share},
-               {"num_replicates", effort.num_replicates},
-               {"cells", all}});
-  return JsonText(kRareFormat, json);
+CommandResult MakeRareResult(const StudyPlan& plan, const RareEffort& effort,
+                             const std::vector<RareCell>& cells) {
+  const bool has_risk = effort.event.kind != RareEvent::Kind::kFailure;
+  const Facts facts = {{"study", plan.study.name},
+                       {"seed", static_cast<std::int64_t>(plan.study.seed)},
+                       {"method", "splitting"},
+                       {"risk", has_risk ? Value(effort.event.risk) : Value()},
+                       {"num_particles", std::int64_t{effort.splitting.num_particles}},
+                       {"num_moves", std::int64_t{effort.splitting.num_moves}},
+                       {"kept_share", effort.splitting.kept_share},
+                       {"num_replicates", std::int64_t{effort.num_replicates}}};
+  return MakeResult(
+      RareAsTable(plan, effort.event, cells), kRareFormat, facts,
+      MakeRareFileTable(plan, effort.event, MakeRareRows(cells)),
+      {{"error_levels", MakeLevelTable(plan, cells)}, {"replicates", MakeReplicateTable(plan, cells)}});
 }
 
-std::string StratifiedAsJson(const StudyPlan& plan, const StratifiedEffort& effort,
-                             const std::vector<StratifiedCell>& cells) {
-  Json all = Json::array();
-  for (const StratifiedCell& cell : cells) {
-    Json strata = Json::array();
-    for (int k = 0; k < kNumStrata; ++k) {
-      const StratumCount& count = cell.strata[static_cast<size_t>(k)];
-      strata.push_back({{"one_in", 1 << k},
-                        {"num_trials", count.num_trials},
-                        {"num_run", count.num_run},
-                        {"num_failed", count.num_failed}});
-    }
-    all.push_back(RowAsJson(plan, MakeRareRow(cell)));
-    all.back()["strata"] = strata;
-  }
-  Json json = StudyAsJson(plan, "stratified");
-  json.update({{"num_trials", effort.num_trials}, {"run_share", effort.run_share}, {"cells", all}});
-  return JsonText(kRareFormat, json);
+CommandResult MakeStratifiedResult(const StudyPlan& plan, const StratifiedEffort& effort,
+                                   const std::vector<StratifiedCell>& cells) {
+  const Facts facts = {{"study", plan.study.name},
+                       {"seed", static_cast<std::int64_t>(plan.study.seed)},
+                       {"method", "stratified"},
+                       {"num_trials", std::int64_t{effort.num_trials}},
+                       {"run_share", effort.run_share}};
+  return MakeResult(StratifiedAsTable(plan, cells), kRareFormat, facts,
+                    MakeRareFileTable(plan, {}, MakeRareRows(cells)),
+                    {{"strata", MakeStratumTable(plan, cells)}});
 }
 
 }  // namespace rcme

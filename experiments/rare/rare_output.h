@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/rare/split_failures.h"
 #include "experiments/rare/stratified_failures.h"
 
@@ -32,11 +33,12 @@ std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<Stratifie
 
 // Rows of `rcme summarize --format csv`, the event as their quantity, with more columns: trusted, doubts,
 // unseen_up_to, relative_spread, brute_force_share. n counts calls of the estimator.
-std::string RareAsCsv(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows);
+Table MakeRareFileTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows);
 
-// The rows, and of splitting the levels and the estimate of every replicate.
-std::string RareAsJson(const StudyPlan& plan, const RareEffort& effort, const std::vector<RareCell>& cells);
-std::string StratifiedAsJson(const StudyPlan& plan, const StratifiedEffort& effort,
-                             const std::vector<StratifiedCell>& cells);
+// These, in JSON also the levels of the error and the replicates of splitting, or the strata.
+CommandResult MakeRareResult(const StudyPlan& plan, const RareEffort& effort,
+                             const std::vector<RareCell>& cells);
+CommandResult MakeStratifiedResult(const StudyPlan& plan, const StratifiedEffort& effort,
+                                   const std::vector<StratifiedCell>& cells);
 
 }  // namespace rcme

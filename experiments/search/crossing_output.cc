@@ -65,10 +65,6 @@ std::string CrossingsAsTable(const Study& study, const CrossingQuestion& questio
          FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials));
 }
 
-std::string CrossingsAsCsv(const CrossingQuestion& question, const CrossingAnswer& answer) {
-  return RenderCsv(MakeTable(CrossingColumns(question, answer.factors), answer.crossings));
-}
-
 std::string CrossingsAsJson(const Study& study, const CrossingQuestion& question,
                             const CrossingAnswer& answer) {
   Json rows = RenderJson(MakeTable(CrossingColumns(question, answer.factors), answer.crossings));
@@ -85,6 +81,13 @@ std::string CrossingsAsJson(const Study& study, const CrossingQuestion& question
                                      {"quantity", question.event.name},
                                      {"rate", question.rate},
                                      {"crossings", rows}});
+}
+
+CommandResult MakeCrossingsResult(const Study& study, const CrossingQuestion& question,
+                                  const CrossingAnswer& answer) {
+  return {CrossingsAsTable(study, question, answer),
+          MakeTable(CrossingColumns(question, answer.factors), answer.crossings),
+          CrossingsAsJson(study, question, answer)};
 }
 
 }  // namespace rcme

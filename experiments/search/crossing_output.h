@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/search/rate_crossing.h"
 
 namespace rcme {
@@ -10,9 +11,11 @@ namespace rcme {
 std::string CrossingsAsTable(const Study& study, const CrossingQuestion& question,
                              const CrossingAnswer& answer);
 // The same rows.
-std::string CrossingsAsCsv(const CrossingQuestion& question, const CrossingAnswer& answer);
 // The rows, and the events at every level that was asked.
 std::string CrossingsAsJson(const Study& study, const CrossingQuestion& question,
                             const CrossingAnswer& answer);
+
+CommandResult MakeCrossingsResult(const Study& study, const CrossingQuestion& question,
+                                  const CrossingAnswer& answer);
 
 }  // namespace rcme

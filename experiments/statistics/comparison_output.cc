@@ -182,4 +182,8 @@ std::string ComparisonAsJson(const Comparison& comparison) {
                                       {"rows", RenderJson(MakeRowTable(comparison))}});
 }
 
+CommandResult MakeComparisonResult(const Comparison& comparison) {
+  return {ComparisonAsTable(comparison), MakeRowTable(comparison), ComparisonAsJson(comparison)};
+}
+
 }  // namespace rcme

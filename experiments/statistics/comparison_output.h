@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/statistics/compare.h"
 
 namespace rcme {
@@ -19,5 +20,7 @@ std::string ComparisonAsCsv(const Comparison& comparison);
 // The same rows as an object {study, reference, trials_done, trials_planned, rows: [...]}; unknown numbers
 // are null.
 std::string ComparisonAsJson(const Comparison& comparison);
+
+CommandResult MakeComparisonResult(const Comparison& comparison);
 
 }  // namespace rcme

@@ -109,4 +109,8 @@ std::string FailingTrialsAsJson(const FailingTrials& trials) {
                                     {"rows", RenderJson(MakeFailingTable(trials))}});
 }
 
+CommandResult MakeFailuresResult(const FailingTrials& trials, const std::string& run) {
+  return {FailingTrialsAsTable(trials, run), MakeFailingTable(trials), FailingTrialsAsJson(trials)};
+}
+
 }  // namespace rcme

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/run/store/result_store.h"
 
 namespace rcme {
@@ -43,5 +44,7 @@ std::string FailingTrialsAsTable(const FailingTrials& trials, const std::string&
 // For programs: a row per answer.
 std::string FailingTrialsAsCsv(const FailingTrials& trials);
 std::string FailingTrialsAsJson(const FailingTrials& trials);
+
+CommandResult MakeFailuresResult(const FailingTrials& trials, const std::string& run);
 
 }  // namespace rcme

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
@@ -57,6 +58,36 @@ Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std:
     row.resize(table.columns.size());
   }
   return table;
+}
+
+// The same in files: a row per estimator and level.
+Table MakeForecastFileTable(const std::vector<ForecastMeasures>& measures) {
+  using M = const ForecastMeasures&;
+  std::vector<ColumnOf<ForecastMeasures>> columns = {
+      {Column::Key("group"), [](M m) { return m.group; }},
+      {Column::Key("estimator"), [](M m) { return m.estimator; }},
+      {Column::Text("source"), [](M m) { return Name(m.source); }},
+      {Column::Count("n"), [](M m) { return m.n; }},
+      {Column::Count("refused"), [](M m) { return m.num_refused; }}};
+  const auto add = [&](const std::string& name, const std::function<Estimate(M)>& measure) {
+    columns.push_back({Column::Estimated(name), [=](M m) { return m.n > 0 ? measure(m) : Estimate(); }});
+  };
+  add("mean_probability", [](M m) { return Estimate{m.mean_probability}; });
+  add("failure", [](M m) { return WithInterval(m.failure); });
+  add("brier", [](M m) { return WithInterval(m.brier); });
+  add("log_score", [](M m) { return WithInterval(m.log_score); });
+  add("miscalibration", [](M m) { return Estimate{m.parts.miscalibration}; });
+  add("miscalibration_p_value", [](M m) { return Estimate{m.check.p_value}; });
+  add("calibration_error", [](M m) {
+    const double value = m.error_of_equal_width.value;
+    return m.is_of_population ? Estimate{value, m.interval_of_equal_width} : Estimate{value};
+  });
+  add("calibration_slope", [](M m) { return WithInterval(m.line.slope); });
+  add("area_under_curve", [](M m) { return Estimate{m.area.value, m.area.interval}; });
+  add("risk_coverage_area", [](M m) { return WithInterval(m.risk_coverage_area); });
+  add("sure_failed", [](M m) { return Rate(m.num_sure_failed, m.num_sure, m.sure_failed_interval); });
+  add("sure", [](M m) { return Rate(m.num_sure, m.num_trials(), m.sure_interval); });
+  return WithIntervalColumns(MakeTable(columns, measures));
 }
 
 Json AsJson(double value, double standard_error, const Interval& interval) {
@@ -189,8 +220,15 @@ std::string ForecastsAsJson(const std::string& study, const std::string& by,
                {"sure_below", kSureBelow},
                {"histogram_edges", HistogramEdges()},
                {"entries", Json::array()}};
+  json["rows"] = RenderJson(MakeForecastFileTable(measures));
   for (const ForecastMeasures& m : measures) json["entries"].push_back(RenderForecastEntry(m));
   return JsonText(kReliabilityFormat, json);
+}
+
+CommandResult MakeForecastResult(const std::string& study, const std::string& by,
+                                 const std::vector<ForecastMeasures>& measures) {
+  return {ForecastsAsTable(measures, by), MakeForecastFileTable(measures),
+          ForecastsAsJson(study, by, measures)};
 }
 
 }  // namespace rcme

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/statistics/forecast_measures.h"
 
 namespace rcme {
@@ -15,5 +16,8 @@ std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, cons
 // with its band, the bins and the risk-coverage curve; unknown and infinite numbers are null.
 std::string ForecastsAsJson(const std::string& study, const std::string& by,
                             const std::vector<ForecastMeasures>& measures);
+
+CommandResult MakeForecastResult(const std::string& study, const std::string& by,
+                                 const std::vector<ForecastMeasures>& measures);
 
 }  // namespace rcme

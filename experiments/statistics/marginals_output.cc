@@ -83,4 +83,9 @@ std::string MarginalsAsJson(const std::string& study, const Marginals& marginals
                    {"marginals", RenderJson(MakeTable(ListColumns(false), marginals.rows))}});
 }
 
+CommandResult MakeMarginalsResult(const std::string& study, const Marginals& marginals, size_t num_shown) {
+  return {MarginalsAsTable(study, marginals, num_shown), MakeTable(ListColumns(false), marginals.rows),
+          MarginalsAsJson(study, marginals)};
+}
+
 }  // namespace rcme

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/statistics/marginals.h"
 
 namespace rcme {
@@ -12,5 +13,7 @@ std::string MarginalsAsTable(const std::string& study, const Marginals& marginal
 // All of them.
 std::string MarginalsAsCsv(const Marginals& marginals);
 std::string MarginalsAsJson(const std::string& study, const Marginals& marginals);
+
+CommandResult MakeMarginalsResult(const std::string& study, const Marginals& marginals, size_t num_shown);
 
 }  // namespace rcme

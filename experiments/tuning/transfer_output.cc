@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
@@ -26,6 +27,31 @@ std::vector<std::string> OthersWith(Verdict verdict, const Tuning& tuning, const
     if (DecideSetting(tuning, count) == verdict) words.push_back(result.families[other].words);
   }
   return words;
+}
+
+// A row per family tuned on and family verified on, but for families without a choice.
+Table MakeTransferCells(const StudyPlan& plan, const TransferResult& result) {
+  const Tuning& tuning = *plan.study.tuning;
+  Table table{{Column::Key("tuned_on"), Column::Text("setting"), Column::Key("verified_on")}};
+  for (const char* rate : {"rate", "failure", "refusal", "false_refusal"}) {
+    table.columns.push_back(Column::Estimated(rate));
+    table.columns.push_back(Column::Count(std::string(rate) + "_n"));
+  }
+  table.columns.push_back(Column::Text("verdict"));
+  for (size_t f = 0; f < result.families.size(); ++f) {
+    const Family& family = result.families[f];
+    if (!family.choice.setting) continue;
+    for (size_t other = 0; other < result.families.size(); ++other) {
+      const SettingCount& count = result.verified[other][*family.choice.setting];
+      std::vector<Value>& row = table.rows.emplace_back();
+      row = {family.words, result.settings[*family.choice.setting], result.families[other].words};
+      for (const ErrorCount& of :
+           {TargetedCount(tuning, count), count.Failure(), count.Refusal(), count.FalseRefusal()})
+        row.insert(row.end(), {EstimateRate(of), of.n});
+      row.emplace_back(Name(DecideSetting(tuning, count)));
+    }
+  }
+  return WithIntervalColumns(table);
 }
 
 }  // namespace
@@ -89,9 +115,16 @@ std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, c
                      {"seed", plan.study.seed},
                      {"target", TargetAsJson(tuning)},
                      {"options", OptionsAsJson(plan.study)},
+                     {"rows", RenderJson(MakeTransferCells(plan, result))},
                      {"families", families},
                      {"cells", cells}};
   return JsonText(kTransferFormat, json);
+}
+
+CommandResult MakeTransferResult(const StudyPlan& plan, const SettingPlan& settings,
+                                 const TransferResult& result) {
+  return {TransferAsTable(plan, result), MakeTransferCells(plan, result),
+          TransferAsJson(plan, settings, result)};
 }
 
 }  // namespace rcme

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/tuning/transfer.h"
 
 namespace rcme {
@@ -10,5 +11,8 @@ namespace rcme {
 std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result);
 // For plots/transfer.py: every cell of the matrix.
 std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, const TransferResult& result);
+
+CommandResult MakeTransferResult(const StudyPlan& plan, const SettingPlan& settings,
+                                 const TransferResult& result);
 
 }  // namespace rcme

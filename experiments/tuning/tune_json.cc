@@ -12,6 +12,7 @@
 #include "experiments/core/text/json_output.h"
 #include "experiments/study/tuning_file.h"
 #include "experiments/tuning/rate_output.h"
+#include "experiments/tuning/tune_output.h"
 #include "stats/pareto_front.h"
 #include "stats/thresholds.h"
 
@@ -195,7 +196,8 @@ std::string TuneAsJson(const StudyPlan& plan, const SettingPlan& settings, const
                {"seed", plan.study.seed},
                {"target", TargetAsJson(tuning)},
                {"options", OptionsAsJson(plan.study)},
-               {"settings", SettingsAsJson(settings, result)},
+               {"rows", RenderJson(MakeSettingTable(plan, settings, result))},
+               {"settings", result.verified.empty() ? Json::array() : SettingsAsJson(settings, result)},
                {"tuned", nullptr},
                {"others", Json::array()},
                {"roc", Json::array()}};

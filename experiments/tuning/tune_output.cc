@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <functional>
 
+#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
 #include "experiments/tuning/rate_output.h"
 #include "stats/intervals.h"
@@ -176,6 +178,30 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
          RenderText(MakeRocTable(plan, rocs));
 }
 
+Table MakeSettingTable(const StudyPlan& plan, const SettingPlan& settings, const TuneResult& result) {
+  const std::vector<size_t>& path = result.choice.path;
+  Table table;
+  for (const TunedOption& option : plan.study.tuning->options)
+    table.columns.push_back({.name = option.name, .group = "levels", .is_key = true});
+  for (const char* rate : {"failure", "refusal", "false_refusal"}) {
+    table.columns.push_back(Column::Estimated(rate));
+    table.columns.push_back(Column::Count(std::string(rate) + "_n"));
+  }
+  table.AddColumns({Column::Flag("is_on_path"), Column::Flag("is_certified"), Column::Flag("is_chosen")});
+  for (size_t s = 0; s < result.verified.size(); ++s) {
+    const auto place = std::ranges::find(path, s);
+    const std::vector<std::string>& levels = settings.settings[s].levels;
+    std::vector<Value>& row = table.rows.emplace_back(levels.begin(), levels.end());
+    for (const ErrorCount& of :
+         {result.verified[s].Failure(), result.verified[s].Refusal(), result.verified[s].FalseRefusal()})
+      row.insert(row.end(), {EstimateRate(of), of.n});
+    row.insert(row.end(), {place != path.end(),
+                           place - path.begin() < static_cast<std::ptrdiff_t>(result.choice.num_certified),
+                           result.choice.setting == s});
+  }
+  return WithIntervalColumns(table);
+}
+
 std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& settings,
                                const Repetitions& repetitions) {
   const Tuning& tuning = *plan.study.tuning;
@@ -230,6 +256,20 @@ std::vector<std::pair<std::string, std::string>> DescribeProvenance(const StudyP
           {"verified", rates(result.verified[s])},
           {"verdict", DescribeVerdict(tuning, result)},
           {"program", "rcme " RCME_VERSION}};
+}
+
+CommandResult MakeRepetitionsResult(const StudyPlan& plan, const SettingPlan& settings,
+                                    const Repetitions& repetitions) {
+  Table chosen = MakeChosenTable(*plan.study.tuning, settings, repetitions, ByTimesChosen(repetitions));
+  for (Column& column : chosen.columns) std::ranges::replace(column.name, ' ', '_');
+  return MakeResult(RepetitionsAsTable(plan, settings, repetitions), kRepetitionsFormat,
+                    {{"study", plan.study.name},
+                     {"repetitions", repetitions.num_done},
+                     {"without_choice", repetitions.num_without_choice},
+                     {"violated", repetitions.num_violated},
+                     {"undecided", repetitions.num_undecided},
+                     {"promised", plan.study.tuning->delta}},
+                    WithIntervalColumns(chosen));
 }
 
 }  // namespace rcme

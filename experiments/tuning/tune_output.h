@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/tuning/entropy_roc.h"
 #include "experiments/tuning/tune.h"
 
@@ -12,6 +13,10 @@ namespace rcme {
 // What was asked, tuned and verified, for people. Without a choice: what was tried.
 std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result, const std::vector<EntropyRoc>& rocs);
 
+// In files, a row per setting: its levels, its rates on the trials for verification, and whether it was on
+// the path of the tuning, certified, chosen. Without a row if nothing was verified.
+Table MakeSettingTable(const StudyPlan& plan, const SettingPlan& settings, const TuneResult& result);
+
 // How often a repeated tuning violated its target, for people.
 std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& settings,
                                const Repetitions& repetitions);
@@ -19,5 +24,8 @@ std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& setting
 // Where the tuned estimator comes from and what it was seen to do: (key, text) pairs for its file.
 std::vector<std::pair<std::string, std::string>> DescribeProvenance(const StudyPlan& plan,
                                                                     const TuneResult& result);
+
+CommandResult MakeRepetitionsResult(const StudyPlan& plan, const SettingPlan& settings,
+                                    const Repetitions& repetitions);
 
 }  // namespace rcme

@@ -154,7 +154,7 @@ def marginals(run):
     rows = run.marginals.rows
     worst = rows[(rows.excess > 0) & (rows.regime != "all")]
     lines = [[style.label_of(row.estimator), row.regime, row.quantity,
-              joined([f"{100 * row.value:.1f} %", Html("<br>"), small(f"[{100 * row.lower:.1f}, {100 * row.upper:.1f}]")]),
+              joined([f"{100 * row.value:.2f} %", Html("<br>"), small(f"[{100 * row.lower:.2f}, {100 * row.upper:.2f}]")]),
               f"{100 * row.claimed:.0f} %", f"{row.num_conditions} ({int(row.n):,})"]
              for row in worst.head(WORST_MARGINALS).itertuples()]
     if not lines:

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/test_support/result_formats.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -46,6 +47,7 @@ TEST_F(AskProgram, AnswersWithStudyAndResultFile) {
       nlohmann::json::parse(Ask({"--image", "640x480", "--trials", "12", "--format", "json"}).out);
   EXPECT_EQ(json["format"], "rcme answer 1");
   EXPECT_EQ(json["trials"], 12);
+  ExpectSameRows(Ask({"--image", "640x480", "--trials", "12", "--format", "csv"}).out, json["rows"]);
 }
 
 TEST_F(AskProgram, WithoutATerminalItNamesWhatIsMissing) {

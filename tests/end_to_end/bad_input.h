@@ -30,7 +30,7 @@ inline testing::AssertionResult IsRefused(const ProgramResult& result,
 class BadInput : public testing::Test {
  protected:
   ProgramResult Estimate(const std::string& name, const std::string& bytes) {
-    return RunRcme({"estimate", folder_.Write(name, bytes), "--json"});
+    return RunRcme({"estimate", folder_.Write(name, bytes), "--format=json"});
   }
   ProgramResult Run(const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"run", study_, "--threads", "1"};

@@ -53,7 +53,7 @@ TEST_F(BadInput, SingularK) {
 TEST_F(BadInput, TooFewMatches) {
   for (const std::string estimator : {"standard", "prcme", "rcme"}) {
     const std::string path = folder_.Write("m.csv", MatchHeader() + MatchRows(7));
-    const ProgramResult result = RunRcme({"estimate", path, "--estimator", estimator, "--json"});
+    const ProgramResult result = RunRcme({"estimate", path, "--estimator", estimator, "--format=json"});
     EXPECT_TRUE(IsRefused(result, {"m.csv", "7 distinct matches of 7; at least 8"}));
     EXPECT_NE(result.out.find("\"status\": \"too_few_matches\""), std::string::npos) << result.out;
   }

@@ -5,6 +5,7 @@
 
 #include "tests/end_to_end/bad_input.h"
 #include "tests/test_support/match_text.h"
+#include "tests/test_support/result_formats.h"
 #include "tests/test_support/run_program.h"
 
 namespace rcme {
@@ -22,6 +23,7 @@ TEST(CheckTruthProgram, APairInDoubtIsListedAndNotScored) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.out, ReadBytes(out + "/truth_check.txt"));
   EXPECT_NE(result.out.find("The truth of 1 of 3 pairs is in doubt"), std::string::npos) << result.out;
+  ExpectFormatsAgree({"check-truth", pairs.path()}, 0, "evidence");
   const std::string list = out + "/truth_in_doubt.csv";
   EXPECT_EQ(ReadBytes(list).rfind("scene,pair_id,p_value\na,a_002,", 0), 0u) << ReadBytes(list);
 

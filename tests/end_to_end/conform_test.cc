@@ -8,6 +8,7 @@
 
 #include "tests/end_to_end/bad_input.h"
 #include "tests/test_support/match_text.h"
+#include "tests/test_support/result_formats.h"
 
 namespace rcme {
 namespace {
@@ -38,6 +39,8 @@ TEST_F(Conform, WritesAFileAndSaysWhatItPromises) {
   EXPECT_THAT(text, HasSubstr("contains the truth with probability at least 95 %"));
   EXPECT_THAT(ReadBytes(file_), HasSubstr("\"format\": \"rcme conform 1\""));
   EXPECT_EQ(folder_.NumEntries(), 2);  // the study and the file: no checkpoint is left
+  ExpectFormatsAgree({"conform", study_, "--estimator", "standard", "--trials", "100", "--out", file_}, 0,
+                     "regions");
 }
 
 TEST_F(Conform, GivesTheSameBytesForThreadsAndShards) {
@@ -84,7 +87,7 @@ TEST_F(Conform, TheFileIsAnEstimator) {
   const ProgramResult reliability = RunRcme({"reliability", run});
   EXPECT_THAT(reliability.out, HasSubstr("kept"));
   const std::string matches = folder_.Write("m.csv", MatchHeader() + MatchRows(60));
-  const ProgramResult estimate = RunRcme({"estimate", matches, "--conform", file_, "--json"});
+  const ProgramResult estimate = RunRcme({"estimate", matches, "--conform", file_, "--format=json"});
   EXPECT_THAT(estimate.out, HasSubstr("\"format\": \"rcme estimate 2\"")) << estimate.err;
   folder_.Write("mine.conform.json", ReadBytes(file_) + " ");
   EXPECT_TRUE(IsRefused(RunRcme({"replay", run, "--condition", "0", "--trial", "0"}), {"has changed since"}));

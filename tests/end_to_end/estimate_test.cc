@@ -25,7 +25,7 @@ const std::string kFountain = SourceFolder() + "/../shared/real/dev/strecha_foun
 
 nlohmann::json Estimate(const std::string& path, const std::string& estimator,
                         const std::vector<std::string>& more = {}) {
-  std::vector<std::string> arguments = {"estimate", path, "--estimator", estimator, "--json"};
+  std::vector<std::string> arguments = {"estimate", path, "--estimator", estimator, "--format=json"};
   arguments.insert(arguments.end(), more.begin(), more.end());
   const ProgramResult result = RunRcme(arguments);
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -163,7 +163,7 @@ TEST(EstimatePrior, IsUsedContradictedOrNone) {
 // the others are answered.
 TEST(EstimateMany, DoesNotDependOnThreads) {
   const TempFolder folder;
-  std::vector<std::string> arguments = {"estimate", "--json", "--threads", "1"};
+  std::vector<std::string> arguments = {"estimate", "--format=jsonl", "--threads", "1"};
   for (int i = 0; i < 12; ++i) {
     const std::string name = "pair_" + std::to_string(i) + ".csv";
     arguments.push_back(folder.Write(name, i == 5 ? "no matches" : MatchHeader() + MatchRows(30 + i)));
@@ -330,8 +330,8 @@ TEST(Estimate, ABareFileWithIntrinsicsIsTheFileWithItsHeader) {
   const nlohmann::json json = Estimate(whole, "rcme");
   EXPECT_EQ(Estimate(bare, "rcme", k), json);
   EXPECT_EQ(Estimate(bare, "rcme", {"--K", "600,600,319.5,239.5", "--K", "600,600,319.5,239.5"}), json);
-  const ProgramResult piped =
-      RunShell("cat '" + bare + "' | \"$RCME\" estimate - --estimator rcme --json --K 600,600,319.5,239.5");
+  const ProgramResult piped = RunShell(
+      "cat '" + bare + "' | \"$RCME\" estimate - --estimator rcme --format json --K 600,600,319.5,239.5");
   EXPECT_EQ(piped.exit_code, 0) << piped.err;
   EXPECT_EQ(nlohmann::json::parse(piped.out), json);
   const auto refuses = [&](const std::vector<std::string>& arguments, const std::string& what) {
@@ -364,7 +364,8 @@ TEST(Estimate, AFolderGivesALineForEachFileAndFailsForABadOne) {
   EXPECT_THAT(table.out, testing::HasSubstr("too_few_matches"));
   EXPECT_THAT(table.out, testing::HasSubstr("4 pairs: 2 motions, 1 without one, 1 not read"));
 
-  const ProgramResult lines = RunRcme({"estimate", folder.Path("pairs"), "--json", "--estimator", "rcme"});
+  const ProgramResult lines =
+      RunRcme({"estimate", folder.Path("pairs"), "--format=jsonl", "--estimator", "rcme"});
   EXPECT_EQ(lines.exit_code, 2);
   std::vector<std::string> statuses;
   for (const std::string& line : SplitLines(lines.out))

@@ -20,7 +20,7 @@ class EstimatorFile : public testing::Test {
     return RunRcme(arguments);
   }
   nlohmann::json Estimate(const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"estimate", matches_, "--json"};
+    std::vector<std::string> arguments = {"estimate", matches_, "--format=json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const ProgramResult result = RunRcme(arguments);
     EXPECT_EQ(result.exit_code, 0) << result.err;

@@ -60,12 +60,13 @@ TEST_F(Habits, EstimatorFilesHaveNamesInEveryFolder) {
   EXPECT_EQ(list.exit_code, 0) << list.err;
   EXPECT_THAT(list.out, HasSubstr("rcme_tuned"));
   folder_.Write("pair.csv", MatchHeader() + MatchRows(60));
-  const ProgramResult by_file = RunHere("\"$RCME\" estimate pair.csv --json --estimator-file rcme_tuned");
+  const ProgramResult by_file =
+      RunHere("\"$RCME\" estimate pair.csv --format json --estimator-file rcme_tuned");
   EXPECT_EQ(by_file.exit_code, 0) << by_file.err;
-  const ProgramResult by_path = RunHere("\"$RCME\" estimate pair.csv --json --estimator-file '" +
+  const ProgramResult by_path = RunHere("\"$RCME\" estimate pair.csv --format json --estimator-file '" +
                                         SourceFolder() + "/estimator_files/rcme_tuned.yaml'");
   EXPECT_EQ(by_file.out, by_path.out);
-  EXPECT_EQ(RunHere("\"$RCME\" estimate pair.csv --json --estimator rcme_tuned").out, by_file.out);
+  EXPECT_EQ(RunHere("\"$RCME\" estimate pair.csv --format json --estimator rcme_tuned").out, by_file.out);
   folder_.Write("study.yaml", SmallStudyYaml() + "  - {file: rcme_tuned, label: tuned}\n");
   EXPECT_THAT(RunHere("\"$RCME\" run study.yaml --threads 1 --out a.sqlite --add-estimator rcme_tuned").err,
               HasSubstr("4 estimators"));

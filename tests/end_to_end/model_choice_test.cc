@@ -35,7 +35,7 @@ TEST_F(ModelChoiceProgram, WritesWhatItPrints) {
   }
   EXPECT_NE(Written("model_choice.csv").find("\nsmall,1,0.3,general,general,gric,share,rate,1,"),
             std::string::npos);
-  EXPECT_NE(Written("model_choice.json").find("rcme model choice 1"), std::string::npos);
+  EXPECT_NE(Written("model_choice.json").find("rcme model choice 2"), std::string::npos);
 }
 
 TEST_F(ModelChoiceProgram, IsTheSameOnAnyNumberOfThreads) {

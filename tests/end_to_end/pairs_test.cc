@@ -7,6 +7,7 @@
 
 #include "tests/end_to_end/bad_input.h"
 #include "tests/test_support/rendered_sequence.h"
+#include "tests/test_support/result_formats.h"
 
 namespace rcme {
 namespace {
@@ -34,6 +35,7 @@ TEST(PairsProgram, FromKittiToARateAndToAValidation) {
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_NE(again.err.find("continues after"), std::string::npos) << again.err;
   EXPECT_EQ(again.out, made.out);
+  ExpectFormatsAgree(command);
   EXPECT_EQ(ReadBytes(out + "/pairs.journal"), journal);
   std::vector<std::string> other = command;
   other.insert(other.end(), {"--detector", "orb"});
@@ -115,7 +117,7 @@ TEST(PairsProgram, WarnsWhereKIsNotOfTheImages) {
       half.err.find("warning: images: K: the principal point is the centre of an image of 161 x 121 px"),
       std::string::npos)
       << half.err;
-  const ProgramResult estimated = RunRcme({"estimate", out, "--json"});
+  const ProgramResult estimated = RunRcme({"estimate", out, "--format=jsonl"});
   EXPECT_NE(estimated.err.find("(and 1 more): the principal point is the centre of an image of"),
             std::string::npos)
       << estimated.err;

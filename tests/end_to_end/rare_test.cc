@@ -36,7 +36,7 @@ TEST_F(RareProgram, WritesWhatItPrintsOnAnyNumberOfThreads) {
   EXPECT_EQ(result.out, Written("rare.txt"));
   EXPECT_NE(result.out.find("small: failures by multilevel splitting"), std::string::npos) << result.out;
   EXPECT_NE(Written("rare.csv").find("\nsmall,1,0.3,ours,failure,rate,"), std::string::npos);
-  EXPECT_NE(Written("rare.json").find("rcme rare 1"), std::string::npos);
+  EXPECT_NE(Written("rare.json").find("rcme rare 2"), std::string::npos);
   const std::string once = Written("rare.json");
   arguments.back() = "2";
   ASSERT_EQ(Call(arguments).exit_code, 0);

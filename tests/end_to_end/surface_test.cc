@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/test_support/result_formats.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/small_study.h"
 
@@ -56,6 +57,7 @@ TEST_F(SurfaceProgram, ProposesConditionsThatRunAndAreAddedToTheSurface) {
   ASSERT_EQ(first.exit_code, 0) << first.err;
   EXPECT_THAT(first.out, HasSubstr("All are random draws"));
   EXPECT_EQ(ReadBytes(out_ + "/indices.csv").substr(0, 6), "group,");
+  ExpectFormatsAgree({"surface", "--out", folder_.Path("formats"), "--no-figures", run});
 
   const std::string next = Run("next", ReadBytes(out_ + "/next.yaml"));
   const ProgramResult both = Call({run, next});

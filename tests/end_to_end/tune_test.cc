@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/test_support/match_text.h"
+#include "tests/test_support/result_formats.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/tuned_study.h"
 
@@ -59,7 +60,7 @@ TEST_F(TuneProgram, WritesAnEstimatorThatOtherCommandsTake) {
   ASSERT_EQ(Call("run", {"--add-estimator", out_, "--out", run, "--threads", "1"}).exit_code, 0);
   EXPECT_NE(RunRcme({"summarize", run}).out.find("ours_tuned"), std::string::npos);
   const std::string matches = folder_.Write("m.csv", MatchHeader() + TruePoseHeader() + MatchRows(60));
-  const ProgramResult pair = RunRcme({"estimate", matches, "--estimator-file", out_, "--json"});
+  const ProgramResult pair = RunRcme({"estimate", matches, "--estimator-file", out_, "--format=json"});
   ASSERT_EQ(pair.exit_code, 0) << pair.err;
   EXPECT_EQ(nlohmann::json::parse(pair.out)["estimator"], "ours_tuned");
 }
@@ -113,7 +114,8 @@ TEST_F(TuneProgram, BadInput) {
   EXPECT_TRUE(refuses("max_refusal=0", {"max_refusal", "'0'", "a number in"}));
   EXPECT_TRUE(refuses("delta=1", {"delta", "'1'", "a number in"}));
   EXPECT_TRUE(refuses("calibrate=0", {"calibrate", "'0'", "a whole number"}));
-  EXPECT_TRUE(refuses("target=speed", {"target", "'speed'", "false_refusal, failure, accepted_failure, risk"}));
+  EXPECT_TRUE(
+      refuses("target=speed", {"target", "'speed'", "false_refusal, failure, accepted_failure, risk"}));
   EXPECT_TRUE(refuses("estimator=theirs", {"estimator", "'theirs'", "standard, ours"}));
   EXPECT_TRUE(IsRefused(Tune({}), {"--out"}));
   EXPECT_TRUE(IsRefused(Tune({"--shard", "1/2", "--out", out_, "--repeat", "3"}), {"--repeat", "--shard"}));
@@ -157,6 +159,7 @@ TEST_F(TuneProgram, Repetitions) {
   EXPECT_NE(result.out.find("tuned 5 times"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("promised at most 5 %"), std::string::npos) << result.out;
   EXPECT_EQ(Tune({"--repeat", "5", "--threads", "1"}).out, result.out);
+  ExpectFormatsAgree({"tune", study_, "--repeat", "5"});
   EXPECT_TRUE(IsRefused(Tune({"--repeat", "5", "--out", study_}), {study_}));
   EXPECT_EQ(Tune({"--repeat", "5", "--out", out_}).out, result.out);
   EXPECT_EQ(ReadBytes(out_), result.out);
@@ -170,6 +173,8 @@ TEST_F(TuneProgram, Transfer) {
   const auto json = nlohmann::json::parse(ReadBytes(out + "/transfer.json"));
   EXPECT_EQ(json["families"].size(), 2u);
   EXPECT_NE(result.out.find("outlier_ratio = 0.3"), std::string::npos) << result.out;
+  ExpectFormatsAgree({"transfer", study_, "--out", out, "--by", "outlier_ratio"});
+  ExpectFormatsAgree({"tune", study_, "--out", out_});
   const std::string bytes = ReadBytes(out + "/transfer.json");
   ASSERT_EQ(Call("transfer", {"--out", out, "--threads", "1"}).exit_code, 0);
   EXPECT_EQ(ReadBytes(out + "/transfer.json"), bytes);

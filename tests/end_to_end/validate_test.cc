@@ -7,6 +7,7 @@
 
 #include "tests/end_to_end/bad_input.h"
 #include "tests/test_support/match_text.h"
+#include "tests/test_support/result_formats.h"
 
 namespace rcme {
 namespace {
@@ -38,10 +39,11 @@ TEST_F(ValidateProgram, OfAFolderSaysOfEachSceneWhatItFound) {
        {"a: 2 pairs, 2 answered, 0 loops", "b: 1 pairs", "spatial_halves", "closure", "no data"})
     EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in\n" << result.out;
   EXPECT_NE(Written("validation.csv").find("\na,2,2,spatial_halves,"), std::string::npos);
-  EXPECT_NE(Written("validation.json").find("rcme validation 2"), std::string::npos);
+  EXPECT_NE(Written("validation.json").find("rcme validation 3"), std::string::npos);
   const std::string once = Written("validation.json");
   ASSERT_EQ(Call(pairs_.path(), {}).exit_code, 0);
   EXPECT_EQ(Written("validation.json"), once);
+  ExpectFormatsAgree({"validate", pairs_.path(), "--twins", "1", "--no-advice"});
   ASSERT_EQ(Call(pairs_.path(), {"--seed", "2"}).exit_code, 0);
   EXPECT_NE(Written("validation.json"), once);
   const ProgramResult one = Call(pairs_.path(), {"--scene", "b", "--set", "covariance=robust"});

@@ -2,6 +2,7 @@
 """`rcme worst` on a small study: its files, the same bytes after a kill, and that its region can be run again."""
 
 import csv
+import json
 import os
 import pathlib
 import re
@@ -88,6 +89,12 @@ class WorstTest(unittest.TestCase):
         self.kill_after_some_trials("killed")
         self.assertFalse((self.folder / "killed" / "worst.csv").exists())
         self.assertEqual(self.finish("killed")[0], whole)
+
+        printed = {form: subprocess.run(self.command("whole", "--format", form), capture_output=True, text=True, check=True).stdout
+                   for form in ("csv", "json")}
+        self.assertEqual(printed["json"], (self.folder / "whole" / "worst.json").read_text())
+        self.assertEqual([float(row["rate"]) for row in csv.DictReader(printed["csv"].splitlines())],
+                         [region["rate"] for region in json.loads(printed["json"])["regions"]])
 
         row = next(csv.DictReader((self.folder / "whole" / "worst.csv").read_text().splitlines()))
         run = str(self.folder / "again.sqlite")

@@ -18,6 +18,7 @@
 #include "experiments/audit/claims/audit_work.h"
 #include "experiments/audit/model_choice/choice_output.h"
 #include "experiments/audit/validity/map_work.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/rare/rare_output.h"
 #include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/twin_output.h"
@@ -152,8 +153,8 @@ class DamagedParts : public testing::Test {
       const WorkPlan pieces = PlanMapWork(work);
       const WorkResults merged = MergeParts(pieces, paths);
       RequireWhole(pieces, merged);
-      return ValidityMapCsv(work.map, TrialsIn(work, pieces, merged)) +
-             ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, merged));
+      return RenderCsv(MakeValidityMapTable(work.map, TrialsIn(work, pieces, merged))) +
+             RenderCsv(MakeValidityReferenceTable(*work.reference, CountsIn(work, pieces, merged)));
     };
     return {"map", paths, tables};
   }
@@ -175,20 +176,20 @@ class DamagedParts : public testing::Test {
   DividedTables Splitting() const {
     const RareEffort effort{{20, 2, 0.2}, 6};
     return Checkpoint("splitting", PlanSplitting(plan_, 1, effort), [this, effort](Runner* runner) {
-      return RareAsJson(plan_, effort, SplitFailures(plan_, 1, effort, runner));
+      return MakeRareResult(plan_, effort, SplitFailures(plan_, 1, effort, runner)).json;
     });
   }
 
   DividedTables Strata() const {
     const StratifiedEffort effort{600, 0.1};
     return Checkpoint("strata", PlanStrata(plan_, effort), [this, effort](Runner* runner) {
-      return StratifiedAsJson(plan_, effort, StratifyFailures(plan_, effort, runner));
+      return MakeStratifiedResult(plan_, effort, StratifyFailures(plan_, effort, runner)).json;
     });
   }
 
   DividedTables Choices() const {
     return Checkpoint("choices", PlanChoices(plan_), [this](Runner* runner) {
-      return ChoicesAsJson(plan_, CountChoices(plan_, {}, runner));
+      return MakeChoiceResult(plan_, CountChoices(plan_, {}, runner)).json;
     });
   }
 
@@ -205,7 +206,7 @@ class DamagedParts : public testing::Test {
     return Checkpoint("validation", Steps(), [this](Runner* runner) {
       KeptSteps steps(runner);
       const PairSet set = PairSetsOfStudy(plan_).front();
-      return ValidationAsJson({Validate(set, *plan_.estimators.back(), {1, 1}, &steps)});
+      return MakeValidationResult({Validate(set, *plan_.estimators.back(), {1, 1}, &steps)}).json;
     });
   }
 

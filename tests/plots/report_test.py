@@ -56,10 +56,10 @@ class Page(ReportTest):
             "standard,noise = laplace,failure,0.2,0.1,0.3,,0,17,93\n")
         page = self.page()
         section = page[page.index("Where it is not what it claims</h3>"):page.index("Findings</h3>")]
-        self.assertIn("40.0 %", section)
-        self.assertIn("[31.0, 52.0]", section)
+        self.assertIn("40.00 %", section)
+        self.assertIn("[31.00, 52.00]", section)
         self.assertIn("17 (93)", section)
-        self.assertNotIn("[10.0, 30.0]", section)  # nothing is claimed of failures
+        self.assertNotIn("[10.00, 30.00]", section)  # nothing is claimed of failures
         self.assertIn("The 1 of 1 regimes", section)
 
     def test_every_number_of_the_summary_is_there(self):

@@ -8,26 +8,29 @@ from plot_test_case import PlotTestCase
 import validation as script
 
 
-def test_of(name, ratio, verdict):
+def test_of(one_set, name, ratio, verdict):
     interval = [None, None] if ratio is None else [0.8 * ratio, 1.3 * ratio]
-    return {"test": name, "ratio": ratio, "interval": interval, "verdict": verdict, "n": 10}
+    return {"set": one_set, "test": name, "ratio": ratio, "ratio_interval": interval, "verdict": verdict, "n": 10}
 
 
 def fake():
     """Two scenes; the second has no triples and too few neighbours."""
-    def correlation(low, high, value):
+    def correlation(one_set, low, high, value):
         bounds = [None, None] if value is None else [value - 0.1, value + 0.1]
-        return {"from_px": low, "to_px": high, "correlation": value or 0.0, "twin_correlation": 0.0, "difference_interval": bounds}
-    def fault(value, verdict):
+        return {"set": one_set, "from_px": low, "to_px": high, "correlation": value or 0.0, "twin_correlation": 0.0,
+                "difference_interval": bounds}
+    def fault(one_set, value, verdict):
         bounds = [None, None] if value is None else [value - 0.001, value + 0.001]
-        return {"fault": "focal_length", "nominal": 0.002, "verdict": verdict, "beside_others": {"value": value, "interval": bounds}}
-    sets = [{"name": "hall", "camera_faults": [fault(0.004, "wrong")], "pairs": 12, "tests": [test_of("spatial_halves", 2.0, "too small"), test_of("random_halves", 1.0, "holds"),
-                                                    test_of("closure", 3.0, "undecided")],
-             "correlations": [correlation(0, 1, 0.8), correlation(1, 4, 0.1)]},
-            {"name": "street", "camera_faults": [fault(None, "no data")], "pairs": 3, "tests": [test_of("spatial_halves", 0.5, "too large"), test_of("random_halves", 1.1, "holds"),
-                                                     test_of("closure", None, "no data")],
-             "correlations": [correlation(0, 1, None), correlation(1, 4, 0.0)]}]
-    return {"format": script.FORMAT, "nominal_variance": 1.5, "nominal_correlation": 0.05, "sets": sets}
+        return {"set": one_set, "fault": "focal_length", "nominal": 0.002, "verdict": verdict, "beside_others": value,
+                "beside_others_interval": bounds}
+    return {"format": script.FORMAT, "nominal_variance": 1.5, "nominal_correlation": 0.05,
+            "sets": [{"set": "hall", "pairs": 12}, {"set": "street", "pairs": 3}],
+            "camera_faults": [fault("hall", 0.004, "wrong"), fault("street", None, "no data")],
+            "tests": [test_of("hall", "spatial_halves", 2.0, "too small"), test_of("hall", "random_halves", 1.0, "holds"),
+                      test_of("hall", "closure", 3.0, "undecided"), test_of("street", "spatial_halves", 0.5, "too large"),
+                      test_of("street", "random_halves", 1.1, "holds"), test_of("street", "closure", None, "no data")],
+            "correlations": [correlation("hall", 0, 1, 0.8), correlation("hall", 1, 4, 0.1),
+                             correlation("street", 0, 1, None), correlation("street", 1, 4, 0.0)]}
 
 
 class Validation(PlotTestCase):
@@ -58,8 +61,8 @@ class Validation(PlotTestCase):
 
     def test_a_test_and_a_fault_that_this_script_does_not_know_are_drawn_by_their_names(self):
         content = fake()
-        content["sets"][0]["tests"].append(test_of("new_test", 1.2, "holds"))
-        content["sets"][0]["camera_faults"].append({**content["sets"][0]["camera_faults"][0], "fault": "new_fault"})
+        content["tests"].append(test_of("hall", "new_test", 1.2, "holds"))
+        content["camera_faults"].append({**content["camera_faults"][0], "fault": "new_fault"})
         names = [text.get_text() for text in script.draw(content).legends[0].get_texts()]
         self.assertLessEqual({"new test", "camera: new fault"}, set(names))
 

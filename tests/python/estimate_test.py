@@ -91,7 +91,7 @@ class Estimate(unittest.TestCase):
 
     def test_the_same_numbers_as_the_program(self):
         path = write_matches(self.trial)
-        text = subprocess.run([PROGRAM, "estimate", path, "--json", "--seed", "5", "--sigma", "0.7"], check=True,
+        text = subprocess.run([PROGRAM, "estimate", path, "--format", "json", "--seed", "5", "--sigma", "0.7"], check=True,
                               capture_output=True, text=True).stdout
         said = json.loads(text)
         pose, info = rcme.estimate_relative_pose(*self.arguments, {"seed": 5, "sigma_px": 0.7})

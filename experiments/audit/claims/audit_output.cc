@@ -345,9 +345,45 @@ Table MakeVerdictTable(const Audit& audit) {
   return table;
 }
 
-}  // namespace
+// A row per claimed or measured number.
+Table MakeNumberTable(const Audit& audit) {
+  Table table{{Column::Key("claim"),
+               Column::Text("family"),
+               Column::Text("reading"),
+               Column::Text("claim_verdict"),
+               Column::Number("holds_up_to_sigma_px"),
+               Column::Text("conditions"),
+               Column::Text("quantity"),
+               Column::Text("kind"),
+               Column::Number("nominal"),
+               Column::Number("low"),
+               Column::Number("high"),
+               Column::Number("value"),
+               {"lower,upper", ColumnType::kInterval},
+               Column::Count("n"),
+               Column::Text("verdict"),
+               Column::Text("side")}};
+  for (size_t i = 0; i < audit.claims.size(); ++i) {
+    const Claim& claim = audit.claims[i];
+    const ClaimResult& result = audit.results[i];
+    for (size_t c = 0; c < claim.checks.size(); ++c) {
+      const Check& check = claim.checks[c];
+      for (size_t t = 0; t < result.checks[c].targets.size(); ++t) {
+        const Target& target = check.targets[t];
+        const TargetResult& found = result.checks[c].targets[t];
+        if (IsLeftOut(target, found)) continue;
+        table.rows.push_back({claim.id, claim.family(), claim.reading, Name(result.verdict),
+                              result.holds_up_to_sigma_px.value_or(std::nan("")), DescribeConditions(check),
+                              target.quantity, target.IsMean() ? "mean" : "rate", target.nominal,
+                              target.allowed.lower, target.allowed.upper, found.measured, found.interval,
+                              found.n, VerdictName(found.verdict), SideName(FindFailedSide(target, found))});
+      }
+    }
+  }
+  return table;
+}
 
-std::string PlanAsTable(const Audit& plan) {
+Table MakePlanTable(const Audit& plan) {
   const Budget budget = plan.options.budget;
   Table table{{Column::Key("claim"), Column::Key("quantity"), Column::Count("checks"),
                Column::Number("holds at nominal", {1.0, "", ".3f"}), Column::Text("claimed"),
@@ -362,9 +398,21 @@ std::string PlanAsTable(const Audit& plan) {
                             DescribePower(plan, check, target)});
     }
   }
-  return FormatParagraph(fmt::format("Seed {}, budget {}. {}", plan.options.seed, BudgetName(budget),
-                                     ErrorStatement(plan))) +
-         "\n" + RenderText(table);
+  return table;
+}
+
+}  // namespace
+
+CommandResult MakePlanResult(const Audit& plan) {
+  const std::string text =
+      FormatParagraph(fmt::format("Seed {}, budget {}. {}", plan.options.seed,
+                                  BudgetName(plan.options.budget), ErrorStatement(plan))) +
+      "\n" + RenderText(MakePlanTable(plan));
+  return MakeResult(text, kAuditPlanFormat,
+                    {{"seed", static_cast<std::int64_t>(plan.options.seed)},
+                     {"budget", BudgetName(plan.options.budget)},
+                     {"confidence_per_target", plan.confidence}},
+                    MakePlanTable(plan));
 }
 
 std::string AuditAsTable(const Audit& audit) {
@@ -383,6 +431,7 @@ std::string AuditAsJson(const Audit& audit) {
   for (size_t i = 0; i < audit.claims.size(); ++i) {
     json["claims"].push_back(ClaimAsJson(audit, audit.claims[i], audit.results[i]));
   }
+  json["rows"] = RenderJson(MakeNumberTable(audit));
   return JsonText(kAuditFormat, json);
 }
 
@@ -401,6 +450,10 @@ std::string AuditAsMarkdown(const Audit& audit) {
     text += ClaimAsMarkdown(audit, claim, audit.results[i]);
   }
   return text;
+}
+
+CommandResult MakeAuditResult(const Audit& audit) {
+  return {AuditAsTable(audit), MakeNumberTable(audit), AuditAsJson(audit)};
 }
 
 }  // namespace rcme

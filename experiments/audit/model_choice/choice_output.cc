@@ -2,19 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <numeric>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
 #include "stats/intervals.h"
 
 namespace rcme {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // One number of a matrix. Of conditions counted together the rate is their mean: the binomial interval is
 // then too wide, if anything (Hoeffding 1956).
@@ -79,9 +75,9 @@ std::string ChoicesAsTable(const StudyPlan& plan, const ChoiceCounts& counts) {
   return text;
 }
 
-std::string ChoicesAsCsv(const StudyPlan& plan, const ChoiceCounts& counts) {
-  Table table{{Column::Text("study"), Column::Count("condition")}};
-  for (const std::string& factor : counts.by) table.columns.push_back({factor});
+Table MakeChoiceFileTable(const StudyPlan& plan, const ChoiceCounts& counts) {
+  Table table{{{.name = "study", .json_name = kNotInJson}, Column::Count("condition")}};
+  for (const std::string& factor : counts.by) table.columns.push_back({.name = factor, .group = "levels"});
   table.AddColumns({Column::Text("truth"),
                     Column::Text("verdict"),
                     Column::Text("estimator"),
@@ -114,40 +110,16 @@ std::string ChoicesAsCsv(const StudyPlan& plan, const ChoiceCounts& counts) {
       }
     }
   }
-  return RenderCsv(table);
+  return table;
 }
 
-std::string ChoicesAsJson(const StudyPlan& plan, const ChoiceCounts& counts) {
-  Json groups = Json::array();
-  for (const ChoiceGroup& group : counts.groups) {
-    Json matrices = Json::array();
-    for (size_t c = 0; c < group.matrices.size(); ++c) {
-      Json rows = Json::array();
-      for (size_t kind = 0; kind < kTrueKinds.size(); ++kind) {
-        Json cells = Json::array();
-        for (size_t answer = 0; answer < kNumAnswers; ++answer) {
-          const Cell cell = ComputeConfusionCell(group.matrices[c], kind, answer);
-          cells.push_back({{"verdict", AnswerName(answer)},
-                           {"count", cell.count},
-                           {"value", JsonNumber(cell.value)},
-                           {"lower", cell.interval.lower},
-                           {"upper", cell.interval.upper}});
-        }
-        rows.push_back({{"truth", Name(kTrueKinds[kind])},
-                        {"n", ComputeConfusionCell(group.matrices[c], kind, 0).n},
-                        {"cells", cells}});
-      }
-      matrices.push_back({{"criterion", CriterionNames()[c].first}, {"rows", rows}});
-    }
-    groups.push_back({{"levels", group.levels}, {"matrices", matrices}});
-  }
-  const Json json = {{"study", plan.study.name},
-                     {"seed", plan.study.seed},
-                     {"trials_per_condition", plan.study.trials},
-                     {"num_conditions", plan.conditions.size()},
-                     {"by", counts.by},
-                     {"groups", groups}};
-  return JsonText(kModelChoiceFormat, json);
+CommandResult MakeChoiceResult(const StudyPlan& plan, const ChoiceCounts& counts) {
+  const Facts facts = {{"study", plan.study.name},
+                       {"seed", static_cast<std::int64_t>(plan.study.seed)},
+                       {"trials_per_condition", std::int64_t{plan.study.trials}},
+                       {"num_conditions", std::ssize(plan.conditions)}};
+  return MakeResult(ChoicesAsTable(plan, counts), kModelChoiceFormat, facts,
+                    MakeChoiceFileTable(plan, counts));
 }
 
 }  // namespace rcme

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "experiments/audit/model_choice/choice_counts.h"
+#include "experiments/core/table/command_result.h"
 
 namespace rcme {
 
@@ -13,8 +14,8 @@ std::string ChoicesAsTable(const StudyPlan& plan, const ChoiceCounts& counts);
 // The same as rows of `rcme summarize --format csv`, so that the same figures draw it: truth and verdict are
 // factors beside the chosen ones, a criterion stands in the place of an estimator, the quantity is `share`;
 // one more column, `count`. A truth that no trial has is there with n = 0.
-std::string ChoicesAsCsv(const StudyPlan& plan, const ChoiceCounts& counts);
+Table MakeChoiceFileTable(const StudyPlan& plan, const ChoiceCounts& counts);
 
-std::string ChoicesAsJson(const StudyPlan& plan, const ChoiceCounts& counts);
+CommandResult MakeChoiceResult(const StudyPlan& plan, const ChoiceCounts& counts);
 
 }  // namespace rcme

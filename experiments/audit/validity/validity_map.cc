@@ -205,7 +205,7 @@ std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, st
   return with_sample;
 }
 
-std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell& trials_of) {
+Table MakeValidityMapTable(const ValidityMapOptions& options, const TrialsOfCell& trials_of) {
   Table table{{Column::Number("sigma_px", MakeCsvFormat("")), Column::Count("num_points"),
                Column::Text(options.condition_key),
                Column::Number("median_parallax_deg", MakeCsvFormat(".4g")), Column::Text("conditioning"),
@@ -222,7 +222,7 @@ std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell
     const double median_parallax_deg = MedianParallaxDeg(cells);
     for (const MapCell& each : cells) AddRows(each, median_parallax_deg, &table);
   }
-  return RenderCsv(table);
+  return table;
 }
 
 }  // namespace rcme

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "experiments/audit/validity/sample_family.h"
+#include "experiments/core/table/table.h"
 #include "experiments/trial/trial_range.h"
 
 namespace rcme {
@@ -72,6 +73,6 @@ double SecondsOfWork(const ValidityMapOptions& options);
 // trial without a sample does not count in n; a cell in which none has one is a row with n = 0.
 // `trials_of` has all trials of a cell that have a sample.
 using TrialsOfCell = std::function<std::vector<ValidityTrial>(std::uint32_t cell)>;
-std::string ValidityMapCsv(const ValidityMapOptions& options, const TrialsOfCell& trials_of);
+Table MakeValidityMapTable(const ValidityMapOptions& options, const TrialsOfCell& trials_of);
 
 }  // namespace rcme

@@ -136,7 +136,7 @@ CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_
   return RunSample(family, {options.seed, kFirstCell + cell, sample}, options);
 }
 
-std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const CountsOfCell& counts_of) {
+Table MakeValidityReferenceTable(const ValidityReferenceOptions& options, const CountsOfCell& counts_of) {
   Table table{{Column::Number("sigma_px", MakeCsvFormat("")), Column::Count("num_points"),
                Column::Number("baseline_m", MakeCsvFormat("")), Column::Text("quantity"),
                Column::Text("covariance"), Column::Count("num_samples"), Column::Count("n"),
@@ -157,7 +157,7 @@ std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const 
       }
     }
   }
-  return RenderCsv(table);
+  return table;
 }
 
 }  // namespace rcme

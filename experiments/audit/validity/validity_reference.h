@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/table.h"
 #include "experiments/trial/trial_range.h"
 
 namespace rcme {
@@ -46,6 +47,6 @@ CoveredCounts CountCovered(const ValidityReferenceOptions& options, std::uint32_
 // 95 % interval is of the mean coverage over these very samples, not over all that the family could give.
 // `counts_of` has those of all samples of a cell.
 using CountsOfCell = std::function<CoveredCounts(std::uint32_t cell)>;
-std::string ValidityReferenceCsv(const ValidityReferenceOptions& options, const CountsOfCell& counts_of);
+Table MakeValidityReferenceTable(const ValidityReferenceOptions& options, const CountsOfCell& counts_of);
 
 }  // namespace rcme

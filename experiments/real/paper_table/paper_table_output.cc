@@ -272,10 +272,10 @@ std::string PaperTableAsText(const PaperTable& table) {
   return text + "\n" + RenderText(MakePrintedTable(PrintedRates())) + "\n" + DescribeComparisons();
 }
 
-std::string PaperTableAsCsv(const PaperTable& table) {
+Table MakePaperFileTable(const PaperTable& table) {
   Table all = MakeRunTable(table);
   std::ranges::copy(MakePaperRateTable().rows, std::back_inserter(all.rows));
-  return RenderCsv(all);
+  return all;
 }
 
 std::string PaperTableAsJson(const PaperTable& table) {
@@ -284,6 +284,10 @@ std::string PaperTableAsJson(const PaperTable& table) {
                                       {"max_direction_error_deg", table.bounds.max_direction_error_deg},
                                       {"rates", RenderJson(MakeRunTable(table))},
                                       {"printed", RenderJson(MakePaperRateTable())}});
+}
+
+CommandResult MakePaperResult(const PaperTable& table) {
+  return {PaperTableAsText(table), MakePaperFileTable(table), PaperTableAsJson(table)};
 }
 
 }  // namespace rcme

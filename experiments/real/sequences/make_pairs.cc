@@ -8,6 +8,8 @@
 #include <memory>
 
 #include "experiments/core/files/file_output.h"
+#include "experiments/core/table/render_table.h"
+#include "experiments/core/text/json_output.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "parameters/input_error.h"
@@ -236,16 +238,22 @@ void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJourna
   warnings.Print();
 }
 
-std::string WritePairTables(const PairJournal& journal, const std::vector<std::string>& notes,
-                            const std::string& out) {
+CommandResult WritePairTables(const PairJournal& journal, const std::vector<std::string>& notes,
+                              const std::string& out) {
   const std::filesystem::path folder(out);
   std::string text = PairsAsTable(journal.rows(), journal.damaged());
   for (const std::string& note : notes) {
     if (!note.empty()) text += note + "\n";
   }
-  WriteFileWhole((folder / "INDEX.csv").string(), IndexAsCsv(journal.rows()));
+  const Table index = MakeIndexTable(journal.rows());
+  WriteFileWhole((folder / "INDEX.csv").string(), RenderCsv(index));
   WriteFileWhole((folder / "pairs.txt").string(), text);
-  return text;
+  using D = const DamagedImage&;
+  const Table damaged = MakeTable<DamagedImage>({{Column::Text("scene"), [](D d) { return d.scene; }},
+                                                 {Column::Text("image"), [](D d) { return d.image; }},
+                                                 {Column::Text("message"), [](D d) { return d.message; }}},
+                                                journal.damaged());
+  return MakeResult(text, kPairsFormat, {{"folder", out}}, index, {{"damaged_images", damaged}});
 }
 
 }  // namespace rcme

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/real/images/feature_cache.h"
 #include "experiments/real/sequences/key_frame_gate.h"
 #include "experiments/real/sequences/listed_pairs.h"
@@ -39,8 +40,8 @@ void MakePairsOfImages(const std::vector<Sequence>& sequences, const PairsOption
 // The pairs that a data set lists, each judged by itself.
 void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJournal* journal);
 
-// INDEX.csv and pairs.txt of the folder, whole; returns the text of the latter.
-std::string WritePairTables(const PairJournal& journal, const std::vector<std::string>& notes,
-                            const std::string& out);
+// INDEX.csv and pairs.txt of the folder, whole; returns both.
+CommandResult WritePairTables(const PairJournal& journal, const std::vector<std::string>& notes,
+                              const std::string& out);
 
 }  // namespace rcme

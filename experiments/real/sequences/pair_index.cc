@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/text/columns.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/files/regular_file.h"
+#include "experiments/core/text/columns.h"
+#include "experiments/core/text/field_text.h"
 #include "experiments/real/sequences/key_frame_gate.h"
 #include "parameters/input_error.h"
 
@@ -156,22 +156,25 @@ void PairJournal::Add(const DamagedImage& image) {
   damaged_.push_back(image);
 }
 
-std::string IndexAsCsv(const std::vector<PairRow>& rows) {
-  std::string text =
-      "pair_id,t_gt_weak,scene,kept,reason,n_matches,n_inliers,parallax_deg,true_rotation_deg,true_baseline,"
-      "time1_s,"
-      "time2_s,image1,image2\n";
-  for (const PairRow& row : rows) {
-    const auto time = [](double time_s) {
-      return std::isnan(time_s) ? std::string() : fmt::format("{:.6f}", time_s);
-    };
-    text += fmt::format("{},{:d},{},{:d},{},{},{},{},{},{},{},{},{},{}\n", CsvField(row.pair_id),
-                        row.is_direction_weak, CsvField(row.scene), row.reason == kKeptPair, row.reason,
-                        row.num_matches, row.num_inliers, CsvNumber(row.parallax_deg),
-                        CsvNumber(row.rotation_deg), CsvNumber(row.baseline), time(row.time1_s),
-                        time(row.time2_s), CsvField(row.image1), CsvField(row.image2));
-  }
-  return text;
+Table MakeIndexTable(const std::vector<PairRow>& rows) {
+  using R = const PairRow&;
+  const NumberFormat microseconds{1.0, "", ".6f", ".2g", ".6f"};
+  return MakeTable<PairRow>(
+      {{Column::Key("pair_id"), [](R r) { return r.pair_id; }},
+       {Column::Count("t_gt_weak"), [](R r) { return std::int64_t{r.is_direction_weak}; }},
+       {Column::Text("scene"), [](R r) { return r.scene; }},
+       {Column::Count("kept"), [](R r) { return std::int64_t{r.reason == kKeptPair}; }},
+       {Column::Text("reason"), [](R r) { return r.reason; }},
+       {Column::Count("n_matches"), [](R r) { return r.num_matches; }},
+       {Column::Count("n_inliers"), [](R r) { return r.num_inliers; }},
+       {Column::Number("parallax_deg"), [](R r) { return r.parallax_deg; }},
+       {Column::Number("true_rotation_deg"), [](R r) { return r.rotation_deg; }},
+       {Column::Number("true_baseline"), [](R r) { return r.baseline; }},
+       {Column::Number("time1_s", microseconds), [](R r) { return r.time1_s; }},
+       {Column::Number("time2_s", microseconds), [](R r) { return r.time2_s; }},
+       {Column::Text("image1"), [](R r) { return r.image1; }},
+       {Column::Text("image2"), [](R r) { return r.image2; }}},
+      rows);
 }
 
 std::string DescribeWhyNone(const std::vector<PairRow>& rows, const std::vector<DamagedImage>& damaged) {

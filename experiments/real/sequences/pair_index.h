@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/table.h"
+
 namespace rcme {
 
 struct PairRow {
@@ -60,7 +62,7 @@ class PairJournal {
 };
 
 // INDEX.csv: a row per pair, kept or dropped. pair_id and t_gt_weak are what studies read (match_folder.h).
-std::string IndexAsCsv(const std::vector<PairRow>& rows);
+Table MakeIndexTable(const std::vector<PairRow>& rows);
 
 // Why no pair was kept, as a sentence: how many pairs were dropped for which reason, and images skipped.
 std::string DescribeWhyNone(const std::vector<PairRow>& rows, const std::vector<DamagedImage>& damaged);

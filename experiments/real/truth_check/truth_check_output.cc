@@ -124,10 +124,6 @@ std::string TruthCheckAsText(const std::vector<CheckedPair>& pairs, const TruthC
              kTruthDoubtLevel));
 }
 
-std::string TruthCheckAsCsv(const std::vector<CheckedPair>& pairs) {
-  return RenderCsv(MakeEvidenceTable(ListEvidence(pairs, false)));
-}
-
 std::string TruthCheckAsJson(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options) {
   return JsonText(kTruthCheckFormat,
                   {{"max_rotation_error_deg", options.bounds.max_rotation_error_deg},
@@ -148,6 +144,11 @@ std::string TruthDoubtsAsCsv(const std::vector<CheckedPair>& pairs) {
       {Column::Key("pair_id"), [](P pair) { return pair.pair_id; }},
       {Column::Number("p_value"), [](P pair) { return pair.verdict.p_value; }}};
   return RenderCsv(MakeTable(columns, in_doubt));
+}
+
+CommandResult MakeTruthCheckResult(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options) {
+  return {TruthCheckAsText(pairs, options), MakeEvidenceTable(ListEvidence(pairs, false)),
+          TruthCheckAsJson(pairs, options)};
 }
 
 }  // namespace rcme

@@ -54,18 +54,19 @@ std::string ClosuresAsTable(const std::vector<SetReport>& reports) {
              "loop share. apart: loops of which no two share an image. Intervals 95 %.");
 }
 
-std::string ClosuresAsCsv(const std::vector<SetReport>& reports, const std::string& estimator) {
+Table MakeClosureTable(const std::vector<SetReport>& reports, const std::string& estimator) {
   std::vector<SetClosure> rows;
   for (const SetReport& report : reports) {
     for (const LengthClosure& closure : report.closures) rows.push_back({&report, &closure});
   }
   std::vector<ColumnOf<SetClosure>> columns = {
-      {Column::Text("set"), [](const SetClosure& row) { return row.set->name; }},
-      {Column::Text("estimator"), [&](const SetClosure&) { return estimator; }}};
+      {Column::Text("set"), [](const SetClosure& row) { return row.set->name; }}};
+  if (!estimator.empty())
+    columns.push_back({Column::Text("estimator"), [&](const SetClosure&) { return estimator; }});
   for (const ColumnOf<LengthClosure>& of_closure : ClosureColumns())
     columns.push_back({of_closure.column,
                        [value = of_closure.value](const SetClosure& row) { return value(*row.closure); }});
-  return RenderCsv(WithIntervalColumns(MakeTable<SetClosure>(columns, rows)));
+  return WithIntervalColumns(MakeTable<SetClosure>(columns, rows));
 }
 
 }  // namespace rcme

@@ -141,8 +141,6 @@ std::string TwinsAsText(const std::vector<TwinReport>& reports) {
   return text + "\n" + RenderText(quantities);
 }
 
-std::string TwinsAsCsv(const std::vector<TwinReport>& reports) { return RenderCsv(MakeRowTable(reports)); }
-
 std::string TwinsAsJson(const std::vector<TwinReport>& reports) {
   nlohmann::ordered_json json = {{"scenes", nlohmann::ordered_json::array()}};
   for (const TwinReport& report : reports) {
@@ -155,6 +153,10 @@ std::string TwinsAsJson(const std::vector<TwinReport>& reports) {
                               {"comparisons", RenderJson(MakeRowTable({report}))}});
   }
   return JsonText(kTwinFormat, json);
+}
+
+CommandResult MakeTwinsResult(const std::vector<TwinReport>& reports) {
+  return {TwinsAsText(reports), MakeRowTable(reports), TwinsAsJson(reports)};
 }
 
 }  // namespace rcme

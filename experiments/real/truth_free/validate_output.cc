@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/real/truth_free/closure_output.h"
 
 namespace rcme {
 namespace {
@@ -151,14 +150,132 @@ std::vector<SetRow> MakeSetRows(const SetReport& set) {
 
 Estimate EstimateCoverage(const SharedMemberRate& coverage) { return {coverage.rate, coverage.interval}; }
 
-nlohmann::ordered_json RenderPooled(const PooledParameter& parameter) {
-  nlohmann::ordered_json json = RenderJson(Estimate{parameter.value, parameter.interval});
-  json["effective_pairs"] = JsonNumber(parameter.effective_n);
-  return json;
+// A part of a set: a test, a fault, ...
+template <typename Part>
+struct PartOfSet {
+  const SetReport* set;
+  const Part* part;
+};
+template <typename Part>
+using PartColumns = std::vector<ColumnOf<PartOfSet<Part>>>;
+
+// A row for each part of each set, after a column for the set.
+template <typename Part, typename ListParts>
+Table MakeTableOfParts(PartColumns<Part> columns, const std::vector<SetReport>& reports,
+                       ListParts list_parts) {
+  columns.insert(columns.begin(), {Column::Key("set"), [](const auto& row) { return row.set->name; }});
+  std::vector<PartOfSet<Part>> rows;
+  for (const SetReport& report : reports) {
+    for (const Part& part : list_parts(report)) rows.push_back({&report, &part});
+  }
+  return MakeTable(columns, rows);
 }
 
-nlohmann::ordered_json RenderRatio(const ComparedMedians& medians) {
-  return {{"ratio", JsonNumber(medians.value)}, {"interval", RenderJson(medians.interval)}};
+Column MakeIntervalColumn(const std::string& name) {
+  return {.name = name + "_lower," + name + "_upper",
+          .type = ColumnType::kInterval,
+          .json_name = name + "_interval"};
+}
+
+// The parameter, its interval, and as how many pairs it counts.
+void AddPooled(const std::string& name, PooledParameter FaultReport::*member,
+               PartColumns<FaultReport>* columns) {
+  using F = const PartOfSet<FaultReport>&;
+  columns->push_back({Column::Number(name), [=](F f) { return (f.part->*member).value; }});
+  columns->push_back({MakeIntervalColumn(name), [=](F f) { return (f.part->*member).interval; }});
+  columns->push_back(
+      {Column::Number(name + "_effective_pairs"), [=](F f) { return (f.part->*member).effective_n; }});
+}
+
+void AddRatio(const std::string& name, ComparedMedians TruthFreeTest::*member,
+              PartColumns<TruthFreeTest>* columns) {
+  using T = const PartOfSet<TruthFreeTest>&;
+  columns->push_back({Column::Number(name), [=](T t) { return (t.part->*member).value; }});
+  columns->push_back({MakeIntervalColumn(name), [=](T t) { return (t.part->*member).interval; }});
+}
+
+void AddCoverage(const std::string& name, SharedMemberRate TruthFreeTest::*member,
+                 PartColumns<TruthFreeTest>* columns) {
+  using T = const PartOfSet<TruthFreeTest>&;
+  columns->push_back({Column::Number(name), [=](T t) { return (t.part->*member).rate; }});
+  columns->push_back({MakeIntervalColumn(name), [=](T t) { return (t.part->*member).interval; }});
+}
+
+std::vector<ColumnOf<SetReport>> MakeSetColumns() {
+  using S = const SetReport&;
+  return {
+      {Column::Key("set"), [](S s) { return s.name; }},
+      {Column::Count("pairs"), [](S s) { return s.num_pairs; }},
+      {Column::Count("answered"), [](S s) { return s.num_answered; }},
+      {Column::Text("covariances"), [](S s) { return VerdictName(s.covariances.verdict); }},
+      {Column::Text("cause"), [](S s) { return CauseName(s.covariances.cause); }},
+      {Column::Text("by_tests"), [](S s) { return fmt::format("{}", fmt::join(s.covariances.tests, " ")); }},
+      {Column::Number("assumed_sigma_px"), [](S s) { return s.assumed_sigma_px; }},
+      {Column::Number("sigma_px"), [](S s) { return s.sigma_px.value; }},
+      {MakeIntervalColumn("sigma_px"), [](S s) { return s.sigma_px.interval; }},
+      {Column::Text("sigma_verdict"), [](S s) { return VerdictName(s.sigma_verdict); }},
+      {Column::Count("calibration_pairs"), [](S s) { return s.calibration.num_pairs; }},
+      {Column::Number("calibration_p_value"), [](S s) { return s.calibration.p_value; }},
+      {Column::Number("calibration_dispersion"), [](S s) { return s.calibration.dispersion; }},
+      {Column::Text("calibration_verdict"), [](S s) { return FaultVerdict(s.calibration.verdict); }},
+      {Column::Count("size_pairs"), [](S s) { return s.sizes.num_pairs; }},
+      {Column::Number("size_slope"), [](S s) { return s.sizes.slope.value; }},
+      {MakeIntervalColumn("size_slope"), [](S s) { return s.sizes.slope.interval; }},
+      {Column::Number("size_slope_effective_pairs"), [](S s) { return s.sizes.slope.effective_n; }},
+      {Column::Text("size_verdict"), [](S s) { return VerdictName(s.sizes.verdict); }}};
+}
+
+using LoopCount = std::pair<const size_t, int>;  // images, loops of so many
+PartColumns<LoopCount> MakeLoopColumns() {
+  using L = const PartOfSet<LoopCount>&;
+  return {{Column::Count("images"), [](L l) { return static_cast<std::int64_t>(l.part->first); }},
+          {Column::Count("loops"), [](L l) { return l.part->second; }}};
+}
+
+PartColumns<TruthFreeTest> MakeTestColumns() {
+  using T = const PartOfSet<TruthFreeTest>&;
+  PartColumns<TruthFreeTest> columns = {
+      {Column::Key("test"), [](T t) { return t.part->name; }},
+      {Column::Count("degrees_of_freedom"), [](T t) { return t.part->degrees_of_freedom; }},
+      {Column::Count("n"), [](T t) { return t.part->num_values; }}};
+  AddCoverage("coverage", &TruthFreeTest::coverage, &columns);
+  AddCoverage("twin_coverage", &TruthFreeTest::twin_coverage, &columns);
+  AddRatio("ratio", &TruthFreeTest::ratio, &columns);
+  AddRatio("in_simulation", &TruthFreeTest::in_simulation, &columns);
+  AddRatio("against_twins", &TruthFreeTest::against_twins, &columns);
+  columns.push_back({Column::Text("verdict"), [](T t) { return VerdictName(t.part->verdict); }});
+  columns.push_back({Column::Text("cause"), [](T t) { return CauseName(t.part->cause); }});
+  columns.push_back({Column::Count("units"), [](T t) { return t.part->num_units; }});
+  columns.push_back({Column::Number("units_needed"), [](T t) { return t.part->units_needed; }});
+  return columns;
+}
+
+PartColumns<DistanceCorrelation> MakeCorrelationColumns() {
+  using C = const PartOfSet<DistanceCorrelation>&;
+  return {{Column::Number("from_px"), [](C c) { return c.part->from_px; }},
+          {Column::Number("to_px"), [](C c) { return c.part->to_px; }},
+          {Column::Number("n"), [](C c) { return c.part->num_products; }},
+          {Column::Number("correlation"), [](C c) { return c.part->correlation; }},
+          {Column::Number("twin_correlation"), [](C c) { return c.part->twin_correlation; }},
+          {MakeIntervalColumn("difference"), [](C c) { return c.part->difference; }},
+          {Column::Text("verdict"), [](C c) { return CorrelationVerdict(*c.part); }}};
+}
+
+PartColumns<FaultReport> MakeFaultColumns() {
+  using F = const PartOfSet<FaultReport>&;
+  PartColumns<FaultReport> columns = {
+      {Column::Key("fault"), [](F f) { return FindFaultText(f.part->fault).name; }},
+      {Column::Number("nominal"), [](F f) { return FindFaultText(f.part->fault).nominal; }}};
+  AddPooled("beside_others", &FaultReport::joint, &columns);
+  AddPooled("alone", &FaultReport::alone, &columns);
+  AddPooled("twins", &FaultReport::twins, &columns);
+  columns.push_back({Column::Text("verdict"), [](F f) { return FaultVerdict(f.part->verdict); }});
+  columns.push_back({Column::Text("in_words"), [](F f) { return DescribeFault(*f.part); }});
+  return columns;
+}
+
+PartColumns<std::string> MakeAdviceColumns() {
+  return {{Column::Text("advice"), [](const PartOfSet<std::string>& a) { return *a.part; }}};
 }
 
 // The simulation has no twins of its own.
@@ -250,12 +367,12 @@ std::string ValidationAsTable(const std::vector<SetReport>& reports) {
              kNominalSlope));
 }
 
-std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
+Table MakeValidationTable(const std::vector<SetReport>& reports) {
   using R = const SetRow&;
   std::vector<SetRow> rows;
   for (const SetReport& report : reports) std::ranges::copy(MakeSetRows(report), std::back_inserter(rows));
   const double none = std::nan("");
-  return RenderCsv(MakeTable<SetRow>(
+  return MakeTable<SetRow>(
       {{Column::Text("set"), [](R r) { return r.set->name; }},
        {Column::Count("pairs"), [](R r) { return r.set->num_pairs; }},
        {Column::Count("answered"), [](R r) { return r.set->num_answered; }},
@@ -267,77 +384,31 @@ std::string ValidationAsCsv(const std::vector<SetReport>& reports) {
        {Column::Number("twin_coverage"), [&](R r) { return r.test ? r.test->twin_coverage.rate : none; }},
        {Column::Text("verdict"), [](R r) { return r.verdict; }},
        {Column::Text("cause"), [](R r) { return CauseName(r.cause); }}},
-      rows));
+      rows);
 }
 
-std::string ValidationAsJson(const std::vector<SetReport>& reports) {
-  nlohmann::ordered_json json = {{"nominal_variance", kNominalVariance},
-                                 {"nominal_correlation", kNominalCorrelation},
-                                 {"sets", nlohmann::ordered_json::array()}};
-  for (const SetReport& report : reports) {
-    nlohmann::ordered_json set = {{"name", report.name},
-                                  {"pairs", report.num_pairs},
-                                  {"answered", report.num_answered},
-                                  {"loops", nlohmann::ordered_json::object()},
-                                  {"assumed_sigma_px", JsonNumber(report.assumed_sigma_px)},
-                                  {"sigma_px", JsonNumber(report.sigma_px.value)},
-                                  {"sigma_px_interval", RenderJson(report.sigma_px.interval)},
-                                  {"sigma_verdict", VerdictName(report.sigma_verdict)},
-                                  {"covariances",
-                                   {{"verdict", VerdictName(report.covariances.verdict)},
-                                    {"cause", CauseName(report.covariances.cause)},
-                                    {"tests", report.covariances.tests}}},
-                                  {"tests", nlohmann::ordered_json::array()},
-                                  {"correlations", nlohmann::ordered_json::array()},
-                                  {"calibration",
-                                   {{"pairs", report.calibration.num_pairs},
-                                    {"p_value", JsonNumber(report.calibration.p_value)},
-                                    {"dispersion", JsonNumber(report.calibration.dispersion)},
-                                    {"verdict", FaultVerdict(report.calibration.verdict)}}},
-                                  {"camera_faults", nlohmann::ordered_json::array()},
-                                  {"noise_by_size",
-                                   {{"pairs", report.sizes.num_pairs},
-                                    {"slope", RenderPooled(report.sizes.slope)},
-                                    {"verdict", VerdictName(report.sizes.verdict)}}},
-                                  {"advice", report.advice}};
-    for (const TruthFreeTest& test : report.tests) {
-      set["tests"].push_back({{"test", test.name},
-                              {"degrees_of_freedom", test.degrees_of_freedom},
-                              {"n", test.num_values},
-                              {"coverage", JsonNumber(test.coverage.rate)},
-                              {"coverage_interval", RenderJson(test.coverage.interval)},
-                              {"twin_coverage", JsonNumber(test.twin_coverage.rate)},
-                              {"ratio", JsonNumber(test.ratio.value)},
-                              {"interval", RenderJson(test.ratio.interval)},
-                              {"in_simulation", RenderRatio(test.in_simulation)},
-                              {"against_twins", RenderRatio(test.against_twins)},
-                              {"verdict", VerdictName(test.verdict)},
-                              {"cause", CauseName(test.cause)},
-                              {"units", test.num_units},
-                              {"units_needed", JsonNumber(test.units_needed)}});
-    }
-    for (const DistanceCorrelation& c : report.correlations) {
-      set["correlations"].push_back({{"from_px", c.from_px},
-                                     {"to_px", c.to_px},
-                                     {"n", c.num_products},
-                                     {"correlation", JsonNumber(c.correlation)},
-                                     {"twin_correlation", JsonNumber(c.twin_correlation)},
-                                     {"difference_interval", RenderJson(c.difference)},
-                                     {"verdict", CorrelationVerdict(c)}});
-    }
-    for (const auto& [length, count] : report.num_loops) set["loops"][std::to_string(length)] = count;
-    for (const FaultReport& fault : report.calibration.faults) {
-      set["camera_faults"].push_back({{"fault", FindFaultText(fault.fault).name},
-                                      {"nominal", FindFaultText(fault.fault).nominal},
-                                      {"beside_others", RenderPooled(fault.joint)},
-                                      {"alone", RenderPooled(fault.alone)},
-                                      {"twins", RenderPooled(fault.twins)},
-                                      {"verdict", FaultVerdict(fault.verdict)},
-                                      {"in_words", DescribeFault(fault)}});
-    }
-    json["sets"].push_back(std::move(set));
-  }
-  return JsonText(kValidationFormat, json);
+CommandResult MakeValidationResult(const std::vector<SetReport>& reports) {
+  return MakeResult(
+      ValidationAsTable(reports) + ClosuresAsTable(reports), kValidationFormat,
+      {{"nominal_variance", kNominalVariance}, {"nominal_correlation", kNominalCorrelation}},
+      MakeValidationTable(reports),
+      {{"sets", MakeTable(MakeSetColumns(), reports)},
+       {"loops",
+        MakeTableOfParts(
+            MakeLoopColumns(), reports, [](const SetReport& set) -> const auto& { return set.num_loops; })},
+       {"tests",
+        MakeTableOfParts(
+            MakeTestColumns(), reports, [](const SetReport& set) -> const auto& { return set.tests; })},
+       {"correlations", MakeTableOfParts(
+                            MakeCorrelationColumns(), reports,
+                            [](const SetReport& set) -> const auto& { return set.correlations; })},
+       {"closures", MakeClosureTable(reports)},
+       {"camera_faults", MakeTableOfParts(
+                             MakeFaultColumns(), reports,
+                             [](const SetReport& set) -> const auto& { return set.calibration.faults; })},
+       {"advice",
+        MakeTableOfParts(
+            MakeAdviceColumns(), reports, [](const SetReport& set) -> const auto& { return set.advice; })}});
 }
 
 }  // namespace rcme

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
 #include "experiments/real/truth_free/validate.h"
 
 namespace rcme {
@@ -12,7 +13,9 @@ std::string DescribeVerdict(const TruthFreeTest& test);
 
 std::string ValidationAsTable(const std::vector<SetReport>& reports);
 // A row per set and test, sigma and correlations among them.
-std::string ValidationAsCsv(const std::vector<SetReport>& reports);
-std::string ValidationAsJson(const std::vector<SetReport>& reports);
+Table MakeValidationTable(const std::vector<SetReport>& reports);
+// These rows, in JSON also a table of the sets, and one of their loops, tests, correlations, camera faults
+// and advice each.
+CommandResult MakeValidationResult(const std::vector<SetReport>& reports);
 
 }  // namespace rcme

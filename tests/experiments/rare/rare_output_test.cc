@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/core/table/render_table.h"
 #include "tests/test_support/small_study.h"
 
 namespace rcme {
@@ -62,14 +63,25 @@ TEST(MakeRareRow, OfStrataDoubtsFewFailures) {
   EXPECT_TRUE(std::isnan(MakeRareRow(cell).relative_spread));
 }
 
-TEST(RareAsJson, HasTheRatesBeyondEachLevel) {
-  const auto json = nlohmann::json::parse(RareAsJson(MakePlan(SmallStudy()), RareEffort(), {CellByHand()}));
-  const auto& cell = json.at("cells").at(0);
-  EXPECT_EQ(cell.at("value"), 0.07);
-  EXPECT_EQ(cell.at("is_trusted"), true);
-  EXPECT_EQ(cell.at("replicates"), (std::vector<double>{0.1, 0.04}));
-  const auto& levels = cell.at("error_levels");
+TEST(MakeRareResult, HasTheRatesBeyondEachLevel) {
+  const auto json =
+      nlohmann::json::parse(MakeRareResult(MakePlan(SmallStudy()), RareEffort(), {CellByHand()}).json);
+  EXPECT_EQ(json.at("format"), "rcme rare 2");
+  EXPECT_EQ(json.at("method"), "splitting");
+  EXPECT_FALSE(json.contains("risk"));  // of failures there is none
+  ASSERT_EQ(json.at("rows").size(), 1u);
+  const auto& row = json.at("rows").at(0);
+  EXPECT_EQ(row.at("value"), 0.07);
+  EXPECT_EQ(row.at("interval"), (std::vector<double>{0.02, 0.2}));
+  EXPECT_EQ(row.at("trusted"), 1);
+  EXPECT_EQ(row.at("levels"), (nlohmann::json{{"outlier_ratio", "0.3"}}));
+  const auto& replicates = json.at("replicates");
+  ASSERT_EQ(replicates.size(), 2u);
+  EXPECT_EQ(replicates[1].at("estimate"), 0.04);
+  EXPECT_EQ(replicates[1].at("replicate"), 1);
+  const auto& levels = json.at("error_levels");
   ASSERT_EQ(levels.size(), 2u);
+  EXPECT_EQ(levels[0].at("condition"), 1);
   EXPECT_EQ(levels[0].at("error_over_bound"), 0.5);
   EXPECT_NEAR(levels[0].at("rate_beyond").get<double>(), 0.3, 1e-12);
   EXPECT_NEAR(levels[0].at("acceptance").get<double>(), 0.5, 1e-12);
@@ -78,10 +90,25 @@ TEST(RareAsJson, HasTheRatesBeyondEachLevel) {
   EXPECT_NEAR(levels[1].at("standard_error").get<double>(), 0.03, 1e-12);  // |0.1 - 0.04| / 2
 }
 
-TEST(RareAsCsv, SaysWhatIsTrusted) {
+TEST(MakeStratifiedResult, HasARowForEachStratum) {
+  StratifiedCell cell;
+  cell.strata[2].num_trials = 40;
+  cell.strata[2].num_run = 10;
+  cell.strata[2].num_failed = 3;
+  const auto json =
+      nlohmann::json::parse(MakeStratifiedResult(MakePlan(SmallStudy()), StratifiedEffort(), {cell}).json);
+  ASSERT_EQ(json.at("strata").size(), static_cast<size_t>(kNumStrata));
+  const auto& stratum = json.at("strata").at(2);
+  EXPECT_EQ(stratum.at("one_in"), 4);
+  EXPECT_EQ(stratum.at("num_trials"), 40);
+  EXPECT_EQ(stratum.at("num_run"), 10);
+  EXPECT_EQ(stratum.at("num_failed"), 3);
+}
+
+TEST(MakeRareFileTable, SaysWhatIsTrusted) {
   RareRow trusted = MakeRareRow(CellByHand()), doubted = trusted;
   doubted.doubts = {"no_levels", "moves_stuck"};
-  const std::string csv = RareAsCsv(MakePlan(SmallStudy()), {}, {trusted, doubted});
+  const std::string csv = RenderCsv(MakeRareFileTable(MakePlan(SmallStudy()), {}, {trusted, doubted}));
   EXPECT_THAT(csv, testing::HasSubstr(",failure,rate,0.07,0.02,0.2,0.03,700,1,,"));
   EXPECT_THAT(csv, testing::HasSubstr(",failure,rate,0.07,0.02,0.2,0.03,700,0,no_levels moves_stuck,"));
 }

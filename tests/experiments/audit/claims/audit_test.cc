@@ -146,8 +146,8 @@ TEST(AuditOutput, NamesTheWorstFifthOfDifficulty) {
   EXPECT_NE(AuditAsMarkdown(audit).find("| 5 (worst) | 9 to 9 | 0 "), std::string::npos);
 }
 
-TEST(PlanAsTable, SaysWhatIsFoundBeforeAnyTrial) {
-  const std::string table = PlanAsTable(PlanAudit(GaussianClaims(), {}));
+TEST(MakePlanResult, SaysWhatIsFoundBeforeAnyTrial) {
+  const std::string table = MakePlanResult(PlanAudit(GaussianClaims(), {})).text;
   EXPECT_NE(table.find("gauss.b5"), std::string::npos);
   EXPECT_NE(table.find("sigma off by"), std::string::npos);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "experiments/core/table/render_table.h"
 #include "tests/test_support/small_study.h"
 
 namespace rcme {
@@ -30,7 +31,7 @@ TEST(ChoiceOutput, TableHasARowForEachTruthThereIs) {
 }
 
 TEST(ChoiceOutput, CsvHasARowForEachCell) {
-  const std::string csv = ChoicesAsCsv(MakePlan(SmallStudy()), SomeCounts());
+  const std::string csv = RenderCsv(MakeChoiceFileTable(MakePlan(SmallStudy()), SomeCounts()));
   EXPECT_EQ(csv.find("study,condition,outlier_ratio,truth,verdict,estimator,quantity,kind,value,lower,upper,"
                      "standard_error,n,count\n"),
             0u);
@@ -41,19 +42,21 @@ TEST(ChoiceOutput, CsvHasARowForEachCell) {
 }
 
 TEST(ChoiceOutput, JsonHoldsTheSame) {
-  const auto json = nlohmann::json::parse(ChoicesAsJson(MakePlan(SmallStudy()), SomeCounts()));
-  EXPECT_EQ(json["format"], "rcme model choice 1");
-  EXPECT_EQ(json["groups"][0]["levels"][0], "0.3");
-  const auto& matrix = json["groups"][0]["matrices"][0];
-  EXPECT_EQ(matrix["criterion"], "orb_slam2");
-  const auto& row = matrix["rows"][static_cast<size_t>(TrueKind::kPlanar)];
-  EXPECT_EQ(row["truth"], "planar");
-  EXPECT_EQ(row["n"], 10);
-  EXPECT_EQ(row["cells"][1]["verdict"], "planar");
-  EXPECT_EQ(row["cells"][1]["count"], 7);
-  EXPECT_NEAR(row["cells"][1]["lower"].get<double>(), 0.3475, 1e-4);
-  EXPECT_NEAR(row["cells"][1]["upper"].get<double>(), 0.9333, 1e-4);
-  EXPECT_TRUE(matrix["rows"][0]["cells"][0]["value"].is_null());  // of no trial
+  const CommandResult result = MakeChoiceResult(MakePlan(SmallStudy()), SomeCounts());
+  const auto json = nlohmann::json::parse(result.json);
+  EXPECT_EQ(json["format"], "rcme model choice 2");
+  EXPECT_EQ(json["num_conditions"], 2);
+  EXPECT_EQ(json["rows"].size(), result.rows.rows.size());
+  const auto planar = std::ranges::find_if(json["rows"], [](const auto& row) {
+    return row["estimator"] == "orb_slam2" && row["truth"] == "planar" && row["verdict"] == "planar";
+  });
+  ASSERT_NE(planar, json["rows"].end());
+  EXPECT_EQ((*planar)["levels"]["outlier_ratio"], "0.3");
+  EXPECT_EQ((*planar)["n"], 10);
+  EXPECT_EQ((*planar)["count"], 7);
+  EXPECT_NEAR((*planar)["interval"][0].template get<double>(), 0.3475, 1e-4);
+  EXPECT_NEAR((*planar)["interval"][1].template get<double>(), 0.9333, 1e-4);
+  EXPECT_TRUE(json["rows"][0]["value"].is_null());  // of no trial
 }
 
 }  // namespace

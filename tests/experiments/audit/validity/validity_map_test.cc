@@ -9,6 +9,7 @@
 
 #include "experiments/audit/validity/map_work.h"
 #include "experiments/audit/validity/validity_reference.h"
+#include "experiments/core/table/render_table.h"
 #include "stats/intervals.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/in_memory.h"
@@ -191,8 +192,9 @@ TEST(MapParts, GiveTheBytesOfOneMachine) {
     }
     const WorkResults merged = MergeParts(pieces, paths);
     EXPECT_EQ(FindMissingIn(pieces, merged, 0, pieces.groups.size()).num_items, 0);
-    EXPECT_EQ(ValidityMapCsv(work.map, TrialsIn(work, pieces, merged)), map);
-    EXPECT_EQ(ValidityReferenceCsv(*work.reference, CountsIn(work, pieces, merged)), reference);
+    EXPECT_EQ(RenderCsv(MakeValidityMapTable(work.map, TrialsIn(work, pieces, merged))), map);
+    EXPECT_EQ(RenderCsv(MakeValidityReferenceTable(*work.reference, CountsIn(work, pieces, merged))),
+              reference);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/real/paper_table/paper_table_output.h"
 #include "experiments/real/paper_table/printed_table.h"
 #include "experiments/study/study_file.h"
@@ -194,7 +195,7 @@ TEST_F(PaperTableOfARun, OutcomesStandSideBySideAtEachBound) {
   EXPECT_EQ(outcomes[1].success.num_events, 1);
   EXPECT_EQ(outcomes[1].refusal.num_events, 1);
   EXPECT_NEAR(outcomes[1].area.value, (1.0 - 0.1 / 5.0) / 3.0, 1e-12);
-  const std::string text = PaperTableAsText(table), csv = PaperTableAsCsv(table);
+  const std::string text = PaperTableAsText(table), csv = RenderCsv(MakePaperFileTable(table));
   EXPECT_NE(text.find("Outcomes at 5 deg"), std::string::npos) << text;
   EXPECT_NE(csv.find("\nrun,kitti_a,standard,failure_5_deg,rate,0.33333333,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\nrun,kitti_a,standard,auc_5_deg,score,0.32666667,"), std::string::npos) << csv;
@@ -213,7 +214,7 @@ TEST_F(PaperTableOfARun, APairInDoubtIsListedAndInNoOtherColumn) {
   EXPECT_EQ(table.rows[0].cells[0].true_failure.n, 2);
   EXPECT_EQ(table.rows[0].cells[0].true_failure.num_events, 0);
   EXPECT_EQ(table.rows[0].cells[0].outcomes[0].success.n, 2);
-  const std::string text = PaperTableAsText(table), csv = PaperTableAsCsv(table);
+  const std::string text = PaperTableAsText(table), csv = RenderCsv(MakePaperFileTable(table));
   EXPECT_NE(text.find("in doubt"), std::string::npos) << text;
   EXPECT_NE(csv.find("\nrun,kitti_a,,truth_in_doubt,rate,0.33333333,,,3,1,"), std::string::npos) << csv;
 }
@@ -221,7 +222,7 @@ TEST_F(PaperTableOfARun, APairInDoubtIsListedAndInNoOtherColumn) {
 TEST_F(PaperTableOfARun, IsWrittenForPeopleAndPrograms) {
   const PaperTable table =
       MakePaperTable(Run("run.sqlite"), {ParseSceneGroup("mine=room,kit*")}, TableClusters::kImages);
-  const std::string text = PaperTableAsText(table), csv = PaperTableAsCsv(table);
+  const std::string text = PaperTableAsText(table), csv = RenderCsv(MakePaperFileTable(table));
   for (const char* part : {"Detect-fail %", "= mine", "EuRoC/V1_03", "8.33 [", "not significant", "1 of 1"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
   EXPECT_NE(csv.find("run,kitti_a,standard,kappa_failure,rate,0.66666667,"), std::string::npos) << csv;

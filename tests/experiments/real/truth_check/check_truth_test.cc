@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "estimator/estimator_registry.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/data/truth_doubts.h"
 #include "experiments/real/truth_check/truth_check_output.h"
 #include "tests/test_support/expect_input_error.h"
@@ -57,7 +58,7 @@ TEST_F(CheckTruthTest, FindsTheWrongOne) {
 
 TEST_F(CheckTruthTest, IsWrittenForPeopleProgramsAndStudies) {
   const std::vector<CheckedPair> pairs = Check({first_.path()});
-  const std::string text = TruthCheckAsText(pairs, {}), csv = TruthCheckAsCsv(pairs);
+  const std::string text = TruthCheckAsText(pairs, {}), csv = RenderCsv(MakeTruthCheckResult(pairs, {}).rows);
   EXPECT_THAT(text,
               HasSubstr("The truth of 1 of 3 pairs is in doubt; of 0 the matches say too little, and 1"));
   EXPECT_THAT(text, HasSubstr("a_001"));

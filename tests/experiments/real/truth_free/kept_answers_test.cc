@@ -47,7 +47,9 @@ StudyPlan SmallPlan() {
 std::string ValidationText(const std::function<std::unique_ptr<MotionEstimator>()>& make, KeptSteps* steps) {
   AdvisedEstimator advised;
   advised.make = [&](const Settings&) { return ScaleCovariances(make(), 0.02); };
-  return ValidationAsJson({ValidateAndAdvise(PairSetsOfStudy(SmallPlan()).front(), advised, {1, 1}, steps)});
+  return MakeValidationResult(
+             {ValidateAndAdvise(PairSetsOfStudy(SmallPlan()).front(), advised, {1, 1}, steps)})
+      .json;
 }
 
 std::string TwinText(const std::function<std::unique_ptr<MotionEstimator>()>& make, KeptSteps* steps) {

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "experiments/core/table/render_table.h"
+
 namespace rcme {
 namespace {
 
@@ -61,8 +63,8 @@ std::string TextOfTwins(const TwinReport& report) {
   return std::regex_replace(TwinsAsText({report}), std::regex("\\s+"), " ");
 }
 
-TEST(TwinsAsCsv, HasARowOfEveryComparison) {
-  EXPECT_EQ(TwinsAsCsv({TwinReportByHand()}),
+TEST(MakeTwinsResult, HasARowOfEveryComparison) {
+  EXPECT_EQ(RenderCsv(MakeTwinsResult({TwinReportByHand()}).rows),
             "scene,pairs,twin,quantity,kind,fitted,observed,lower,upper,n,predicted,within\n"
             "\"fountain, east\",12,semi_real,refusal,rate,no,0.25,0.1,0.4,12,0.5,no\n"
             "\"fountain, east\",12,semi_real,sigma_px,mean,yes,0.5,0.4,0.6,9,0.45,yes\n"

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "experiments/core/table/render_table.h"
+
 namespace rcme {
 namespace {
 
@@ -101,8 +103,8 @@ std::string TableOfSet(const SetReport& report) {
   return std::regex_replace(ValidationAsTable({report}), std::regex("\\s+"), " ");
 }
 
-nlohmann::json JsonOfSet(const SetReport& report) {
-  return nlohmann::json::parse(ValidationAsJson({report})).at("sets").at(0);
+nlohmann::json MakeJson(const SetReport& report) {
+  return nlohmann::json::parse(MakeValidationResult({report}).json);
 }
 
 std::string RenderWords(const ComparedMedians& ratio, TruthFreeVerdict verdict, FaultCause cause) {
@@ -145,9 +147,9 @@ TEST(DescribeVerdict, SaysWhatWouldDecide) {
   EXPECT_EQ(DescribeVerdict(test), "undecided: 1.3 [0.9, 1.9]; it takes five at least");
 }
 
-TEST(ValidationAsCsv, HasARowOfEveryTest) {
+TEST(MakeValidationTable, HasARowOfEveryTest) {
   const std::string set = "\"fountain, east\",10,8,";
-  EXPECT_EQ(ValidationAsCsv({SetReportByHand()}),
+  EXPECT_EQ(RenderCsv(MakeValidationTable({SetReportByHand()})),
             "set,pairs,answered,test,value,lower,upper,n,coverage,twin_coverage,verdict,cause\n" +  //
                 set + "covariances,,,,8,,,too small,data\n" +                                       //
                 set + "simulation,1.1,0.9,1.2,24,0.96,0.94,holds,\n" +                              //
@@ -165,11 +167,11 @@ TEST(ValidationAsCsv, HasARowOfEveryTest) {
                 set + "sigma_px,0.6,0.55,0.7,8,,,undecided,\n");
 }
 
-TEST(ValidationAsCsv, NamesTheCause) {
+TEST(MakeValidationTable, NamesTheCause) {
   SetReport report = SetReportByHand();
   report.tests[0].cause = FaultCause::kEstimator;
   report.tests[1].cause = FaultCause::kBoth;
-  const std::string text = ValidationAsCsv({report});
+  const std::string text = RenderCsv(MakeValidationTable({report}));
   EXPECT_THAT(text, HasSubstr(",0.96,0.94,holds,estimator\n"));
   EXPECT_THAT(text, HasSubstr(",0.75,0.9375,too small,both\n"));
 }
@@ -220,59 +222,62 @@ TEST(ValidationAsTable, SaysWhatIsNominal) {
   EXPECT_THAT(text, HasSubstr("nominal within 0.25 of one."));
 }
 
-TEST(ValidationAsJson, HasTheNumbersOfTheSet) {
-  const auto whole = nlohmann::ordered_json::parse(ValidationAsJson({SetReportByHand(), SetReport()}));
+TEST(MakeValidationResult, HasTheNumbersOfTheSet) {
+  const auto whole =
+      nlohmann::ordered_json::parse(MakeValidationResult({SetReportByHand(), SetReport()}).json);
   EXPECT_EQ(whole.begin().key(), "format");
-  EXPECT_EQ(whole["format"], "rcme validation 2");
+  EXPECT_EQ(whole["format"], "rcme validation 3");
   EXPECT_EQ(whole["nominal_variance"], 1.5);
   EXPECT_EQ(whole["nominal_correlation"], 0.05);
   EXPECT_EQ(whole["sets"].size(), 2u);
-  nlohmann::json set = JsonOfSet(SetReportByHand());
-  for (const char* list : {"tests", "correlations", "camera_faults"}) {
-    EXPECT_GE(set.at(list).size(), 3u) << list;
-    set.erase(list);
-  }
-  EXPECT_EQ(set, nlohmann::json::parse(R"({"name": "fountain, east", "pairs": 10, "answered": 8,
-      "loops": {"3": 2, "4": 1}, "assumed_sigma_px": 0.5, "sigma_px": 0.6, "sigma_px_interval": [0.55, 0.7],
-      "sigma_verdict": "undecided",
-      "covariances": {"verdict": "too small", "cause": "data", "tests": ["spatial_halves", "closure"]},
-      "calibration": {"pairs": 7, "p_value": 0.001, "dispersion": 1.5, "verdict": "wrong"},
-      "noise_by_size": {"pairs": 6, "slope": {"value": 0.4, "interval": [0.3, 0.5], "effective_pairs": 5.5},
-                        "verdict": "too small"},
-      "advice": ["look at the lens"]})"));
+  const nlohmann::json json = MakeJson(SetReportByHand());
+  EXPECT_EQ(json.at("rows").size(), 14u);
+  EXPECT_EQ(json.at("sets").at(0),
+            nlohmann::json::parse(R"({"set": "fountain, east", "pairs": 10, "answered": 8,
+      "covariances": "too small", "cause": "data", "by_tests": "spatial_halves closure",
+      "assumed_sigma_px": 0.5, "sigma_px": 0.6, "sigma_px_interval": [0.55, 0.7], "sigma_verdict": "undecided",
+      "calibration_pairs": 7, "calibration_p_value": 0.001, "calibration_dispersion": 1.5,
+      "calibration_verdict": "wrong", "size_pairs": 6, "size_slope": 0.4, "size_slope_interval": [0.3, 0.5],
+      "size_slope_effective_pairs": 5.5, "size_verdict": "too small"})"));
+  EXPECT_EQ(json.at("loops"), nlohmann::json::parse(R"([{"set": "fountain, east", "images": 3, "loops": 2},
+      {"set": "fountain, east", "images": 4, "loops": 1}])"));
+  EXPECT_EQ(json.at("advice"),
+            nlohmann::json::parse(R"([{"set": "fountain, east", "advice": "look at the lens"}])"));
 }
 
 // What is not known is null, an end that is not bounded too.
-TEST(ValidationAsJson, HasTheNumbersOfEveryTest) {
-  const nlohmann::json set = JsonOfSet(SetReportByHand());
-  ASSERT_EQ(set.at("tests").size(), 3u);
-  EXPECT_EQ(set.at("tests").at(1),
-            nlohmann::json::parse(R"({"test": "spatial_halves", "degrees_of_freedom": 5,
-      "n": 16, "coverage": 0.75, "coverage_interval": [0.5, 0.9], "twin_coverage": 0.9375, "ratio": 2.1,
-      "interval": [1.8, 2.5], "in_simulation": {"ratio": 1.05, "interval": [0.85, 1.25]},
-      "against_twins": {"ratio": 2.0, "interval": [1.5, 2.6]}, "verdict": "too small", "cause": "data",
+TEST(MakeValidationResult, HasTheNumbersOfEveryTest) {
+  const nlohmann::json tests = MakeJson(SetReportByHand()).at("tests");
+  ASSERT_EQ(tests.size(), 3u);
+  EXPECT_EQ(tests.at(1), nlohmann::json::parse(R"({"set": "fountain, east", "test": "spatial_halves",
+      "degrees_of_freedom": 5, "n": 16, "coverage": 0.75, "coverage_interval": [0.5, 0.9],
+      "twin_coverage": 0.9375, "twin_coverage_interval": [0.81, 0.99], "ratio": 2.1,
+      "ratio_interval": [1.8, 2.5], "in_simulation": 1.05, "in_simulation_interval": [0.85, 1.25],
+      "against_twins": 2.0, "against_twins_interval": [1.5, 2.6], "verdict": "too small", "cause": "data",
       "units": 8, "units_needed": null})"));
-  EXPECT_EQ(set.at("tests").at(2),
-            nlohmann::json::parse(R"({"test": "closure", "degrees_of_freedom": 3, "n": 0,
-      "coverage": null, "coverage_interval": [0.0, 1.0], "twin_coverage": null, "ratio": null,
-      "interval": [0.0, null], "in_simulation": {"ratio": null, "interval": [0.0, null]},
-      "against_twins": {"ratio": null, "interval": [0.0, null]}, "verdict": "no data", "cause": "", "units": 0,
-      "units_needed": 0.0})"));
+  EXPECT_EQ(tests.at(2), nlohmann::json::parse(R"({"set": "fountain, east", "test": "closure",
+      "degrees_of_freedom": 3, "n": 0, "coverage": null, "coverage_interval": [0.0, 1.0],
+      "twin_coverage": null, "twin_coverage_interval": [0.0, 1.0], "ratio": null,
+      "ratio_interval": [0.0, null], "in_simulation": null, "in_simulation_interval": [0.0, null],
+      "against_twins": null, "against_twins_interval": [0.0, null], "verdict": "no data", "cause": "",
+      "units": 0, "units_needed": 0.0})"));
 }
 
-TEST(ValidationAsJson, HasTheNumbersOfCorrelationsAndFaults) {
-  const nlohmann::json set = JsonOfSet(SetReportByHand());
-  ASSERT_EQ(set.at("correlations").size(), 4u);
-  EXPECT_EQ(set.at("correlations").at(1), nlohmann::json::parse(R"({"from_px": 1.0, "to_px": 4.0, "n": 200.0,
-      "correlation": 0.03, "twin_correlation": 0.01, "difference_interval": [-0.02, 0.04], "verdict": "holds"})"));
-  EXPECT_EQ(set.at("correlations").at(3), nlohmann::json::parse(R"({"from_px": 16.0, "to_px": 64.0, "n": 3.0,
-      "correlation": 0.5, "twin_correlation": null, "difference_interval": [null, null], "verdict": "no data"})"));
-  ASSERT_EQ(set.at("camera_faults").size(), 3u);
-  EXPECT_EQ(set.at("camera_faults").at(0),
-            nlohmann::json::parse(R"({"fault": "focal_length", "nominal": 0.002,
-      "beside_others": {"value": 0.0052, "interval": [0.0045, 0.006], "effective_pairs": 6.5},
-      "alone": {"value": 0.005, "interval": [0.0044, 0.0056], "effective_pairs": 6.0},
-      "twins": {"value": null, "interval": [null, null], "effective_pairs": 0.0}, "verdict": "wrong",
+TEST(MakeValidationResult, HasTheNumbersOfCorrelationsAndFaults) {
+  const nlohmann::json json = MakeJson(SetReportByHand());
+  ASSERT_EQ(json.at("correlations").size(), 4u);
+  EXPECT_EQ(json.at("correlations").at(1), nlohmann::json::parse(R"({"set": "fountain, east", "from_px": 1.0,
+      "to_px": 4.0, "n": 200.0, "correlation": 0.03, "twin_correlation": 0.01,
+      "difference_interval": [-0.02, 0.04], "verdict": "holds"})"));
+  EXPECT_EQ(json.at("correlations").at(3), nlohmann::json::parse(R"({"set": "fountain, east", "from_px": 16.0,
+      "to_px": 64.0, "n": 3.0, "correlation": 0.5, "twin_correlation": null,
+      "difference_interval": [null, null], "verdict": "no data"})"));
+  ASSERT_EQ(json.at("camera_faults").size(), 3u);
+  EXPECT_EQ(json.at("camera_faults").at(0), nlohmann::json::parse(R"({"set": "fountain, east",
+      "fault": "focal_length", "nominal": 0.002, "beside_others": 0.0052,
+      "beside_others_interval": [0.0045, 0.006], "beside_others_effective_pairs": 6.5, "alone": 0.005,
+      "alone_interval": [0.0044, 0.0056], "alone_effective_pairs": 6.0, "twins": null,
+      "twins_interval": [null, null], "twins_effective_pairs": 0.0, "verdict": "wrong",
       "in_words": "0.52 % [0.45, 0.6] too long"})"));
 }
 

@@ -141,7 +141,7 @@ TEST(Validate, OfNoPairsHasNoData) {
   const SetReport report = Validate({"empty", {}}, *MakeEstimator("standard"), {1, 1});
   for (const TruthFreeTest& test : report.tests) EXPECT_EQ(test.verdict, TruthFreeVerdict::kNoData);
   EXPECT_THAT(ValidationAsTable({report}), testing::HasSubstr("no data"));
-  EXPECT_THAT(ValidationAsJson({report}), testing::HasSubstr("rcme validation 2"));
+  EXPECT_THAT(MakeValidationResult({report}).json, testing::HasSubstr("rcme validation 3"));
 }
 
 TEST(Validate, RealScenesNameTheirImages) {
