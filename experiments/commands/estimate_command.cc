@@ -22,6 +22,7 @@
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
 #include "experiments/real/answer/estimate_output.h"
+#include "experiments/real/camera_noise/apply_noise.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
@@ -37,6 +38,7 @@ struct EstimateArguments {
   std::vector<std::string> intrinsics, cameras;
   EstimatorChoice estimator;
   double sigma_px = 0.5;
+  std::string noise;  // empty: no noise file
   std::int64_t seed = 1;
   std::vector<std::string> bounds;
   std::optional<double> integrity_risk;  // nothing: no protection levels are asked for
@@ -116,6 +118,7 @@ class Answerer {
         spec_(ChosenEstimator(arguments.estimator)),
         estimator_(Make(spec_)) {
     CheckProcessEstimators({spec_});
+    if (!arguments.noise.empty()) noise_ = ReadCameraNoise(arguments.noise);
   }
 
   const EstimatorSpec& spec() const { return spec_; }
@@ -132,13 +135,19 @@ class Answerer {
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.sd = file.truth_sd;
     data.problem = MakeMotionProblem(std::move(file), arguments_.sigma_px);
+    if (noise_) data.problem = ApplyNoise(std::move(data.problem), *noise_, data.origin);
     return data;
   }
 
-  PairAnswer Answer(const TrialData& data) const {
+  PairAnswer Answer(const TrialData& given) const {
     PairAnswer answer;
-    EstimateForBounds found =
-        AnswerProblem(*estimator_, data.problem, bounds_, static_cast<std::uint64_t>(arguments_.seed));
+    TrialData data = given;
+    EstimateForBounds found = Ask(data.problem);
+    if (noise_ && RemovesReadout(*noise_) && found.estimate.status == MotionStatus::kOk) {
+      data.problem = CorrectReadout(std::move(data.problem), found.estimate.cam2_from_cam1, *noise_);
+      found = Ask(data.problem);
+    }
+    if (noise_) WidenCovariance(data.problem, *noise_, HasRobustCovariance(spec_), &found.estimate);
     answer.estimate = std::move(found.estimate);
     answer.for_bounds = std::move(found.probabilities);
     answer.record = Score(answer.estimate, data, 0.0);
@@ -152,11 +161,16 @@ class Answerer {
   }
 
  private:
+  EstimateForBounds Ask(const MotionProblem& problem) const {
+    return AnswerProblem(*estimator_, problem, bounds_, static_cast<std::uint64_t>(arguments_.seed));
+  }
+
   const EstimateArguments& arguments_;
   GivenCameras given_;
   std::vector<FailureBounds> bounds_;
   EstimatorSpec spec_;
   std::unique_ptr<MotionEstimator> estimator_;
+  std::optional<CameraNoise> noise_;
 };
 
 // The tests of the motion are off as printed. A person should know what they would have said.
@@ -370,6 +384,7 @@ Examples:
   rcme estimate matches.csv.gz --sigma 0.7 --json
   rcme estimate pairs/                                  a line per file
   rcme estimate matches.csv.gz --bounds 1,5 --bounds 5,20
+  rcme estimate pairs/ --noise noise.yaml               of rcme calibrate-noise
   rcme estimate bare.txt --K 800,800,319.5,239.5        four columns, no header
   rcme estimate raw.txt --camera OPENCV,458.7,457.3,367.2,248.4,-.283,.074,.0002,.00002
   some_matcher a.jpg b.jpg | rcme estimate - --K 800,800,319.5,239.5
@@ -402,6 +417,11 @@ matches, all matches on a line).)");
   command->add_option("--sigma", arguments->sigma_px, "standard deviation of the noise per coordinate, px")
       ->transform(NumberIn({1e-9, 1000.0}))
       ->capture_default_str();
+  command
+      ->add_option("--noise", arguments->noise,
+                   "a file of `rcme calibrate-noise`: its sigma in place of --sigma, its corrections of the "
+                   "camera, and covariances for what it says is shared")
+      ->excludes("--sigma");
   command->add_option("--seed", arguments->seed, "seed of the random samples")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();

@@ -21,6 +21,7 @@ inline constexpr const char* kFailuresFormat = "rcme failures 1";
 inline constexpr const char* kListFormat = "rcme list 1";
 inline constexpr const char* kMarginalsFormat = "rcme marginals 1";
 inline constexpr const char* kModelChoiceFormat = "rcme model choice 1";
+inline constexpr const char* kNoiseCalibrationFormat = "rcme noise calibration 1";
 inline constexpr const char* kPaperTableFormat = "rcme paper table 1";
 inline constexpr const char* kRareFormat = "rcme rare 1";
 inline constexpr const char* kReliabilityFormat = "rcme reliability 1";

@@ -1,0 +1,40 @@
+// A pair as a camera's noise file says it is: without the errors that were found, with the noise that was
+// measured.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "estimator/motion_estimator.h"
+#include "experiments/data/camera_noise.h"
+#include "experiments/real/truth_free/pair_set.h"
+
+namespace rcme {
+
+// The assumed sigma and noise_scale are those of the file; cameras and key points are without the faults that
+// it removes, but for the readout, which goes along a motion (CorrectReadout). Throws InputError that begins
+// with `origin` where the file removes something and the pair is of another camera: intrinsics that differ by
+// more than 1e-4, or another image size.
+MotionProblem ApplyNoise(MotionProblem problem, const CameraNoise& noise, const std::string& origin);
+
+bool RemovesReadout(const CameraNoise& noise);
+// The key points of a global shutter, along an estimated motion.
+MotionProblem CorrectReadout(MotionProblem problem, const RelativePose& cam2_from_cam1,
+                             const CameraNoise& noise);
+
+// C = s_0 C_0 + C_shared, times the design effect of blocks (robust_covariance.h), with the file's variances
+// and reach in place of those that the pair's own residuals tell; C_0 the estimator's own covariance, or with
+// `is_robust` that of the residuals. As it is where nothing is shared and the covariance is the estimator's
+// own, or there is no motion.
+void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, bool is_robust,
+                     MotionEstimate* estimate);
+
+// The estimator with covariances that are widened, for pairs to which the noise has been applied.
+std::unique_ptr<MotionEstimator> WithSharedNoise(std::unique_ptr<MotionEstimator> estimator,
+                                                 const CameraNoise& noise, bool is_robust);
+
+// ApplyNoise to every pair of a set; a readout is removed along the motions that `estimator` finds.
+PairSet ApplyNoiseTo(PairSet set, const CameraNoise& noise, const MotionEstimator& estimator,
+                     std::uint64_t seed);
+
+}  // namespace rcme
