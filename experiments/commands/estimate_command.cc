@@ -27,6 +27,7 @@
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -126,10 +127,11 @@ class Answerer {
   const std::vector<FailureBounds>& bounds() const { return bounds_; }
 
   // Throws InputError (match_file.h). `doubts`: about the file's cameras.
-  TrialData Read(const std::string& path, std::vector<CameraDoubt>* doubts) const {
+  TrialData Read(const std::string& path, std::vector<CameraDoubt>* doubts, double* seconds_between) const {
     const bool is_input = path == kStandardInput;
     MatchFile file = is_input ? ReadMatchesFromInput(given_) : ReadMatchFile(path, given_);
     *doubts = file.doubts;
+    *seconds_between = file.seconds_between;
     TrialData data;
     data.origin = file.path;
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
@@ -139,12 +141,13 @@ class Answerer {
     return data;
   }
 
-  PairAnswer Answer(const TrialData& given) const {
+  PairAnswer Answer(const TrialData& given, double seconds_between) const {
     PairAnswer answer;
     TrialData data = given;
     EstimateForBounds found = Ask(data.problem);
     if (noise_ && RemovesReadout(*noise_) && found.estimate.status == MotionStatus::kOk) {
-      data.problem = CorrectReadout(std::move(data.problem), found.estimate.cam2_from_cam1, *noise_);
+      data.problem =
+          CorrectReadout(std::move(data.problem), found.estimate.cam2_from_cam1, *noise_, seconds_between);
       found = Ask(data.problem);
     }
     if (noise_) WidenCovariance(data.problem, *noise_, HasRobustCovariance(spec_), &found.estimate);
@@ -201,11 +204,12 @@ nlohmann::ordered_json MakeJson(const PairAnswer& answer, const EstimatorSpec& s
 
 void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, const std::string& path) {
   std::vector<CameraDoubt> doubts;
-  const TrialData data = answerer.Read(path, &doubts);
+  double seconds_between = kNaN;
+  const TrialData data = answerer.Read(path, &doubts, &seconds_between);
   CameraWarnings warnings;
   warnings.Add(doubts);
   warnings.Print();
-  const PairAnswer answer = answerer.Answer(data);
+  const PairAnswer answer = answerer.Answer(data, seconds_between);
   if (arguments.as_json) {
     fmt::print("{}", JsonText(kEstimateFormat, MakeJson(answer, answerer.spec(), doubts)));
   } else {
@@ -268,7 +272,9 @@ struct FileAnswer {
 FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
   FileAnswer file{.path = path, .error = {}, .doubts = {}, .answer = {}};
   try {
-    file.answer = answerer.Answer(answerer.Read(path, &file.doubts));
+    double seconds_between = kNaN;
+    const TrialData data = answerer.Read(path, &file.doubts, &seconds_between);
+    file.answer = answerer.Answer(data, seconds_between);
   } catch (const InputError& error) {
     file.error = error.what();
   }

@@ -114,12 +114,15 @@ void ReadDisplacement(const Place& place, const YAML::Node& node, CameraNoise* n
 }
 
 CameraCorrection ReadCorrection(const Place& place, const YAML::Node& node, size_t fault) {
-  CameraCorrection correction{fault, {}, 0.0};
+  CameraCorrection correction{fault, {}, {0.0, 0.0}};
   const std::string name = kCorrectableFaults[fault];
-  ReadNoiseMap(place, node, name,
-               {{"value", RealReader(place, name, kAnyReal, &correction.estimate.value)},
-                {"standard_error", RealReader(place, name, kAnySize, &correction.estimate.standard_error)},
-                {"removed", RealReader(place, name, {-1e4, 1e4}, &correction.removed)}});
+  ReadNoiseMap(
+      place, node, name,
+      {{"value", RealReader(place, name, kAnyReal, &correction.estimate.value)},
+       {"standard_error", RealReader(place, name, kAnySize, &correction.estimate.standard_error)},
+       {"removed", RealReader(place, name, {-1e4, 1e4}, &correction.removed.value)},
+       {"removed_standard_error", RealReader(place, name, kAnySize, &correction.removed.standard_error)}},
+      {"removed", "removed_standard_error"});
   return correction;
 }
 
@@ -215,13 +218,20 @@ std::string CameraNoiseAsYaml(const CameraNoise& noise) {
   if (!noise.corrections.empty()) {
     out << YAML::Key << "camera_faults" << YAML::Value << YAML::BeginMap;
     for (const CameraCorrection& each : noise.corrections) {
-      WriteNoiseMap(&out, kCorrectableFaults[each.fault],
-                    {{"value", each.estimate.value},
-                     {"standard_error", each.estimate.standard_error},
-                     {"removed", each.removed}});
+      std::vector<std::pair<const char*, double>> values = {{"value", each.estimate.value},
+                                                            {"standard_error", each.estimate.standard_error}};
+      if (each.removed.value != 0.0) {
+        values.emplace_back("removed", each.removed.value);
+        values.emplace_back("removed_standard_error", each.removed.standard_error);
+      }
+      WriteNoiseMap(&out, kCorrectableFaults[each.fault], values);
     }
     out << YAML::EndMap;
     WriteNoiseList(&out, "correlations", noise.correlations);
+    if (!noise.removed_correlations.empty())
+      WriteNoiseList(&out, "removed_correlations", noise.removed_correlations);
+    if (std::isfinite(noise.seconds_between))
+      out << YAML::Key << "seconds_between" << YAML::Value << fmt::format("{:.6g}", noise.seconds_between);
   }
   if (noise.systematic.columns > 0) {
     const DisplacementCells& cells = noise.systematic;
@@ -259,7 +269,7 @@ CameraNoise ParseCameraNoise(const std::string& yaml, const std::string& path) {
       *value = ReadMeasured(place, node, key, allowed);
     };
   };
-  YAML::Node correlations;
+  YAML::Node correlations, removed_correlations;
   ReadNoiseMap(
       place, root, "noise file",
       {{kNoiseVersionKey,
@@ -276,13 +286,23 @@ CameraNoise ParseCameraNoise(const std::string& yaml, const std::string& path) {
        {"displacement_field", [&](const YAML::Node& node) { ReadDisplacement(place, node, &noise); }},
        {"camera_faults", [&](const YAML::Node& node) { ReadCorrections(place, node, &noise); }},
        {"correlations", [&](const YAML::Node& node) { correlations.reset(node); }},
+       {"removed_correlations", [&](const YAML::Node& node) { removed_correlations.reset(node); }},
+       {"seconds_between", RealReader(place, "seconds_between", {1e-9, 1e9}, &noise.seconds_between)},
        {"systematic_displacement",
         [&](const YAML::Node& node) { ReadSystematic(place, node, &noise.systematic); }}},
-      {"size_exponent", "displacement_field", "camera_faults", "correlations", "systematic_displacement"});
-  const size_t num_faults = noise.corrections.size();
+      {"size_exponent", "displacement_field", "camera_faults", "correlations", "removed_correlations",
+       "seconds_between", "systematic_displacement"});
+  const size_t num_faults = noise.corrections.size(),
+               num_removed = static_cast<size_t>(std::ranges::count_if(
+                   noise.corrections, [](const CameraCorrection&each) { return each.removed.value != 0.0; }));
   if (root["correlations"])
     noise.correlations =
         ReadNoiseReals(place, correlations, "correlations", num_faults * num_faults, {-1.0001, 1.0001});
+  if (num_removed > 0 && !root["removed_correlations"])
+    place.Fail(root, "noise file: key 'removed_correlations' is missing");
+  if (root["removed_correlations"])
+    noise.removed_correlations = ReadNoiseReals(place, removed_correlations, "removed_correlations",
+                                                num_removed * num_removed, {-1.0001, 1.0001});
   if (std::hypot(noise.key_point_px, noise.displacement_px.value) > 1.0001 * noise.sigma_px.value)
     place.Fail(root, "sigma_px: key_point_px and displacement_field have more variance than all of it");
   return noise;

@@ -25,9 +25,9 @@ inline constexpr std::array kCorrectableFaults = {"focal_length",  "principal_po
                                                   "image2_shift_y"};
 
 struct CameraCorrection {
-  size_t fault = 0;    // of kCorrectableFaults
-  Measured estimate;   // of the fault, beside the others
-  double removed = 0;  // the fault that is taken out; 0: its own test did not name it
+  size_t fault = 0;            // of kCorrectableFaults
+  Measured estimate;           // of the fault, beside the others
+  Measured removed{0.0, 0.0};  // what is taken out, beside the others taken out; 0: its test did not name it
 };
 
 // A displacement of what is observed that all images of a camera share, px: bilinear between the centres of
@@ -54,7 +54,8 @@ struct CameraNoise {
   Measured displacement_px{0.0, 0.0};
   double reach_px = 0.0, reach_factor = 1.0;  // factor: one standard error, upwards and downwards
   std::vector<CameraCorrection> corrections;
-  std::vector<double> correlations;  // of the corrections' estimates, row by row
+  std::vector<double> correlations, removed_correlations;  // of the estimates, of what is removed; row by row
+  double seconds_between = std::numeric_limits<double>::quiet_NaN();  // that the readout time is a share of
   DisplacementCells systematic;
 
   // Of sigma_px^2, what the displacement field has of it.

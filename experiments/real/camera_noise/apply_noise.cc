@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "estimator/noise_scale.h"
 #include "estimator/robust_covariance/covariance_option.h"
 #include "experiments/real/camera_noise/systematic_displacement.h"
-#include "experiments/real/truth_free/camera_faults.h"
+#include "experiments/real/truth_free/calibration_score.h"
+#include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_source.h"
 #include "parameters/input_error.h"
 #include "stats/fnv1a.h"
@@ -23,7 +26,8 @@ bool IsSameCamera(const Camera& camera, const Camera& other) {
 
 bool RemovesAnything(const CameraNoise& noise) {
   return noise.systematic.columns > 0 ||
-         std::ranges::any_of(noise.corrections, [](const CameraCorrection& c) { return c.removed != 0.0; });
+         std::ranges::any_of(noise.corrections,
+                             [](const CameraCorrection& c) { return c.removed.value != 0.0; });
 }
 
 void CheckCamera(const Camera& camera, const CameraNoise& noise, const std::string& origin) {
@@ -42,9 +46,51 @@ FaultVector ListRemoved(const CameraNoise& noise, bool is_readout) {
   FaultVector faults = FaultVector::Zero();
   for (const CameraCorrection& each : noise.corrections) {
     if ((each.fault == kReadoutFault) == is_readout)
-      faults(static_cast<Eigen::Index>(each.fault)) = each.removed;
+      faults(static_cast<Eigen::Index>(each.fault)) = each.removed.value;
   }
   return faults;
+}
+
+// Over sigma^2.
+KnownVariances KnownVariancesOf(const CameraNoise& noise) {
+  const double key_point = noise.key_point_px / noise.sigma_px.value;
+  KnownVariances known;
+  known.of_key_point = key_point * key_point;
+  known.of_neighbours = noise.DisplacementShare();
+  known.own = std::max(0.0, 1.0 - known.of_key_point - known.of_neighbours);
+  if (noise.reach_px > 0.0) known.length_px = noise.reach_px;
+  return known;
+}
+
+// G Sigma G'.
+Matrix5d ComputeCovarianceOfRemoved(const MotionProblem& problem, const CameraNoise& noise,
+                                    const MotionEstimate& estimate) {
+  std::vector<CameraCorrection> removed;
+  std::ranges::copy_if(noise.corrections, std::back_inserter(removed),
+                       [](const CameraCorrection& each) { return each.removed.value != 0.0; });
+  if (removed.empty()) return Matrix5d::Zero();
+  const MatchScores scores = ScoreFitted(problem, estimate.inliers, estimate.cam2_from_cam1);
+  const Eigen::Matrix3d F = ComputeFundamental(problem, estimate.cam2_from_cam1);
+  Eigen::Matrix<double, 5, kNumCameraFaults> mixed = Eigen::Matrix<double, 5, kNumCameraFaults>::Zero();
+  for (size_t i = 0; i < scores.rows.size(); ++i) {
+    const double sigma_px =
+        problem.sigma_px * NoiseScaleAt(problem, static_cast<size_t>(estimate.inliers[i]));
+    mixed +=
+        scores.rows[i] *
+        ResidualByFaults(F, problem.camera1, problem.camera2, estimate.cam2_from_cam1, scores.matches[i]) /
+        sigma_px;
+  }
+  const Eigen::Matrix<double, 5, kNumCameraFaults> moved = scores.information.ldlt().solve(mixed);
+  Matrix5d covariance = Matrix5d::Zero();
+  for (size_t a = 0; a < removed.size(); ++a) {
+    for (size_t b = 0; b < removed.size(); ++b) {
+      const double shared = noise.removed_correlations[a * removed.size() + b] *
+                            removed[a].removed.standard_error * removed[b].removed.standard_error;
+      covariance += shared * moved.col(static_cast<Eigen::Index>(removed[a].fault)) *
+                    moved.col(static_cast<Eigen::Index>(removed[b].fault)).transpose();
+    }
+  }
+  return covariance.allFinite() ? covariance : Matrix5d::Zero();
 }
 
 class SharedNoiseEstimator : public MotionEstimator {
@@ -84,23 +130,24 @@ MotionProblem ApplyNoise(MotionProblem problem, const CameraNoise& noise, const 
 bool RemovesReadout(const CameraNoise& noise) { return !ListRemoved(noise, true).isZero(0.0); }
 
 MotionProblem CorrectReadout(MotionProblem problem, const RelativePose& cam2_from_cam1,
-                             const CameraNoise& noise) {
-  return RemoveFaults(std::move(problem), cam2_from_cam1, ListRemoved(noise, true));
+                             const CameraNoise& noise, double seconds_between) {
+  const double scale = noise.seconds_between / seconds_between;
+  return RemoveFaults(std::move(problem), cam2_from_cam1,
+                      (std::isfinite(scale) ? scale : 1.0) * ListRemoved(noise, true));
 }
 
 void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, bool is_robust,
                      MotionEstimate* estimate) {
-  const double all = noise.sigma_px.value * noise.sigma_px.value,
-               key_point = noise.key_point_px * noise.key_point_px,
-               field = noise.displacement_px.value * noise.displacement_px.value;
   if (estimate->status != MotionStatus::kOk) return;
-  if (key_point == 0.0 && field == 0.0 && !is_robust) return;
-  RobustCovarianceOptions options;
-  KnownVariances known{std::max(0.0, 1.0 - (key_point + field) / all), key_point / all, field / all};
-  if (noise.reach_px > 0.0) known.length_px = noise.reach_px;
-  options.known_variances = known;
-  const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(estimate->pose_cov);
-  MakeCovarianceRobust(problem, options, own_cov, estimate);
+  const KnownVariances known = KnownVariancesOf(noise);
+  if (known.own < 1.0 || is_robust) {
+    RobustCovarianceOptions options;
+    options.known_variances = known;
+    const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(estimate->pose_cov);
+    MakeCovarianceRobust(problem, options, own_cov, estimate);
+  }
+  if (estimate->status == MotionStatus::kOk)
+    estimate->pose_cov += ComputeCovarianceOfRemoved(problem, noise, *estimate);
 }
 
 std::unique_ptr<MotionEstimator> WithSharedNoise(std::unique_ptr<MotionEstimator> estimator,
@@ -116,7 +163,8 @@ PairSet ApplyNoiseTo(PairSet set, const CameraNoise& noise, const MotionEstimato
     const MotionEstimate estimate =
         AnswerTo(pair.problem, estimator, {seed, HashToStreamKey(pair.name), 0, 0});
     if (estimate.status == MotionStatus::kOk)
-      pair.problem = CorrectReadout(std::move(pair.problem), estimate.cam2_from_cam1, noise);
+      pair.problem =
+          CorrectReadout(std::move(pair.problem), estimate.cam2_from_cam1, noise, pair.seconds_between);
   }
   return set;
 }

@@ -18,14 +18,19 @@ namespace rcme {
 MotionProblem ApplyNoise(MotionProblem problem, const CameraNoise& noise, const std::string& origin);
 
 bool RemovesReadout(const CameraNoise& noise);
-// The key points of a global shutter, along an estimated motion.
+// The key points of a global shutter, along an estimated motion; seconds_between: of the images, NaN where
+// it is not known, and then that of the file.
 MotionProblem CorrectReadout(MotionProblem problem, const RelativePose& cam2_from_cam1,
-                             const CameraNoise& noise);
+                             const CameraNoise& noise, double seconds_between);
 
-// C = s_0 C_0 + C_shared, times the design effect of blocks (robust_covariance.h), with the file's variances
-// and reach in place of those that the pair's own residuals tell; C_0 the estimator's own covariance, or with
-// `is_robust` that of the residuals. As it is where nothing is shared and the covariance is the estimator's
-// own, or there is no motion.
+//   C = d (s_0 C_0 + C_shared) + G Sigma G'
+//
+// d the design effect of blocks and C_shared as in robust_covariance.h, with the file's variances and reach
+// in place of those that the pair's own residuals tell; C_0 the estimator's own covariance, or with
+// `is_robust` that of the residuals; Sigma the covariance of the faults that are removed and G = -A^-1 sum
+// J_i' D_i how they move the motion, D_i the residual's derivative along them
+// (truth_free/calibration_score.h), A = sum J_i' J_i. As it is where nothing is shared or removed and the
+// covariance is the estimator's own, or there is no motion.
 void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, bool is_robust,
                      MotionEstimate* estimate);
 

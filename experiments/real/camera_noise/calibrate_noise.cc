@@ -13,6 +13,7 @@
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 #include "stats/fnv1a.h"
+#include "stats/median_ratio.h"
 
 namespace rcme {
 namespace {
@@ -50,6 +51,22 @@ Measured RootOf(const PooledParameter& variance) {
   return {root, root > 0.0 ? variance.standard_error / (2.0 * root) : 0.0};
 }
 
+// How well those that are removed are known, the others taken to be zero.
+void TakeErrorsOfRemoved(const FaultEstimates& estimates, CameraNoise* noise) {
+  std::vector<CameraFault> removed;
+  for (const CameraCorrection& each : noise->corrections) {
+    if (each.removed.value != 0.0) removed.push_back(kCameraFaults[each.fault]);
+  }
+  if (removed.empty()) return;
+  const PooledScores pooled = PoolFaults(estimates.units, removed);
+  size_t next = 0;
+  for (CameraCorrection& each : noise->corrections) {
+    if (each.removed.value != 0.0) each.removed.standard_error = pooled.parameters[next++].standard_error;
+  }
+  noise->removed_correlations.assign(pooled.correlations.data(),
+                                     pooled.correlations.data() + pooled.correlations.size());
+}
+
 // What all faults are beside each other once those that are removed are, as they are written.
 void TakeFaults(const CalibrationReport& report, const std::vector<PairAnswers>& corrected,
                 CameraNoise* noise) {
@@ -60,8 +77,9 @@ void TakeFaults(const CalibrationReport& report, const std::vector<PairAnswers>&
     const auto found = std::ranges::find(report.faults, estimates.asked[j], &FaultReport::fault);
     const double removed = found == report.faults.end() ? 0.0 : found->correction;
     const PooledParameter& left = pooled.parameters[j];
-    noise->corrections.push_back(
-        {static_cast<size_t>(estimates.asked[j]), {removed + left.value, left.standard_error}, removed});
+    noise->corrections.push_back({static_cast<size_t>(estimates.asked[j]),
+                                  {removed + left.value, left.standard_error},
+                                  {removed, 0.0}});
   }
   const bool are_known = std::ranges::all_of(noise->corrections, [](const CameraCorrection& each) {
     return std::isfinite(each.estimate.value) && std::isfinite(each.estimate.standard_error);
@@ -69,6 +87,7 @@ void TakeFaults(const CalibrationReport& report, const std::vector<PairAnswers>&
   if (!are_known) return noise->corrections.clear();
   noise->correlations.assign(pooled.correlations.data(),
                              pooled.correlations.data() + pooled.correlations.size());
+  TakeErrorsOfRemoved(estimates, noise);
 }
 
 // Of residuals that are not divided by a power of the size; the cut is that of those that are.
@@ -153,6 +172,9 @@ NoiseCalibration CalibrateNoise(const PairSet& set, const MotionEstimator& estim
   CameraNoise& noise = calibration.noise;
   noise.estimator = estimator_name;
   noise.camera = of_camera.pairs.front().problem.camera1;
+  std::vector<double> seconds;
+  for (const PairAnswers& each : answers) seconds.push_back(each.whole.pair.seconds_between);
+  noise.seconds_between = ComputeMedian(std::move(seconds));
   calibration.faults = Calibrate(answers, estimator, seed);
   PairSet corrected = of_camera;
   if (NamesFault(calibration.faults)) {

@@ -59,8 +59,8 @@ void AddSharedRows(const NoiseCalibration& calibration, std::vector<NoiseRow>* r
 }
 
 std::string FaultState(const CameraCorrection& correction) {
-  return correction.removed == 0.0 ? "not named"
-                                   : fmt::format("named: {:.3g} is removed", correction.removed);
+  return correction.removed.value == 0.0 ? "not named"
+                                         : fmt::format("named: {:.3g} is removed", correction.removed.value);
 }
 
 void AddFaultRows(const NoiseCalibration& calibration, std::vector<NoiseRow>* rows) {

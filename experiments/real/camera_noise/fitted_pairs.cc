@@ -17,6 +17,8 @@ constexpr double kLeastLeverageKept = 0.05;  // 1 - h
 constexpr int kMostSizeRounds = 8;
 constexpr double kSmallSizeStep = 0.1;  // of a standard error
 constexpr double kGreatestExponent = 4.0;
+// Of a normal law's variance, what is left within its 99.9 %, |z| < 3.2905: 1 - 2 z phi(z) / 0.999.
+constexpr double kVarianceLeft = 0.98829;
 
 // The slope's score and information of one pair; false where sizes are none or all alike.
 bool ScoreSizeSlope(const FittedPair& pair, UnitScore* unit) {
@@ -58,6 +60,7 @@ std::vector<FittedPair> FitPairs(const std::vector<PairAnswers>& answers, double
     const Eigen::LLT<Matrix5d> llt(pair.scores.information);
     if (llt.info() != Eigen::Success) continue;
     double sum = 0.0;
+    for (double& r : pair.scores.residuals) r /= std::sqrt(kVarianceLeft);
     for (size_t i = 0; i < fit.fitted.size(); ++i) {
       if (!problem.noise_scale.empty())
         pair.sizes.push_back(whole.pair.problem.noise_scale[static_cast<size_t>(fit.fitted[i])]);

@@ -23,7 +23,8 @@ struct FittedPair {
 };
 
 // Pairs with a motion and at least 20 agreeing matches (robust_covariance.h: FitAgreeing), the others left
-// out. The cut lies at 3.3 standard deviations: 0.99 of a normal variance is left.
+// out. The cut lies at the 99.9 % of a normal law (fit_set.h); residuals are as much greater as it takes for
+// its variance.
 std::vector<FittedPair> FitPairs(const std::vector<PairAnswers>& answers, double exponent);
 
 // The power of the stated size that residuals grow with: within each pair the slope of log(r^2 / (1 - h)) on

@@ -12,45 +12,52 @@
 namespace rcme {
 namespace {
 
-constexpr double kVarianceLevel = 0.05;
+constexpr double kVarianceLevel = 0.05, kKeyPointLevel = 0.01;
 constexpr int kOwnPart = 0, kKeyPointPart = 1, kFirstLengthPart = 2;
-constexpr double kLeastRepeats = 1.0;  // key points of two matches, for their variance
+// Pairs of matches of one key point, for their variance: in a pair, in all, and pairs that have them.
+constexpr double kLeastRepeats = 1.0, kLeastRepeatsInAll = 50.0;
+constexpr size_t kLeastPairsWithRepeats = 5;
 // The longest of the three reaches of one set of moments, px; together a ratio of 3^1/2 from 10 to 4,209 px.
 const double kLongestReachesPx[] = {90.0, 90.0 * std::sqrt(3.0), 2430.0, 2430.0 * std::sqrt(3.0)};
 
-// Of a field at one reach, and of key points, in one pair: 2 parts, own variance eliminated.
-struct VarianceScore {
-  Eigen::Vector2d score = Eigen::Vector2d::Zero();  // [field, key points]
-  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
-};
-
-VarianceScore ScoreVariances(const ResidualMoments& moments, int length, double variance) {
-  std::vector<int> parts = {kOwnPart, kFirstLengthPart + length};
-  const bool has_repeats = moments.M(kKeyPointPart, kKeyPointPart) >= kLeastRepeats;
-  if (has_repeats) parts.push_back(kKeyPointPart);
-  const Eigen::MatrixXd T = moments.T(parts, parts);
-  const Eigen::MatrixXd weighted =
-      Eigen::MatrixXd(moments.M(parts, parts)).ldlt().solve(T) / (2.0 * variance * variance);
-  const Eigen::MatrixXd N = T.transpose() * weighted;
-  const Eigen::VectorXd b = weighted.transpose() * Eigen::VectorXd(moments.q(parts));
-  const Eigen::Index k = N.rows() - 1;
-  VarianceScore of;
-  of.score.head(k) = b.tail(k) - N.col(0).tail(k) * b(0) / N(0, 0);
-  of.information.topLeftCorner(k, k) =
-      N.bottomRightCorner(k, k) - N.col(0).tail(k) * N.row(0).tail(k) / N(0, 0);
-  return of;
+// One match of each key point, the first: their moments have T alone in them,
+//
+//   W_0 = I, W_f = K_f - I:  tr(W_0 P W_0 P) = T_00, tr(W_0 P W_f P) = T_f0, tr(W_f P W_f P) = T_ff - T_f0.
+MatchScores KeepFirstOfEach(const MatchScores& scores) {
+  MatchScores kept;
+  int next = 0;
+  const std::vector<int> groups = KeyPointGroups(scores.matches, kKeyPointRadiusPx);
+  for (size_t i = 0; i < groups.size(); ++i) {
+    if (groups[i] != next) continue;
+    ++next;
+    kept.rows.push_back(scores.rows[i]);
+    kept.residuals.push_back(scores.residuals[i]);
+    kept.matches.push_back(scores.matches[i]);
+    kept.normals.push_back(scores.normals[i]);
+    kept.information += scores.rows[i] * scores.rows[i].transpose();
+  }
+  return kept;
 }
 
-// The field alone: what key points share eliminated too.
-UnitScore TakeField(const FittedPair& pair, const VarianceScore& of) {
-  double score = of.score(0), information = of.information(0, 0);
-  if (of.information(1, 1) > 0.0) {
-    const double slope = of.information(0, 1) / of.information(1, 1);
-    score -= slope * of.score(1);
-    information -= slope * of.information(1, 0);
-  }
-  return {pair.images.image1, pair.images.image2, Eigen::VectorXd::Constant(1, score),
-          Eigen::MatrixXd::Constant(1, 1, std::max(information, 0.0))};
+// A pair of equations and what they say of the second unknown, the first eliminated.
+UnitScore Eliminate(const ImageNumbers& images, const Eigen::Vector2d& q, const Eigen::Matrix2d& T,
+                    const Eigen::Matrix2d& M, double variance) {
+  const Eigen::Matrix2d weighted = M.ldlt().solve(T) / (2.0 * variance * variance);
+  const Eigen::Matrix2d N = T.transpose() * weighted;
+  const Eigen::Vector2d b = weighted.transpose() * q;
+  const double score = b(1) - N(1, 0) / N(0, 0) * b(0), information = N(1, 1) - N(1, 0) / N(0, 0) * N(0, 1);
+  const bool is_known = std::isfinite(score) && information > 0.0;
+  return {images.image1, images.image2, Eigen::VectorXd::Constant(1, is_known ? score : 0.0),
+          Eigen::MatrixXd::Constant(1, 1, is_known ? information : 0.0)};
+}
+
+// Of the field at one reach.
+UnitScore TakeField(const FittedPair& pair, const ResidualMoments& moments, int length) {
+  const int parts[] = {kOwnPart, kFirstLengthPart + length};
+  const Eigen::Matrix2d T = moments.T(parts, parts);
+  Eigen::Matrix2d M;
+  M << T(0, 0), T(1, 0), T(1, 0), T(1, 1) - T(1, 0);
+  return Eliminate(pair.images, moments.q(parts), T, M, pair.variance);
 }
 
 double ComputeGain(const std::vector<UnitScore>& units, size_t left_out) {
@@ -102,33 +109,47 @@ struct PairMoments {
   ResidualMoments moments;
 };
 
-std::vector<PairMoments> ComputeAllMoments(const std::vector<FittedPair>& pairs, double longest_px) {
+enum class Repeats { kFirstOnly, kAll };
+
+std::vector<PairMoments> ComputeAllMoments(const std::vector<FittedPair>& pairs, double longest_px,
+                                           Repeats repeats) {
   std::vector<PairMoments> all;
   for (const FittedPair& pair : pairs) {
+    const bool is_first_only = repeats == Repeats::kFirstOnly;
+    const MatchScores scores = is_first_only ? KeepFirstOfEach(pair.scores) : pair.scores;
+    const std::vector<int> groups =
+        is_first_only ? Separate(scores.matches.size()) : KeyPointGroups(scores.matches, kKeyPointRadiusPx);
     const std::optional<ResidualMoments> moments =
-        ComputeResidualMoments(pair.scores, KeyPointGroups(pair.scores.matches, kKeyPointRadiusPx),
-                               longest_px / kNeighbourLengthsPx.back());
+        ComputeResidualMoments(scores, groups, longest_px / kNeighbourLengthsPx.back());
     if (moments) all.push_back({&pair, *moments});
   }
   return all;
+}
+
+// Of the image, px: of a field that reaches farther, only variance over reach is seen in an image.
+double FindDiagonal(const std::vector<FittedPair>& pairs) {
+  return std::hypot(pairs.front().camera.width, pairs.front().camera.height);
 }
 
 constexpr int kLongest = static_cast<int>(kNeighbourLengthsPx.size()) - 1;
 
 // What key points share beside a field of known variance.
 void FitKeyPoints(const std::vector<PairMoments>& all, double field, SharedVariance* shared) {
+  constexpr int kParts[] = {kOwnPart, kKeyPointPart};
   std::vector<UnitScore> units;
+  double num_repeated = 0.0;
   for (const PairMoments& each : all) {
-    const VarianceScore of = ScoreVariances(each.moments, kLongest, each.pair->variance);
-    if (!(of.information(1, 1) > 0.0)) continue;
-    units.push_back({each.pair->images.image1, each.pair->images.image2,
-                     Eigen::VectorXd::Constant(1, of.score(1) - field * of.information(0, 1)),
-                     Eigen::MatrixXd::Constant(1, 1, of.information(1, 1))});
+    const ResidualMoments& m = each.moments;
+    if (m.M(kKeyPointPart, kKeyPointPart) < kLeastRepeats) continue;
+    num_repeated += m.M(kKeyPointPart, kKeyPointPart);
+    const Eigen::Vector2d by_field = field * m.T(kParts, kFirstLengthPart + kLongest);
+    units.push_back(Eliminate(each.pair->images, m.q(kParts) - by_field, m.T(kParts, kParts),
+                              m.M(kParts, kParts), each.pair->variance));
   }
   shared->key_point = {kNaN, kNaN, {-kInfinity, kInfinity}, 0.0};
-  if (units.empty()) return;
+  if (units.size() < kLeastPairsWithRepeats || num_repeated < kLeastRepeatsInAll) return;
   shared->key_point = PoolScoreAlone(units, 0, 0.95);
-  shared->is_key_point_found = IsAbove(units, kVarianceLevel);
+  shared->is_key_point_found = IsAbove(units, kKeyPointLevel);
 }
 
 // q_0 = T_00 v_0 + T_01 v_1 + T_0f v_f, summed over pairs.
@@ -151,12 +172,12 @@ void FitOwn(const std::vector<PairMoments>& all, SharedVariance* shared) {
 SharedVariance FitSharedVariance(const std::vector<FittedPair>& pairs) {
   UnitsByReach units;
   for (const double longest_px : kLongestReachesPx) {
-    for (const PairMoments& each : ComputeAllMoments(pairs, longest_px)) {
+    for (const PairMoments& each : ComputeAllMoments(pairs, longest_px, Repeats::kFirstOnly)) {
       for (int length = 0; length <= kLongest; ++length) {
         const double reach =
             longest_px * kNeighbourLengthsPx[static_cast<size_t>(length)] / kNeighbourLengthsPx.back();
-        units[std::round(100.0 * reach) / 100.0].push_back(
-            TakeField(*each.pair, ScoreVariances(each.moments, length, each.pair->variance)));
+        if (reach > FindDiagonal(pairs)) continue;
+        units[std::round(100.0 * reach) / 100.0].push_back(TakeField(*each.pair, each.moments, length));
       }
     }
   }
@@ -166,14 +187,14 @@ SharedVariance FitSharedVariance(const std::vector<FittedPair>& pairs) {
         {reach, PoolScoreAlone(of_reach, 0, 0.95), ComputeGain(of_reach, kLeaveNoneOut)});
   if (shared.by_reach.empty()) return shared;
   const double reach_px = std::exp(FindLogReach(units, kLeaveNoneOut));
-  const std::vector<PairMoments> at_reach = ComputeAllMoments(pairs, reach_px);
   std::vector<UnitScore> of_field;
-  for (const PairMoments& each : at_reach)
-    of_field.push_back(TakeField(*each.pair, ScoreVariances(each.moments, kLongest, each.pair->variance)));
+  for (const PairMoments& each : ComputeAllMoments(pairs, reach_px, Repeats::kFirstOnly))
+    of_field.push_back(TakeField(*each.pair, each.moments, kLongest));
   shared.field = {reach_px, PoolScoreAlone(of_field, 0, 0.95), ComputeGain(of_field, kLeaveNoneOut)};
   shared.is_found = shared.field.gain > 0.0 &&
                     IsAbove(of_field, kVarianceLevel / static_cast<double>(shared.by_reach.size()));
   shared.reach_factor = ComputeReachFactor(units, of_field.size());
+  const std::vector<PairMoments> at_reach = ComputeAllMoments(pairs, reach_px, Repeats::kAll);
   FitKeyPoints(at_reach, shared.is_found ? shared.field.variance.value : 0.0, &shared);
   FitOwn(at_reach, &shared);
   return shared;

@@ -17,7 +17,7 @@ struct VarianceByReach {
 };
 
 struct SharedVariance {
-  std::vector<VarianceByReach> by_reach;  // from short to long
+  std::vector<VarianceByReach> by_reach;  // from 10 px to the diagonal of the image
   bool is_found = false;                  // at 5 %, one-sided, all reaches together (Bonferroni)
   VarianceByReach field;                  // at the reach of greatest gain, between those by a parabola
   double reach_factor = 1.0;              // one standard error of it, a jackknife over pairs
@@ -26,7 +26,8 @@ struct SharedVariance {
   PooledParameter own;                    // each match's own, beside what is found, px^2
 };
 
-// Restricted moments (estimator/robust_covariance/residual_variances.h), which know that the motion of each
+// In each pair one match of each key point stands for all, so that
+// restricted moments (estimator/robust_covariance/residual_variances.h), which know that the motion of each
 // pair was fitted to its residuals: q = T v. In each pair of variance s^2 the own variance, and what matches
 // of one key point share, are eliminated from the normal equations N = T' M^-1 T / (2 s^4) and b = T' M^-1 q
 // / (2 s^4) of independent residuals, so that pairs may be of different noise; what is left, score b_f - N_fo
