@@ -63,9 +63,10 @@ struct CameraNoise {
 };
 
 // The file: YAML whose first key is rcme_camera_noise, its version.
+inline constexpr const char *kNoiseVersionKey = "rcme_camera_noise", *kNoiseVersion = "1";
 std::string CameraNoiseAsYaml(const CameraNoise& noise);
 // Throws InputError that names file, line, key and what is allowed: no such file, a file of another kind or
-// version, an unknown, missing or repeated key, a number out of its range.
+// version, an unknown, missing or repeated key, a number out of its range, correlations that are none.
 CameraNoise ReadCameraNoise(const std::string& path);
 CameraNoise ParseCameraNoise(const std::string& yaml, const std::string& path);
 
