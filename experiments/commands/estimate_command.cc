@@ -119,7 +119,7 @@ class Answerer {
         spec_(ChosenEstimator(arguments.estimator)),
         estimator_(Make(spec_)) {
     CheckProcessEstimators({spec_});
-    if (!arguments.noise.empty()) noise_ = ReadCameraNoise(arguments.noise);
+    if (!arguments.noise.empty()) noise_ = ReadNoiseToApply(arguments.noise);
   }
 
   const EstimatorSpec& spec() const { return spec_; }

@@ -120,7 +120,7 @@ void RunValidate(const ValidateArguments& arguments) {
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   CheckProcessEstimators({spec});
   std::optional<CameraNoise> noise;
-  if (!arguments.noise.empty()) noise = ReadCameraNoise(arguments.noise);
+  if (!arguments.noise.empty()) noise = ReadNoiseToApply(arguments.noise);
   const AdvisedEstimator estimator = ChooseAdvised(spec, planted, noise);
   std::vector<PairSet> sets = ChooseSets(arguments, planted);
   if (noise) {
@@ -137,7 +137,9 @@ void RunValidate(const ValidateArguments& arguments) {
     kept.emplace(&*runner);
   }
   KeptSteps* steps = kept ? &*kept : nullptr;
-  const ValidationOptions options = {static_cast<std::uint64_t>(arguments.seed), arguments.num_twins};
+  const ValidationOptions options = {
+      static_cast<std::uint64_t>(arguments.seed), arguments.num_twins,
+      noise ? TwinField{noise->DisplacementShare(), noise->reach_px} : TwinField{}};
   std::vector<SetReport> reports;
   for (const PairSet& set : sets)
     reports.push_back(arguments.tests_alone ? Validate(set, *estimator.make({}), options, steps)

@@ -288,7 +288,8 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
   if (!root["data"] && !root["conditions"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
   SeePathsFrom(folder, &study);
-  place.At(root["data"] ? root["data"] : root, [&] { study.data = WithNoiseFile(WithCalibration(study.data)); });
+  place.At(root["data"] ? root["data"] : root,
+           [&] { study.data = WithNoiseFile(WithCalibration(study.data)); });
   FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
   if (root["hypotheses"])

@@ -20,10 +20,6 @@ namespace {
 
 constexpr auto kReadoutFault = static_cast<size_t>(CameraFault::kReadoutTime);
 
-bool IsSameCamera(const Camera& camera, const Camera& other) {
-  return camera.width == other.width && camera.height == other.height && camera.K().isApprox(other.K(), 1e-4);
-}
-
 bool RemovesAnything(const CameraNoise& noise) {
   return noise.systematic.columns > 0 ||
          std::ranges::any_of(noise.corrections,
@@ -111,6 +107,22 @@ class SharedNoiseEstimator : public MotionEstimator {
 
 }  // namespace
 
+CameraNoise ReadNoiseToApply(const std::string& path) {
+  CameraNoise noise = ReadCameraNoise(path);
+  for (const CameraCorrection& each : noise.corrections) {
+    const double greatest = GreatestFault(kCameraFaults[each.fault], noise.camera);
+    if (std::abs(each.removed.value) > greatest)
+      throw InputError(
+          fmt::format("{}: camera_faults: {}: removed {:g} is not allowed; at most {:g} either way", path,
+                      kCorrectableFaults[each.fault], each.removed.value, greatest));
+  }
+  return noise;
+}
+
+bool IsSameCamera(const Camera& camera, const Camera& other) {
+  return camera.width == other.width && camera.height == other.height && camera.K().isApprox(other.K(), 1e-4);
+}
+
 MotionProblem ApplyNoise(MotionProblem problem, const CameraNoise& noise, const std::string& origin) {
   problem.sigma_px = noise.sigma_px.value;
   if (std::isfinite(noise.size_exponent.value)) {
@@ -140,7 +152,8 @@ void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, boo
                      MotionEstimate* estimate) {
   if (estimate->status != MotionStatus::kOk) return;
   const KnownVariances known = KnownVariancesOf(noise);
-  if (known.own < 1.0 || is_robust) {
+  // Where no field was found a robust covariance keeps what the pair's own residuals show of one.
+  if (noise.displacement_px.value > 0.0 || (!is_robust && known.own < 1.0)) {
     RobustCovarianceOptions options;
     options.known_variances = known;
     const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(estimate->pose_cov);

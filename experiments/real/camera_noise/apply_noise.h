@@ -11,6 +11,13 @@
 
 namespace rcme {
 
+// ReadCameraNoise for what follows. Throws InputError too where the file removes more of a fault than a
+// camera may have (truth_free/camera_faults.h: GreatestFault).
+CameraNoise ReadNoiseToApply(const std::string& path);
+
+// Whether images are of one size and intrinsics alike to 1e-4.
+bool IsSameCamera(const Camera& camera, const Camera& other);
+
 // The assumed sigma and noise_scale are those of the file; cameras and key points are without the faults that
 // it removes, but for the readout, which goes along a motion (CorrectReadout). Throws InputError that begins
 // with `origin` where the file removes something and the pair is of another camera: intrinsics that differ by
@@ -29,8 +36,9 @@ MotionProblem CorrectReadout(MotionProblem problem, const RelativePose& cam2_fro
 // in place of those that the pair's own residuals tell; C_0 the estimator's own covariance, or with
 // `is_robust` that of the residuals; Sigma the covariance of the faults that are removed and G = -A^-1 sum
 // J_i' D_i how they move the motion, D_i the residual's derivative along them
-// (truth_free/calibration_score.h), A = sum J_i' J_i. As it is where nothing is shared or removed and the
-// covariance is the estimator's own, or there is no motion.
+// (truth_free/calibration_score.h), A = sum J_i' J_i. Where the file holds no displacement field, a robust
+// covariance keeps the variances that the pair's own residuals tell. As it is where nothing is shared or
+// removed, or there is no motion.
 void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, bool is_robust,
                      MotionEstimate* estimate);
 

@@ -35,12 +35,9 @@ PairSet SelectCamera(const PairSet& set) {
   PairSet selected{set.name, {}};
   if (set.pairs.empty()) return selected;
   const Camera camera = set.pairs.front().problem.camera1;
-  const auto is_same = [&](const Camera& other) {
-    return other.width == camera.width && other.height == camera.height &&
-           other.K().isApprox(camera.K(), 1e-4);
-  };
   for (const NamedPair& pair : set.pairs) {
-    if (is_same(pair.problem.camera1) && is_same(pair.problem.camera2)) selected.pairs.push_back(pair);
+    if (IsSameCamera(pair.problem.camera1, camera) && IsSameCamera(pair.problem.camera2, camera))
+      selected.pairs.push_back(pair);
   }
   return selected;
 }
@@ -154,6 +151,29 @@ void TakeNoise(const std::vector<PairAnswers>& answers, NoiseCalibration* calibr
   noise.effective_pairs = shared.own.effective_n;
 }
 
+// NaN where none is said.
+double FindSecondsBetween(const std::vector<PairAnswers>& answers) {
+  std::vector<double> seconds;
+  for (const PairAnswers& each : answers) {
+    if (std::isfinite(each.whole.pair.seconds_between)) seconds.push_back(each.whole.pair.seconds_between);
+  }
+  return ComputeMedian(std::move(seconds));
+}
+
+// Tests the displacement that all images share and, where it is found, answers to the pairs without it.
+void TakeSystematic(const PairSet& set, const MotionEstimator& estimator, std::uint64_t seed,
+                    std::vector<PairAnswers>* answers, NoiseCalibration* calibration) {
+  const MotionProblem& first = set.pairs.front().problem;
+  calibration->systematic = FitSystematicDisplacement(FitPairs(*answers, 0.0), first.camera1, seed);
+  if (!(calibration->systematic.p_value < kSystematicLevel) || calibration->systematic.columns == 0) return;
+  calibration->noise.systematic = calibration->systematic;
+  CameraNoise displacement;  // alone: the faults are removed
+  displacement.systematic = calibration->systematic;
+  displacement.camera = first.camera1;
+  displacement.sigma_px.value = first.sigma_px;
+  *answers = AnswerAll(ApplyNoiseTo(set, displacement, estimator, seed), estimator, seed);
+}
+
 }  // namespace
 
 NoiseCalibration CalibrateNoise(const PairSet& set, const MotionEstimator& estimator,
@@ -172,9 +192,7 @@ NoiseCalibration CalibrateNoise(const PairSet& set, const MotionEstimator& estim
   CameraNoise& noise = calibration.noise;
   noise.estimator = estimator_name;
   noise.camera = of_camera.pairs.front().problem.camera1;
-  std::vector<double> seconds;
-  for (const PairAnswers& each : answers) seconds.push_back(each.whole.pair.seconds_between);
-  noise.seconds_between = ComputeMedian(std::move(seconds));
+  noise.seconds_between = FindSecondsBetween(answers);
   calibration.faults = Calibrate(answers, estimator, seed);
   PairSet corrected = of_camera;
   if (NamesFault(calibration.faults)) {
@@ -182,16 +200,7 @@ NoiseCalibration CalibrateNoise(const PairSet& set, const MotionEstimator& estim
     answers = AnswerAll(corrected, estimator, seed);
   }
   TakeFaults(calibration.faults, answers, &noise);
-  calibration.systematic =
-      FitSystematicDisplacement(FitPairs(answers, 0.0), corrected.pairs.front().problem.camera1, seed);
-  if (calibration.systematic.p_value < kSystematicLevel && calibration.systematic.columns > 0) {
-    noise.systematic = calibration.systematic;
-    CameraNoise displacement;  // alone: the faults are removed
-    displacement.systematic = noise.systematic;
-    displacement.camera = corrected.pairs.front().problem.camera1;
-    displacement.sigma_px.value = of_camera.pairs.front().problem.sigma_px;
-    answers = AnswerAll(ApplyNoiseTo(std::move(corrected), displacement, estimator, seed), estimator, seed);
-  }
+  TakeSystematic(corrected, estimator, seed, &answers, &calibration);
   TakeNoise(answers, &calibration);
   return calibration;
 }

@@ -42,7 +42,7 @@ std::string FieldVerdict(const NoiseCalibration& calibration) {
   if (!calibration.shared.is_found) return "not found";
   const Camera& camera = calibration.noise.camera;
   const bool is_wide = calibration.shared.field.reach_px > 0.5 * std::hypot(camera.width, camera.height);
-  return fmt::format("found, {:.2g} % of the variance{}", 100.0 * calibration.noise.DisplacementShare(),
+  return fmt::format("found, {:.1f} % of the variance{}", 100.0 * calibration.noise.DisplacementShare(),
                      is_wide ? ", image-wide" : "");
 }
 

@@ -12,6 +12,7 @@
 #include "experiments/real/truth_free/pair_set.h"
 #include "experiments/real/truth_free/size_test.h"
 #include "experiments/real/truth_free/truth_free_verdict.h"
+#include "experiments/real/truth_free/twin.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
@@ -47,6 +48,7 @@ struct SetReport {
 struct ValidationOptions {
   std::uint64_t seed = 1;
   int num_twins = 3;  // of each pair
+  TwinField field;    // of the twins' noise
 };
 
 // What is computed of a pair is a step. Pure in the options' seed and the pairs' names. The random numbers of
