@@ -100,8 +100,17 @@ double ComputeReachFactor(const UnitsByReach& units, size_t num_pairs) {
   return std::exp(std::sqrt((n - 1.0) / n * std::max(0.0, squares - sum * sum / n)));
 }
 
+// One-sided test of the mean of score / information^1/2, which has about variance 1 in each unit: pairs of
+// many matches and of a large field weigh as the others do, so that how unlike fields are does not hide them.
 bool IsAbove(const std::vector<UnitScore>& units, double level) {
-  return PoolScoreAlone(units, 0, 1.0 - 2.0 * level).interval.lower > 0.0;
+  std::vector<UnitScore> standardised;
+  for (UnitScore unit : units) {
+    if (!(unit.information(0, 0) > 0.0)) continue;
+    unit.score /= std::sqrt(unit.information(0, 0));
+    unit.information.setOnes();
+    standardised.push_back(std::move(unit));
+  }
+  return !standardised.empty() && PoolScoreAlone(standardised, 0, 1.0 - 2.0 * level).interval.lower > 0.0;
 }
 
 struct PairMoments {
