@@ -128,6 +128,7 @@ A first session:
   AddMatchCommand(app);
   AddPairsCommand(app);
   AddValidateCommand(app);
+  AddCalibrateNoiseCommand(app);
   AddTwinCommand(app);
   AddCheckTruthCommand(app);
   AddPaperTableCommand(app);

@@ -18,6 +18,8 @@ const std::vector<NoiseEntry>& NoiseRegistry() {
        MakeCorrelatedNoise},
       {"duplicated", "normal; some points are matched several times, with errors that are much alike",
        MakeDuplicatedNoise},
+      {"displacement_field", "normal; a share of it is a field of displacements over each image",
+       MakeDisplacementFieldNoise},
       {"quantised", "normal, then rounded to the detector's grid: larger than what sigma_px says",
        MakeQuantisedNoise},
   };

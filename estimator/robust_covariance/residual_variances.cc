@@ -11,14 +11,13 @@ namespace rcme {
 namespace {
 
 constexpr Eigen::Index kNumLengths = 3;
-constexpr double kLongestPx = 270.0;  // the others are a third and a ninth
-constexpr int kOwn = 0, kKeyPoint = 1, kFirstLength = 2, kNumParts = 5;
+constexpr double kLongestPx = kNeighbourLengthsPx.back();  // the others are a third and a ninth
+constexpr int kOwn = 0, kKeyPoint = 1, kFirstLength = 2, kNumParts = kNumVarianceParts;
 constexpr size_t kMostKeyPoints = 1500;
 constexpr double kLeastPairs = 1.0;     // of evidence for a part, in full pairs
 constexpr double kLeastDeviance = 1.0;  // half of what Akaike's criterion asks of a parameter
 
-using Parts = Eigen::Matrix<double, kNumParts, 1>;
-using PartsSquare = Eigen::Matrix<double, kNumParts, kNumParts>;
+using Parts = ResidualMoments::Parts;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 5>;
 using ByLength = Eigen::Matrix<double, Eigen::Dynamic, kNumLengths>;
 
@@ -130,20 +129,13 @@ PairSums VisitPairs(const KeyPoints& points) {
   return pairs;
 }
 
-// The equations of the moments, q = T v with weights M, and what a v of 1 adds to the middle of the sandwich.
-struct Moments {
-  Parts q = Parts::Zero();
-  PartsSquare T = PartsSquare::Zero(), M = PartsSquare::Zero();
-  std::array<Matrix5d, kNumParts> G;  // U' K_b U
-};
-
-Moments ComputeMoments(const KeyPoints& points) {
+ResidualMoments ComputeMoments(const KeyPoints& points) {
   const PairSums pairs = VisitPairs(points);
   const Eigen::ArrayXd m = points.num_matches.array(), is_repeated = (m > 1.0).cast<double>();
   const Eigen::ArrayXd num_pairs = (m * (m - 1.0)).max(1.0);
   const Matrix5d* of_weights[kNumParts] = {&points.within, &points.between};  // U' W_a U
   std::array<Matrix5d, kNumLengths> of_lengths;
-  Moments moments;
+  ResidualMoments moments;
   moments.q(kOwn) = points.mean_squares.sum();
   moments.q(kKeyPoint) =
       (is_repeated * (m.square() * points.residuals.array().square() - m * points.mean_squares.array()) /
@@ -181,7 +173,7 @@ struct Solution {
   Parts v = Parts::Zero();
   double deviance = 0.0;
 };
-Solution SolveMoments(const Moments& moments) {
+Solution SolveMoments(const ResidualMoments& moments) {
   std::vector<int> known;  // parts that the matches say something of
   for (int a = kOwn; a < kNumParts; ++a) {
     if (moments.M(a, a) >= kLeastPairs || a == kOwn) known.push_back(a);
@@ -217,6 +209,15 @@ Matrix5d Nonnegative(const Matrix5d& matrix) {
          eigen.eigenvectors().transpose();
 }
 
+// Fills the shared part of parts v.
+void SetShared(const Parts& v, const ResidualMoments& moments, const Matrix5d& L,
+               ResidualVariances* variances) {
+  Matrix5d middle = Matrix5d::Zero();
+  for (int b = kKeyPoint; b < kNumParts; ++b) middle += v(b) * moments.G[static_cast<size_t>(b)];
+  const Matrix5d half = L.transpose().triangularView<Eigen::Upper>().solve(Nonnegative(middle));
+  variances->shared = L.transpose().triangularView<Eigen::Upper>().solve(half.transpose());
+}
+
 }  // namespace
 
 double ResidualVariances::Sum() const {
@@ -227,19 +228,42 @@ ResidualVariances FitResidualVariances(const MatchScores& scores, std::span<cons
   const Eigen::LLT<Matrix5d> llt(scores.information);
   if (groups.empty() || llt.info() != Eigen::Success) return {};
   const Matrix5d L = llt.matrixL();
-  const Moments moments = ComputeMoments(SelectKeyPoints(scores, groups, L));
+  const ResidualMoments moments = ComputeMoments(SelectKeyPoints(scores, groups, L));
   const Solution solution = SolveMoments(moments);
   ResidualVariances variances;
   variances.own = solution.v(kOwn);
   variances.of_key_point = solution.v(kKeyPoint);
+  for (int b = kFirstLength; b < kNumParts; ++b) variances.of_neighbours.push_back(solution.v(b));
   variances.deviance = solution.deviance;
-  Matrix5d middle = Matrix5d::Zero();
-  for (int b = kKeyPoint; b < kNumParts; ++b) {
-    if (b >= kFirstLength) variances.of_neighbours.push_back(solution.v(b));
-    middle += solution.v(b) * moments.G[static_cast<size_t>(b)];
+  SetShared(solution.v, moments, L, &variances);
+  return variances;
+}
+
+std::optional<ResidualMoments> ComputeResidualMoments(const MatchScores& scores, std::span<const int> groups,
+                                                      double unit_px) {
+  const Eigen::LLT<Matrix5d> llt(scores.information);
+  if (groups.empty() || llt.info() != Eigen::Success) return std::nullopt;
+  MatchScores in_units = scores;  // only distances depend on where points are
+  for (Correspondence& match : in_units.matches) {
+    match.x1_px /= unit_px;
+    match.x2_px /= unit_px;
   }
-  const Matrix5d half = L.transpose().triangularView<Eigen::Upper>().solve(Nonnegative(middle));
-  variances.shared = L.transpose().triangularView<Eigen::Upper>().solve(half.transpose());
+  return ComputeMoments(SelectKeyPoints(in_units, groups, llt.matrixL()));
+}
+
+ResidualVariances TakeResidualVariances(const MatchScores& scores, std::span<const int> groups,
+                                        const KnownVariances& known) {
+  ResidualVariances variances;
+  variances.own = known.own;
+  const std::optional<ResidualMoments> moments =
+      ComputeResidualMoments(scores, groups, known.length_px / kLongestPx);
+  if (!moments) return variances;
+  variances.of_key_point = known.of_key_point;
+  variances.of_neighbours = {known.of_neighbours};
+  Parts v = Parts::Zero();
+  v(kKeyPoint) = known.of_key_point;
+  v(kNumParts - 1) = known.of_neighbours;
+  SetShared(v, *moments, scores.information.llt().matrixL(), &variances);
   return variances;
 }
 

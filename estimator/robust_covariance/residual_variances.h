@@ -26,6 +26,8 @@
 // the parts the best.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,5 +49,32 @@ struct ResidualVariances {
 // do not lower the deviance by more than 1; parts of which there are no two matches are zero. With more than
 // 1,500 key points, 1,500 of them stand for all.
 ResidualVariances FitResidualVariances(const MatchScores& scores, std::span<const int> groups);
+
+inline constexpr double kKeyPointRadiusPx = 1.0;  // within which matches share a key point
+inline constexpr std::array<double, 3> kNeighbourLengthsPx = {30.0, 90.0, 270.0};
+inline constexpr int kNumVarianceParts = 5;  // own, of a key point, of neighbours by length
+
+// The equations of the moments: q = T v with weights M, and what a v of 1 adds to the middle of the sandwich.
+// They are the same of several motions together: sums of q, T and M (camera_noise/shared_variance.h).
+struct ResidualMoments {
+  using Parts = Eigen::Matrix<double, kNumVarianceParts, 1>;
+  using PartsSquare = Eigen::Matrix<double, kNumVarianceParts, kNumVarianceParts>;
+  Parts q = Parts::Zero();
+  PartsSquare T = PartsSquare::Zero(), M = PartsSquare::Zero();
+  std::array<Matrix5d, kNumVarianceParts> G;  // U' K_b U
+};
+// Nothing where the matches do not determine the motion. Lengths are kNeighbourLengthsPx times `unit_px`,
+// that of 1 px.
+std::optional<ResidualMoments> ComputeResidualMoments(const MatchScores& scores, std::span<const int> groups,
+                                                      double unit_px = 1.0);
+
+// Variances that are known beforehand, over sigma^2: one length of neighbours.
+struct KnownVariances {
+  double own = 1.0, of_key_point = 0.0, of_neighbours = 0.0;
+  double length_px = kNeighbourLengthsPx.back();
+};
+// The same as of a fit, of these variances in place of the residuals' own.
+ResidualVariances TakeResidualVariances(const MatchScores& scores, std::span<const int> groups,
+                                        const KnownVariances& known);
 
 }  // namespace rcme

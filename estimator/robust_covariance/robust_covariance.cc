@@ -15,7 +15,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kKeyPointRadiusPx = 1.0;
 constexpr int kBlocksPerSide = 8, kJackknifeBlocksPerSide = 4;
 constexpr double kLeastEffect =
     1.25;  // of blocks; where there is none, the sandwich of blocks is 1.13 too large
@@ -104,8 +103,10 @@ std::optional<Matrix5d> RobustCovariance(const MotionProblem& problem, const Rel
   const MatchScores scores = ScoreFitted(problem, fit.fitted, at);
   const std::optional<Matrix5d> of_scores = IndependentCovariance(scores);
   if (!of_scores) return std::nullopt;
+  const std::vector<int> key_points = KeyPointGroups(scores.matches, kKeyPointRadiusPx);
   const ResidualVariances variances =
-      FitResidualVariances(scores, KeyPointGroups(scores.matches, kKeyPointRadiusPx));
+      options.known_variances ? TakeResidualVariances(scores, key_points, *options.known_variances)
+                              : FitResidualVariances(scores, key_points);
   const double own_share = variances.own / variances.Sum();
   Matrix5d covariance = own_share * own_cov.value_or(*of_scores) + variances.shared;
   const auto of_blocks = [&](int per_side) {

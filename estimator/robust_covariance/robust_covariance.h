@@ -35,6 +35,9 @@ struct RobustCovarianceOptions {
   // Adds the sandwich of 4x4 blocks, a delete-one-block jackknife to first order: conservative.
   bool adds_jackknife = false;
   CalibrationPrior calibration;
+  // Variances that are known of the camera, in place of those that the pair's own residuals tell; none of
+  // Parameters.
+  std::optional<KnownVariances> known_variances;
 };
 // covariance_factor and covariance_jackknife.
 std::vector<Parameter> Parameters(RobustCovarianceOptions& options);

@@ -44,6 +44,7 @@ void AddSurfaceCommand(CLI::App& app);
 void AddWorstCommand(CLI::App& app);
 void AddModelChoiceCommand(CLI::App& app);
 void AddValidateCommand(CLI::App& app);
+void AddCalibrateNoiseCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);
 void AddListCommand(CLI::App& app);
 // Of all commands that were added before.

@@ -22,10 +22,12 @@
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
 #include "experiments/real/answer/answer_report.h"
+#include "experiments/real/camera_noise/apply_noise.h"
 #include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -38,6 +40,7 @@ struct EstimateArguments {
   std::vector<std::string> intrinsics, cameras;
   EstimatorChoice estimator;
   double sigma_px = 0.5;
+  std::string noise;  // empty: no noise file
   std::int64_t seed = 1;
   std::vector<std::string> bounds;
   std::optional<double> integrity_risk;  // nothing: no protection levels are asked for
@@ -117,28 +120,37 @@ class Answerer {
         spec_(ChosenEstimator(arguments.estimator)),
         estimator_(Make(spec_)) {
     CheckProcessEstimators({spec_});
+    if (!arguments.noise.empty()) noise_ = ReadNoiseToApply(arguments.noise);
   }
 
   AnswerTerms terms() const { return {spec_, bounds_, arguments_.integrity_risk}; }
   const MotionEstimator& estimator() const { return *estimator_; }
 
   // Throws InputError (match_file.h). `doubts`: about the file's cameras.
-  TrialData Read(const std::string& path, std::vector<CameraDoubt>* doubts) const {
+  TrialData Read(const std::string& path, std::vector<CameraDoubt>* doubts, double* seconds_between) const {
     const bool is_input = path == kStandardInput;
     MatchFile file = is_input ? ReadMatchesFromInput(given_) : ReadMatchFile(path, given_);
     *doubts = file.doubts;
+    *seconds_between = file.seconds_between;
     TrialData data;
     data.origin = file.path;
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.sd = file.truth_sd;
     data.problem = MakeMotionProblem(std::move(file), arguments_.sigma_px);
+    if (noise_) data.problem = ApplyNoise(std::move(data.problem), *noise_, data.origin);
     return data;
   }
 
-  PairAnswer Answer(const TrialData& data) const {
+  PairAnswer Answer(const TrialData& given, double seconds_between) const {
     PairAnswer answer;
-    EstimateForBounds found =
-        AnswerProblem(*estimator_, data.problem, bounds_, static_cast<std::uint64_t>(arguments_.seed));
+    TrialData data = given;
+    EstimateForBounds found = Ask(data.problem);
+    if (noise_ && RemovesReadout(*noise_) && found.estimate.status == MotionStatus::kOk) {
+      data.problem =
+          CorrectReadout(std::move(data.problem), found.estimate.cam2_from_cam1, *noise_, seconds_between);
+      found = Ask(data.problem);
+    }
+    if (noise_) WidenCovariance(data.problem, *noise_, HasRobustCovariance(spec_), &found.estimate);
     answer.estimate = std::move(found.estimate);
     answer.for_bounds = std::move(found.probabilities);
     answer.record = Score(answer.estimate, data, 0.0);
@@ -152,11 +164,16 @@ class Answerer {
   }
 
  private:
+  EstimateForBounds Ask(const MotionProblem& problem) const {
+    return AnswerProblem(*estimator_, problem, bounds_, static_cast<std::uint64_t>(arguments_.seed));
+  }
+
   const EstimateArguments& arguments_;
   GivenCameras given_;
   std::vector<FailureBounds> bounds_;
   EstimatorSpec spec_;
   std::unique_ptr<MotionEstimator> estimator_;
+  std::optional<CameraNoise> noise_;
 };
 
 // The tests of the motion are off as printed. A person should know what they would have said.
@@ -180,7 +197,9 @@ void PrintCaution(const LoopInspection& inspection, const MotionProblem& problem
 FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
   FileAnswer file{.path = path};
   try {
-    file.answer = answerer.Answer(answerer.Read(path, &file.doubts));
+    double seconds_between = kNaN;
+    const TrialData data = answerer.Read(path, &file.doubts, &seconds_between);
+    file.answer = answerer.Answer(data, seconds_between);
   } catch (const InputError& error) {
     file.error = error.what();
   }
@@ -197,11 +216,12 @@ void PrintJsonLine(const FileAnswer& file, const AnswerTerms& terms) {
 
 void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, const std::string& path) {
   FileAnswer file{.path = path};
-  const TrialData data = answerer.Read(path, &file.doubts);
+  double seconds_between = kNaN;
+  const TrialData data = answerer.Read(path, &file.doubts, &seconds_between);
   CameraWarnings warnings;
   warnings.Add(file.doubts);
   warnings.Print();
-  file.answer = answerer.Answer(data);
+  file.answer = answerer.Answer(data, seconds_between);
   const AnswerTerms terms = answerer.terms();
   if (arguments.format == kJsonLines) {
     PrintJsonLine(file, terms);
@@ -297,6 +317,7 @@ Examples:
   rcme estimate pairs/                                  a line per file
   rcme estimate pairs/ --format jsonl                   a line of JSON per file
   rcme estimate matches.csv.gz --bounds 1,5 --bounds 5,20
+  rcme estimate pairs/ --noise noise.yaml               of rcme calibrate-noise
   rcme estimate bare.txt --K 800,800,319.5,239.5        four columns, no header
   rcme estimate raw.txt --camera OPENCV,458.7,457.3,367.2,248.4,-.283,.074,.0002,.00002
   some_matcher a.jpg b.jpg | rcme estimate - --K 800,800,319.5,239.5
@@ -329,6 +350,11 @@ matches, all matches on a line).)");
   command->add_option("--sigma", arguments->sigma_px, "standard deviation of the noise per coordinate, px")
       ->transform(NumberIn({1e-9, 1000.0}))
       ->capture_default_str();
+  command
+      ->add_option("--noise", arguments->noise,
+                   "a file of `rcme calibrate-noise`: its sigma in place of --sigma, its corrections of the "
+                   "camera, and covariances for what it says is shared")
+      ->excludes("--sigma");
   command->add_option("--seed", arguments->seed, "seed of the random samples")
       ->transform(WholeNumberIn(0))
       ->capture_default_str();

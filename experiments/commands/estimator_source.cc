@@ -79,4 +79,8 @@ EstimatorSpec FindOnlyEstimator(const Study& study, const std::string& command, 
   return study.estimators.front();
 }
 
+bool HasRobustCovariance(const EstimatorSpec& spec) {
+  return std::ranges::count(spec.options, Settings::value_type("covariance", "robust")) > 0;
+}
+
 }  // namespace rcme

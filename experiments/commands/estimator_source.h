@@ -33,4 +33,7 @@ EstimatorSpec FindStudyEstimator(const Study& study, const std::string& name, bo
 EstimatorSpec FindOnlyEstimator(const Study& study, const std::string& command, const std::string& name,
                                 bool allow_process);
 
+// Whether its options ask for `covariance: robust`.
+bool HasRobustCovariance(const EstimatorSpec& spec);
+
 }  // namespace rcme

@@ -15,6 +15,7 @@
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/simulated_sequence.h"
+#include "experiments/real/camera_noise/apply_noise.h"
 #include "experiments/real/truth_free/advice.h"
 #include "experiments/real/truth_free/closure_output.h"
 #include "experiments/real/truth_free/kept_answers.h"
@@ -36,6 +37,7 @@ struct ValidateArguments {
   std::vector<std::string> data;  // key=value each, of a study
   std::string scene;              // empty: all
   double sigma_px = 0.5;
+  std::string noise;  // empty: no noise file
   std::int64_t seed = 1;
   int num_twins = 3, trials = 0;
   int num_images = 2;                // of each trial of a study
@@ -76,12 +78,14 @@ std::vector<PairSet> ReadAllSets(const ValidateArguments& arguments) {
 }
 
 // The chosen estimator, with what is planted in its covariances.
-AdvisedEstimator ChooseAdvised(const EstimatorSpec& spec, const PlantedFaults& planted) {
+AdvisedEstimator ChooseAdvised(const EstimatorSpec& spec, const PlantedFaults& planted,
+                               const std::optional<CameraNoise>& noise) {
   AdvisedEstimator advised;
-  advised.make = [spec, factor = planted.covariance](const Settings& options) {
+  advised.make = [spec, noise, factor = planted.covariance](const Settings& options) {
     EstimatorSpec changed = spec;
     SetOptions(&changed, options);
     std::unique_ptr<MotionEstimator> estimator = Make(changed);
+    if (noise) estimator = WithSharedNoise(std::move(estimator), *noise, HasRobustCovariance(changed));
     return factor == 1.0 ? std::move(estimator) : ScaleCovariances(std::move(estimator), factor);
   };
   for (const auto& [option, value] : spec.options) {
@@ -106,10 +110,12 @@ std::vector<PairSet> ChooseSets(const ValidateArguments& arguments, const Plante
 }
 
 WorkPlan PlanValidationSteps(const ValidateArguments& arguments, const EstimatorSpec& spec,
-                             const PlantedFaults& planted, const std::vector<PairSet>& sets) {
+                             const PlantedFaults& planted, const std::optional<CameraNoise>& noise,
+                             const std::vector<PairSet>& sets) {
   std::string identity = fmt::format("seed: {}\ntwins: {}\nadvice: {}\ncovariances times: {}\n{}",
                                      arguments.seed, arguments.num_twins, !arguments.tests_alone,
                                      planted.covariance, EstimatorFileText(spec, {}));
+  if (noise) identity += CameraNoiseAsYaml(*noise);
   for (const PairSet& set : sets) identity += DescribePairs(set) + "\n";
   return {"validation", "step", identity, {}, true};
 }
@@ -127,19 +133,28 @@ void RunValidate(const ValidateArguments& arguments) {
   const PlantedFaults planted = ParsePlantedFaults(arguments.planted);
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   CheckProcessEstimators({spec});
-  const AdvisedEstimator estimator = ChooseAdvised(spec, planted);
-  const std::vector<PairSet> sets = ChooseSets(arguments, planted);
+  std::optional<CameraNoise> noise;
+  if (!arguments.noise.empty()) noise = ReadNoiseToApply(arguments.noise);
+  const AdvisedEstimator estimator = ChooseAdvised(spec, planted, noise);
+  std::vector<PairSet> sets = ChooseSets(arguments, planted);
+  if (noise) {
+    const auto own = Make(spec);
+    for (PairSet& set : sets)
+      set = ApplyNoiseTo(std::move(set), *noise, *own, static_cast<std::uint64_t>(arguments.seed));
+  }
   std::optional<Runner> runner;
   std::optional<KeptSteps> kept;
   if (!arguments.out.empty()) {
     MakeResultFolder(arguments.out);
-    runner = MakeRunner(PlanValidationSteps(arguments, spec, planted, sets),
+    runner = MakeRunner(PlanValidationSteps(arguments, spec, planted, noise, sets),
                         FindCheckpointInFolder(arguments.out), 1);
     kept.emplace(&*runner);
   }
   KeptSteps* steps = kept ? &*kept : nullptr;
-  const ValidationOptions options = {static_cast<std::uint64_t>(arguments.seed), arguments.num_twins,
-                                     static_cast<size_t>(arguments.longest_loop)};
+  const ValidationOptions options = {
+      static_cast<std::uint64_t>(arguments.seed), arguments.num_twins,
+      static_cast<size_t>(arguments.longest_loop),
+      noise ? TwinField{noise->DisplacementShare(), noise->reach_px} : TwinField{}};
   std::vector<SetReport> reports;
   for (const PairSet& set : sets)
     reports.push_back(arguments.tests_alone ? Validate(set, *estimator.make({}), options, steps)
@@ -212,6 +227,11 @@ Examples:
                    "standard deviation of the noise, for pairs of a folder, px")
       ->transform(NumberIn({1e-9, 1000.0}))
       ->capture_default_str();
+  command
+      ->add_option("--noise", arguments->noise,
+                   "a file of `rcme calibrate-noise`: its sigma in place of --sigma, its corrections of the "
+                   "camera, and covariances for what it says is shared")
+      ->excludes("--sigma");
   command->add_option("--data", arguments->data, "key=value, repeatable: a setting of the study's data block")
       ->allow_extra_args(false);
   command->add_option("--trials", arguments->trials, "trials per condition of a study; default: the study's")

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "experiments/data/calibration_file.h"
+#include "experiments/data/camera_noise.h"
 #include "experiments/data/match_folder.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -107,7 +108,7 @@ struct Configured {
   bool has_doubts = false;                   // the settings name a list of pairs in doubt
 
   explicit Configured(const Settings& given) {
-    const Settings settings = WithCalibration(given);
+    const Settings settings = WithNoiseFile(WithCalibration(given));
     const Choices choices = ChoicesIn(settings);
     has_doubts = std::ranges::count(settings, kTruthInDoubtKey, &Settings::value_type::first) > 0;
     if (choices.scene != kMatchFilesScene) {
@@ -149,6 +150,7 @@ std::string ChoicesWith(const std::string& key) {
   AddChoicesWith(key, "noise", NoiseRegistry(), &choices);
   AddChoicesWith(key, "outliers", OutlierRegistry(), &choices);
   if (key == kCalibrationKey) choices.push_back(fmt::format("cameras: {}", kCamerasFromFile));
+  if (key == kNoiseFileKey) choices.push_back(fmt::format("noise: {}", kNoiseFromFile));
   if (key == "folder" || key == kTruthInDoubtKey)
     choices.push_back(fmt::format("scene: {}", kMatchFilesScene));
   return choices.empty() ? "" : fmt::format(" (needs {})", fmt::join(choices, ", or "));

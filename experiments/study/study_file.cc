@@ -9,6 +9,7 @@
 #include "estimator/estimator_registry.h"
 #include "experiments/core/files/shared_files.h"
 #include "experiments/data/calibration_file.h"
+#include "experiments/data/camera_noise.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
@@ -225,7 +226,7 @@ void FollowFailureBounds(const YAML::Node& entries, Study* study) {
 }
 
 // The settings whose values are paths.
-constexpr const char* kPathKeys[] = {"folder", kCalibrationKey, kTruthInDoubtKey};
+constexpr const char* kPathKeys[] = {"folder", kCalibrationKey, kNoiseFileKey, kTruthInDoubtKey};
 
 // A path in a study is seen from the study's folder.
 std::string SeenFrom(const std::filesystem::path& folder, const std::string& path) {
@@ -287,7 +288,8 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
   if (!root["data"] && !root["conditions"]) place.Fail(root, "study: key 'data' is missing");
   if (study.estimators.empty()) place.Fail(root, "study: key 'estimators' is missing");
   SeePathsFrom(folder, &study);
-  place.At(root["data"] ? root["data"] : root, [&] { study.data = WithCalibration(study.data); });
+  place.At(root["data"] ? root["data"] : root,
+           [&] { study.data = WithNoiseFile(WithCalibration(study.data)); });
   FollowFailureBounds(root["estimators"], &study);
   SettleData(place, root, &study);
   if (root["hypotheses"])

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "experiments/data/calibration_file.h"
+#include "experiments/data/camera_noise.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/study_file.h"
@@ -165,11 +166,16 @@ namespace {
 StudyPlan BeginPlan(const Study& given, PlanEstimators estimators) {
   if (estimators == PlanEstimators::kMade) RequireAllowedCommands(given.estimators);
   Study study = given;
-  study.data = WithCalibration(given.data);
+  study.data = WithNoiseFile(WithCalibration(given.data));
   if (std::ranges::count(study.factors, kCalibrationKey, &Factor::key) > 0) {
     throw InputError(fmt::format("factors: {} cannot vary; give the intrinsics of own_intrinsics as factors",
                                  kCalibrationKey));
   }
+  if (std::ranges::count(study.factors, kNoiseFileKey, &Factor::key) > 0)
+    throw InputError(
+        fmt::format("factors: {} cannot vary; give sigma_px, displacement_share and "
+                    "displacement_reach_px of displacement_field as factors",
+                    kNoiseFileKey));
   if (study.common_scenes &&
       std::ranges::count(study.data, Settings::value_type("scene", kMatchFilesScene)) > 0) {
     throw InputError("common_scenes: pairs of match files have no scenes to share; leave it out");

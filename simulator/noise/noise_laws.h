@@ -24,6 +24,8 @@ std::unique_ptr<NoiseModel> MakeContaminatedNoise();
 // found several times.
 std::unique_ptr<NoiseModel> MakeCorrelatedNoise();
 std::unique_ptr<NoiseModel> MakeDuplicatedNoise();
+// Normal, of which a share is a smooth field of displacements over each image.
+std::unique_ptr<NoiseModel> MakeDisplacementFieldNoise();
 
 // Normal, then rounded to the detector's grid.
 std::unique_ptr<NoiseModel> MakeQuantisedNoise();

@@ -46,6 +46,7 @@ SHORTER = [
      r"rcme \1 studies/tune_acceptance.yaml --set outlier_ratio=0.1"),
     (r"^rcme tune (\S+)", r"rcme tune \1 --set scene=room"),
     (r"\bSTUDY\b", "studies/failure_vs_outliers.yaml"),
+    (r"\bPAIRS (.*noise\.yaml)", r"one_camera \1"),
     (r"\bPAIRS\b", "pairs"),
     (r"\bpairs/sift pairs/orb\b", "pairs"),
     (r"^rcme run (?!.*--(until|trials) )(?!first.yaml|locked.yaml|regression_gate)(.*)$", r"rcme run \2 --trials 2"),

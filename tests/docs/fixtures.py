@@ -22,6 +22,14 @@ def make_pairs(folder, program):
     (folder / "matches.csv.gz").write_bytes(gzip.compress(files[0].read_bytes()))
 
 
+def make_pairs_of_one_camera(folder, program):
+    """Eight trials of one condition."""
+    problems = folder / "exported_of_one_camera"
+    subprocess.run([program, "export", "studies/failure_vs_outliers.yaml", "--trials", "8", "--set", "outlier_ratio=0.1",
+                    "--out", problems], cwd=folder, check=True, capture_output=True)
+    (folder / "one_camera").symlink_to(problems / "matches")
+
+
 SIZE, K, POINTS = (640, 480), (535.4, 539.2, 320.1, 247.6), 2500
 CENTERS = [(0.0, 0.0, 0.0), (0.22, 0.01, 0.03), (0.44, -0.02, 0.06)]
 
@@ -117,6 +125,8 @@ def make_fixtures(folder, program, commands):
     folder, text = pathlib.Path(folder), "\n".join(commands)
     if re.search(r"\bmatches\.csv\.gz\b|\bpairs\b", text):
         make_pairs(folder, program)
+    if "one_camera" in text:
+        make_pairs_of_one_camera(folder, program)
     if "left.png" in text:
         make_images(folder)
     if "rcme pairs" in text:

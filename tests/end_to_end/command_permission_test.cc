@@ -113,6 +113,7 @@ TEST_F(CommandPermission, OfAnEstimatorFile) {
   for (const Arguments& arguments : std::vector<Arguments>{{"estimate", matches},
                                                            {"check-estimator"},
                                                            {"validate", folder_.path()},
+                                                           {"calibrate-noise", folder_.path()},
                                                            {"check-truth", folder_.path()},
                                                            {"twin", folder_.path(), "--out", out_}}) {
     Arguments with_file = arguments;

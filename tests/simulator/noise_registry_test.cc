@@ -12,7 +12,9 @@ namespace {
 
 // Its errors are correlated on purpose: noise/dependent_noise_test.cc has its tests of sigma and
 // independence.
-bool IsCorrelated(const NoiseEntry& entry) { return entry.name == "correlated"; }
+bool IsCorrelated(const NoiseEntry& entry) {
+  return entry.name == "correlated" || entry.name == "displacement_field";
+}
 
 class NoiseContract : public testing::TestWithParam<NoiseEntry> {};
 

@@ -29,6 +29,7 @@ inline constexpr const char* kMarginalsFormat = "rcme marginals 1";
 inline constexpr const char* kMatchFormat = "rcme match 1";
 inline constexpr const char* kMergeFormat = "rcme merge 1";
 inline constexpr const char* kModelChoiceFormat = "rcme model choice 2";
+inline constexpr const char* kNoiseCalibrationFormat = "rcme noise calibration 1";
 inline constexpr const char* kPairsFormat = "rcme pairs 1";
 inline constexpr const char* kPaperTableFormat = "rcme paper table 1";
 inline constexpr const char* kRareFormat = "rcme rare 2";

@@ -1,10 +1,12 @@
 #include "experiments/real/truth_free/twin.h"
 
 #include <cmath>
+#include <optional>
 
 #include "estimator/geometry/sampson.h"
 #include "estimator/noise_scale.h"
 #include "experiments/data/data_source.h"
+#include "simulator/noise/displacement_field.h"
 #include "stats/fnv1a.h"
 #include "stats/median_ratio.h"
 
@@ -20,6 +22,28 @@ std::uint64_t HashKeyPoint(const std::string& image, const Eigen::Vector2d& x_px
   for (const double x : x_px) hash.Add(x);
   return ((hash.value() ^ hash.value() >> 32) * 0x9e3779b97f4a7c15) >> 16;
 }
+
+// The field of one image of a twin, or none.
+class FieldOfImage {
+ public:
+  FieldOfImage(const TwinField& field, double sigma_px, const std::string& image, std::uint64_t seed,
+               std::uint32_t twin)
+      : sigma_px_(sigma_px), share_(field.share) {
+    if (share_ == 0.0) return;
+    RandomStream rng = StreamFor({seed, HashToStreamKey(image), twin, 0}, StreamPurpose::kNoise);
+    field_.emplace(field.reach_px, rng);
+  }
+
+  // The key point's own noise, of variance (scale sigma)^2, with the field in place of a share of it.
+  Eigen::Vector2d Mix(const Eigen::Vector2d& own, const Eigen::Vector2d& x_px, double scale) const {
+    if (!field_) return own;
+    return std::sqrt(1.0 - share_) * own + std::sqrt(share_) * scale * sigma_px_ * field_->At(x_px);
+  }
+
+ private:
+  double sigma_px_, share_;
+  std::optional<DisplacementField> field_;
+};
 
 }  // namespace
 
@@ -48,7 +72,7 @@ double EstimateNoise(const MotionProblem& problem, const MotionEstimate& estimat
 }
 
 NamedPair MakeTwin(const NamedPair& pair, const MotionEstimate& estimate, std::uint64_t seed,
-                   std::uint32_t twin) {
+                   std::uint32_t twin, const TwinField& field) {
   const Eigen::Matrix3d F = ComputeFundamental(pair.problem, estimate.cam2_from_cam1);
   const double sigma_px = EstimateNoise(pair.problem, estimate);
   const auto noise_of = [&](const std::string& image, const Eigen::Vector2d& x_px, double scale) {
@@ -58,14 +82,15 @@ NamedPair MakeTwin(const NamedPair& pair, const MotionEstimate& estimate, std::u
   };
   const std::string image1 = pair.image1.empty() ? pair.name + "/1" : pair.image1;
   const std::string image2 = pair.image2.empty() ? pair.name + "/2" : pair.image2;
+  const FieldOfImage field1(field, sigma_px, image1, seed, twin), field2(field, sigma_px, image2, seed, twin);
   NamedPair made = pair;
   for (const int i : estimate.inliers) {
     Correspondence& match = made.problem.matches[static_cast<size_t>(i)];
     const Correspondence observed = match;
     const double scale = NoiseScaleAt(pair.problem, static_cast<size_t>(i));
     match = Snapped(F, match);
-    match.x1_px += noise_of(image1, observed.x1_px, scale);
-    match.x2_px += noise_of(image2, observed.x2_px, scale);
+    match.x1_px += field1.Mix(noise_of(image1, observed.x1_px, scale), observed.x1_px, scale);
+    match.x2_px += field2.Mix(noise_of(image2, observed.x2_px, scale), observed.x2_px, scale);
   }
   return made;
 }

@@ -67,7 +67,7 @@ PairResults ComputePairResults(const NamedPair& pair, const MotionEstimator& est
     const auto number = static_cast<std::uint32_t>(k);
     name.trial = number * kCallsOfPair;
     results.answers.twins.push_back(
-        Ask(MakeTwin(pair, whole.estimate, options.seed, number), estimator, name));
+        Ask(MakeTwin(pair, whole.estimate, options.seed, number, options.field), estimator, name));
     const Answered& twin = results.answers.twins.back();
     if (!twin.IsOk()) continue;
     AddHalves(twin, estimator, name, &results.spatial.null, &results.random.null);
@@ -101,8 +101,8 @@ PairResults ResultsFrom(const std::string& text, const NamedPair& pair, const Va
   RequireSize(json[1], whole.IsOk() ? static_cast<size_t>(options.num_twins) : 0);
   for (const Json& answer : json[1]) {
     const auto number = static_cast<std::uint32_t>(results.answers.twins.size()) + 1;
-    results.answers.twins.push_back(
-        {MakeTwin(pair, whole.estimate, options.seed, number), AnswerFrom(answer, num_matches)});
+    results.answers.twins.push_back({MakeTwin(pair, whole.estimate, options.seed, number, options.field),
+                                     AnswerFrom(answer, num_matches)});
   }
   results.spatial = {NumbersFrom(json[2]), NumbersFrom(json[3])};
   results.random = {NumbersFrom(json[4]), NumbersFrom(json[5])};

@@ -218,5 +218,26 @@ TEST(ResidualVariances, WithoutMatchesOrInformationAllIsOwn) {
   EXPECT_EQ(variances.shared.norm(), 0.0);
 }
 
+// Known variances at a length of their own: A^-1 J' (v_1 K_1 + v_l K_l) J A^-1 with whole matrices.
+TEST(TakeResidualVariances, IsTheSandwichWrittenOut) {
+  for (const double length_px : {50.0, 270.0, 700.0}) {
+    const DrawnResiduals sample = DrawSample(true, 1.0, 0.0, 0.0, 5);
+    const std::vector<size_t> first = FirstOfEach(sample.groups);
+    Eigen::MatrixXd J(kNumMatches, 5), K(kNumMatches, kNumMatches);
+    for (Eigen::Index i = 0; i < kNumMatches; ++i) {
+      J.row(i) = sample.scores.rows[static_cast<size_t>(i)].transpose();
+      for (Eigen::Index j = 0; j < kNumMatches; ++j) {
+        const size_t a = first[static_cast<size_t>(i)], b = first[static_cast<size_t>(j)];
+        K(i, j) = 0.3 * (a == b) + 0.2 * (a == b ? 1.0 : ComputeCorrelation(sample, a, b, length_px));
+      }
+    }
+    const Matrix5d expected = Propagate(Inverse(sample.scores.information), Propagate(J.transpose(), K));
+    const ResidualVariances taken =
+        TakeResidualVariances(sample.scores, sample.groups, {0.5, 0.3, 0.2, length_px});
+    EXPECT_LT((taken.shared - expected).norm(), 1e-8 * expected.norm()) << length_px;
+    EXPECT_NEAR(taken.Sum(), 1.0, 1e-12);
+  }
+}
+
 }  // namespace
 }  // namespace rcme

@@ -98,6 +98,40 @@ TEST(CorrelatedNoise, WithoutCorrelationNeighboursAreIndependent) {
   EXPECT_LT(std::abs(ZAgainst(Variogram(*law, 0.5), 1.0)), kNoiseZ);
 }
 
+// Half the squared difference of the errors of two points is sigma^2 (1 - share exp(-d / reach)), that of one
+// point squared is sigma^2. One pair of points a trial, since all points of one share its waves: z-tests at
+// 1e-4, 16,000 squares each; a reach that is two thirds, or a share of 0.5 instead of 0.6, is seen.
+TEST(DisplacementFieldNoise, HasTheStatedVariogram) {
+  const auto law =
+      WithSettings(MakeDisplacementFieldNoise(),
+                   {{"sigma_px", "0.5"}, {"displacement_share", "0.6"}, {"displacement_reach_px", "40"}});
+  const auto stated = [](double d, double share, double reach_px) {
+    return 0.25 * (1.0 - share * std::exp(-d / reach_px));
+  };
+  Moments variance;
+  for (const double d : {2.0, 20.0, 60.0}) {
+    Moments half_squares;
+    for (std::uint32_t trial = 0; trial < 4000; ++trial) {
+      RandomStream rng({.seed = 2, .trial = trial, .purpose = 71});
+      const double angle = 2.0 * std::numbers::pi * rng.Uniform();
+      const Eigen::Vector2d at(200.0, 150.0),
+          other = at + d * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      std::vector<Correspondence> moved = {{at, at}, {other, other}};
+      law->AddTo(moved, rng);
+      const Eigen::Vector2d e1 = moved[0].x1_px - at, e2 = moved[0].x2_px - at;
+      const Eigen::Vector2d of1 = e1 - (moved[1].x1_px - other), of2 = e2 - (moved[1].x2_px - other);
+      variance.Add(0.25 * (e1.squaredNorm() + e2.squaredNorm()));
+      half_squares.Add(0.125 * (of1.squaredNorm() + of2.squaredNorm()));
+    }
+    EXPECT_LT(std::abs(ZAgainst(half_squares, stated(d, 0.6, 40.0))), kNoiseZ) << d;
+    if (d == 20.0) {
+      EXPECT_GT(std::abs(ZAgainst(half_squares, stated(d, 0.6, 27.0))), kNoiseZ) << "no power";
+      EXPECT_GT(std::abs(ZAgainst(half_squares, stated(d, 0.5, 40.0))), kNoiseZ) << "no power";
+    }
+  }
+  EXPECT_LT(std::abs(ZAgainst(variance, 0.25)), kNoiseZ);
+}
+
 // Of 2,000 matches 30 % are of a point that another is of (binomial, z-test at 1e-4). The errors of matches
 // of one point have the stated correlation: half the mean squared difference is sigma^2 (1 - rho).
 TEST(DuplicatedNoise, RepeatsPointsWithErrorsAlike) {

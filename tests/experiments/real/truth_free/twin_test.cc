@@ -215,6 +215,47 @@ TEST(MakeTwin, DrawsNoiseOfTheMatchsScale) {
   for (const double mean : sums) EXPECT_NEAR(mean, 1.0, 3.89 * std::sqrt(2.0 / 300.0));
 }
 
+// Of 2,000 twins, in image 1: half the squared difference of the errors of two key points 20 px apart, over
+// sigma^2, is 1 - share exp(-20 px / reach), and an error has the variance sigma^2 (z-tests at 1e-4 by the
+// sample's own scatter). A second pair of the same image has its field too.
+TEST(MakeTwin, DrawsTheFieldOfItsImages) {
+  RelativePose pose;
+  NamedPair pair{"pair", "a", "b", TwoCameraProblem(10, 0.5, 0.0, 1, &pose)};
+  pair.problem.matches[1] = pair.problem.matches[0];
+  pair.problem.matches[1].x1_px.x() += 20.0;
+  pair.problem.matches[1].x2_px.x() += 20.0;
+  MotionEstimate estimate;
+  estimate.status = MotionStatus::kOk;
+  estimate.cam2_from_cam1 = pose;
+  estimate.sigma_estimated_px = 0.2;
+  estimate.inliers = {0, 1};
+  const Eigen::Matrix3d F = ComputeFundamental(pair.problem, pose);
+  const auto error = [&](const NamedPair& twin, size_t i) {
+    return Eigen::Vector2d((twin.problem.matches[i].x1_px - Snapped(F, pair.problem.matches[i]).x1_px) / 0.2);
+  };
+  const TwinField field = {0.6, 40.0};
+  const double expected = 1.0 - 0.6 * std::exp(-20.0 / 40.0);
+  Eigen::Array2d sums = Eigen::Array2d::Zero(), squares = Eigen::Array2d::Zero();
+  constexpr int kTwins = 2000;
+  for (std::uint32_t twin = 1; twin <= kTwins; ++twin) {
+    const NamedPair made = MakeTwin(pair, estimate, 1, twin, field);
+    const Eigen::Vector2d e0 = error(made, 0), e1 = error(made, 1);
+    const Eigen::Array2d values(0.5 * e0.squaredNorm(), 0.25 * (e0 - e1).squaredNorm());
+    sums += values;
+    squares += values.square();
+  }
+  const Eigen::Array2d mean = sums / kTwins, se = ((squares / kTwins - mean.square()) / kTwins).sqrt();
+  EXPECT_LT(std::abs(mean(0) - 1.0), 3.89 * se(0)) << mean(0);
+  EXPECT_LT(std::abs(mean(1) - expected), 3.89 * se(1)) << mean(1) << " " << expected;
+  NamedPair second = pair;
+  second.name = "second";
+  const NamedPair made = MakeTwin(pair, estimate, 1, 1, field),
+                  again = MakeTwin(second, estimate, 1, 1, field);
+  EXPECT_EQ(made.problem.matches[0].x1_px, again.problem.matches[0].x1_px);
+  second.image1 = "c";
+  EXPECT_NE(MakeTwin(second, estimate, 1, 1, field).problem.matches[0].x1_px, made.problem.matches[0].x1_px);
+}
+
 // Pairs of a simulated study as a source of twins.
 TwinSource MakeTwinSource(const Settings& more, int num_pairs, const MotionEstimator& estimator) {
   Settings data = {{"scene", "image_clusters"}, {"num_matches", "300"},  {"outlier_ratio", "0.25"},

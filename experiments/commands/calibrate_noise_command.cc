@@ -1,0 +1,101 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "experiments/commands/commands.h"
+#include "experiments/commands/estimator_source.h"
+#include "experiments/commands/format_option.h"
+#include "experiments/commands/number_option.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/work/stop_request.h"
+#include "experiments/real/camera_noise/calibrate_noise_output.h"
+#include "experiments/study/estimator_spec.h"
+#include "parameters/input_error.h"
+
+namespace rcme {
+namespace {
+
+struct CalibrateNoiseArguments {
+  std::string pairs, out, scene, format = "table";
+  EstimatorChoice estimator;
+  double sigma_px = 0.5;
+  std::int64_t seed = 1;
+};
+
+// The pairs of all scenes of a folder, or of one.
+PairSet ReadPairsOfCamera(const CalibrateNoiseArguments& arguments) {
+  PairSet all{arguments.scene, {}};
+  std::string names;
+  for (PairSet& set : PairSetsOfFolder(arguments.pairs, arguments.sigma_px)) {
+    names += (names.empty() ? "" : ", ") + set.name;
+    if (!arguments.scene.empty() && set.name != arguments.scene) continue;
+    std::ranges::move(set.pairs, std::back_inserter(all.pairs));
+  }
+  if (all.pairs.empty())
+    throw InputError(fmt::format("--scene: there is no scene '{}'; give one of: {}", arguments.scene, names));
+  if (all.name.empty()) all.name = names;
+  return all;
+}
+
+void RunCalibrateNoise(const CalibrateNoiseArguments& arguments) {
+  const StopOnSignals stop;
+  const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
+  CheckProcessEstimators({spec});
+  if (!arguments.out.empty()) CheckCanBeWritten(arguments.out);
+  const PairSet set = ReadPairsOfCamera(arguments);
+  const NoiseCalibration calibration =
+      CalibrateNoise(set, *Make(spec), spec.label, static_cast<std::uint64_t>(arguments.seed));
+  if (!arguments.out.empty()) WriteFileWhole(arguments.out, CameraNoiseAsYaml(calibration.noise));
+  PrintResult(MakeNoiseCalibrationResult(calibration, set.name), arguments.format);
+}
+
+}  // namespace
+
+void AddCalibrateNoiseCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("calibrate-noise", "Learn the noise and the errors of a camera from its pairs");
+  command->footer(
+      R"(PAIRS is a folder of match files (see `rcme estimate --help`). The pairs of one camera are
+pooled; those of another than the first are left out, and --scene picks a scene. No true
+motion is needed: everything is learnt from the residuals at the estimated motions.
+
+  sigma              of the noise, and how it grows with the column sigma_px (key-point
+                     size), if the files have one
+  displacement field what matches near each other share: its size and reach, tested
+                     against independent noise
+  camera faults      focal length, principal point, distortion k1, rolling shutter (if
+                     files state # seconds_between) and key points of the second image,
+                     beside each other, until the steps converge; named only if the test
+                     of all faults together says so
+  displacement of    what is left of the lens in all images, over 6x4 cells, tested
+  all images         against chance
+
+--out writes a noise file. `rcme estimate --noise FILE` and `rcme validate --noise FILE`
+remove the errors that were found and take the noise; a study with the data
+{noise: from_file, noise_file: FILE} draws it.
+
+Examples:
+  rcme calibrate-noise PAIRS --out noise.yaml
+  rcme calibrate-noise PAIRS --scene kitti00 --format json
+  rcme estimate PAIRS --noise noise.yaml)");
+  auto arguments = std::make_shared<CalibrateNoiseArguments>();
+  command->add_option("pairs", arguments->pairs, "folder of match files")->required();
+  CLI::Option* estimator =
+      command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
+          ->capture_default_str();
+  AddEstimatorOptions(command, estimator, &arguments->estimator);
+  command->add_option("-o,--out", arguments->out, "noise file (YAML)");
+  command->add_option("--scene", arguments->scene, "only this scene");
+  command
+      ->add_option("--sigma", arguments->sigma_px,
+                   "standard deviation of the noise that the estimator assumes, px")
+      ->transform(NumberIn({1e-9, 1000.0}))
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "seed of the random samples")
+      ->transform(WholeNumberIn(0))
+      ->capture_default_str();
+  AddFormatOption(command, &arguments->format);
+  command->callback([arguments] { RunCalibrateNoise(*arguments); });
+}
+
+}  // namespace rcme

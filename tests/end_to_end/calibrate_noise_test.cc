@@ -1,0 +1,73 @@
+// From the pairs of a camera to its noise file, and from that to estimates, validations and studies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/end_to_end/bad_input.h"
+#include "tests/test_support/match_text.h"
+
+namespace rcme {
+namespace {
+
+class CalibrateNoiseProgram : public testing::Test {
+ protected:
+  CalibrateNoiseProgram() {
+    RunRcme({"export", folder_.Write("study.yaml", SmallStudyYaml()), "--set", "outlier_ratio=0", "--set",
+             "num_matches=200", "--out", folder_.Path("problems")});
+  }
+
+  ProgramResult Call(const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"calibrate-noise", pairs_, "--out", file_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunRcme(arguments);
+  }
+
+  TempFolder folder_;
+  std::string pairs_ = folder_.Path("problems/matches"), file_ = folder_.Path("noise.yaml");
+};
+
+TEST_F(CalibrateNoiseProgram, WritesAFileThatOthersTake) {
+  const ProgramResult table = Call({});
+  ASSERT_EQ(table.exit_code, 0) << table.err;
+  for (const char* part : {"noise sigma", "displacement field", "camera faults, all together", "of 6 pairs"})
+    EXPECT_NE(table.out.find(part), std::string::npos) << part << " is not in\n" << table.out;
+  const std::string written = ReadBytes(file_);
+  EXPECT_NE(written.find("rcme_camera_noise: 1"), std::string::npos);
+  EXPECT_NE(Call({"--format", "json"}).out.find("rcme noise calibration 1"), std::string::npos);
+  EXPECT_NE(Call({"--format", "csv"}).out.find("\nsigma_px,0."), std::string::npos);
+  EXPECT_EQ(ReadBytes(file_), written);
+
+  const ProgramResult plain = RunRcme({"estimate", pairs_}),
+                      estimate = RunRcme({"estimate", pairs_, "--noise", file_});
+  ASSERT_EQ(estimate.exit_code, 0) << estimate.err;
+  EXPECT_EQ(std::ranges::count(estimate.out, '\n'), std::ranges::count(plain.out, '\n'));
+  const ProgramResult validation =
+      RunRcme({"validate", pairs_, "--noise", file_, "--twins", "1", "--no-advice"});
+  ASSERT_EQ(validation.exit_code, 0) << validation.err;
+  EXPECT_NE(validation.out.find("spatial_halves"), std::string::npos);
+  const ProgramResult run =
+      RunRcme({"run", folder_.Path("study.yaml"), "--set", "noise=from_file", "--set", "noise_file=" + file_,
+               "--trials", "1", "--out", folder_.Path("r.sqlite")});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+TEST_F(CalibrateNoiseProgram, RefusesWhatItCannotUse) {
+  const std::string other = folder_.Write("other.yaml", "a: 1\n");
+  for (const char* command : {"estimate", "validate"}) {
+    EXPECT_TRUE(IsRefused(RunRcme({command, pairs_, "--noise", other}), {"other.yaml", "no noise file"}));
+    EXPECT_TRUE(IsRefused(RunRcme({command, pairs_, "--noise", folder_.Path("none.yaml")}), {"none.yaml"}));
+  }
+  TempFolder few;
+  for (const char* name : {"a.csv", "b.csv"}) few.Write(name, MatchHeader() + MatchRows(60));
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"calibrate-noise", few.path(), "--out", file_}), {"2 pairs of 2", "takes 5"}));
+  EXPECT_TRUE(IsRefused(Call({"--scene", "none"}), {"--scene", "none"}));
+  EXPECT_TRUE(IsRefused(Call({"--sigma", "nan"}), {"--sigma"}));
+  EXPECT_FALSE(std::filesystem::exists(file_));
+}
+
+}  // namespace
+}  // namespace rcme

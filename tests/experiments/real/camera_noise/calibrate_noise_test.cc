@@ -1,0 +1,330 @@
+// What is planted in simulated pairs of one camera is found, with known rates, and its file makes covariances
+// hold again.
+#include "experiments/real/camera_noise/calibrate_noise.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+
+#include "estimator/estimator_registry.h"
+#include "estimator/refinement/sampson_mle.h"
+#include "experiments/real/camera_noise/apply_noise.h"
+#include "experiments/real/camera_noise/calibrate_noise_output.h"
+#include "experiments/real/camera_noise/fitted_pairs.h"
+#include "experiments/real/camera_noise/systematic_displacement.h"
+#include "experiments/real/truth_free/halves.h"
+#include "experiments/real/truth_free/planted_fault.h"
+#include "experiments/real/truth_free/validate.h"
+#include "experiments/study/study_file.h"
+#include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/temp_folder.h"
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kChiSquare5 = 11.0705;  // 95 %
+
+struct TakenPairs {
+  PairSet set;
+  std::vector<RelativePose> motions_true;
+};
+
+// 20 pairs of one camera, 300 matches each, noise 0.2 px, 5 % of them wrong.
+TakenPairs TakePairs(std::uint64_t seed, const Settings& data = {},
+                     const FaultVector& faults = FaultVector::Zero()) {
+  Study study = ParseStudy(
+      "data: {scene: uniform_volume, num_matches: 300, sigma_px: 0.2, outlier_ratio: 0.05, severity: "
+      "skipped}\n"
+      "estimators: [{name: rcme_calibrated}]\ntrials: 20\n",
+      "study.yaml");
+  study.seed = seed;
+  for (const auto& [key, value] : data) Override(&study, key, value);
+  const StudyPlan plan = MakePlan(study);
+  TakenPairs taken{PlantFaultsIn(PairSetsOfStudy(plan).front(), {1.0, 1.0, faults}), {}};
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const TrialData drawn = plan.conditions[0].source->Make(NameOfScene(plan, plan.conditions[0], trial));
+    taken.motions_true.push_back(*drawn.truth.cam2_from_cam1_true);
+  }
+  return taken;
+}
+
+NoiseCalibration CalibrateTaken(const TakenPairs& taken, std::uint64_t seed) {
+  return CalibrateNoise(taken.set, *MakeEstimator("rcme_calibrated"), "rcme_calibrated", seed);
+}
+
+// Shares of motions, and of differences between halves of the images, within their 95 % regions.
+struct Covered {
+  double num_motions = 0.0, motions = 0.0, num_halves = 0.0, halves = 0.0;
+};
+void CountCovered(const PairSet& set, const std::vector<RelativePose>& motions_true,
+                  const MotionEstimator& estimator, Covered* covered) {
+  for (size_t i = 0; i < set.pairs.size(); ++i) {
+    const StreamName name{7, 1, static_cast<std::uint32_t>(i), 0};
+    RandomStream rng({.seed = 7, .trial = static_cast<std::uint32_t>(i), .purpose = 123});
+    const MotionProblem& problem = set.pairs[i].problem;
+    const MotionEstimate estimate = estimator.Estimate(problem, rng);
+    if (estimate.status != MotionStatus::kOk) continue;
+    const Vector5d error = LocalCoordinates(estimate.cam2_from_cam1, motions_true[i]);
+    ++covered->num_motions;
+    covered->motions += error.dot(estimate.pose_cov.ldlt().solve(error)) < kChiSquare5;
+    for (const Split split : kSpatialSplits) {
+      const auto difference = DifferenceOfHalves(problem, estimate, split, estimator, name);
+      if (!difference) continue;
+      ++covered->num_halves;
+      covered->halves += *difference < kChiSquare5;
+    }
+  }
+}
+
+// Independent noise, 30 cameras. Beforehand, in 120 others: a camera fault is named in 3, a displacement
+// field found in 2, one of all images in 7, and sigma lies within its interval in 113. By chance more than 5,
+// 5 and 6, or fewer than 24 of 30, come once in some hundred sets of cameras where each has its 5 %.
+TEST(CalibrateNoise, NamesNothingInIndependentNoise) {
+  int num_faults = 0, num_fields = 0, num_systematic = 0, num_sigma_within = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    const NoiseCalibration found = CalibrateTaken(TakePairs(seed), seed);
+    num_faults += NamesFault(found.faults);
+    num_fields += found.shared.is_found;
+    num_systematic += found.noise.systematic.columns > 0;
+    num_sigma_within += found.variance.interval.Contains(0.04);
+    EXPECT_NEAR(found.noise.sigma_px.value, 0.2, 0.02) << seed;
+  }
+  EXPECT_LE(num_faults, 5);
+  EXPECT_LE(num_fields, 5);
+  EXPECT_LE(num_systematic, 6);
+  EXPECT_GE(num_sigma_within, 24);
+}
+
+// Half as much again as is assumed: found, and nothing else.
+TEST(CalibrateNoise, FindsTheSizeOfTheNoise) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const NoiseCalibration found =
+        CalibrateTaken(TakePairs(seed, {{"sigma_px", "0.3"}, {"assumed_sigma_px", "0.2"}}), seed);
+    EXPECT_NEAR(found.noise.sigma_px.value, 0.3, 4.0 * found.noise.sigma_px.standard_error) << seed;
+    EXPECT_LT(found.noise.sigma_px.standard_error, 0.01);
+    EXPECT_EQ(found.noise.displacement_px.value, 0.0);
+  }
+}
+
+// A field of 30 % of the variance, reaching 80 and 150 px, is found in every camera, its size to a third and
+// its reach, whose median over 12 others was 78 and 124 px, to a factor of 3.5. With its file motions and
+// halves of images are within their regions of 95 % again: beforehand 49 % and 26 % of motions, then 89 % and
+// 90 %.
+TEST(CalibrateNoise, FindsADisplacementFieldAndCoverageComesBack) {
+  const auto estimator = MakeEstimator("rcme_calibrated");
+  for (const double reach_px : {80.0, 150.0}) {
+    Covered before, after;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const TakenPairs taken = TakePairs(seed, {{"noise", "displacement_field"},
+                                                {"displacement_share", "0.3"},
+                                                {"displacement_reach_px", fmt::format("{}", reach_px)}});
+      const NoiseCalibration found = CalibrateTaken(taken, seed);
+      ASSERT_TRUE(found.shared.is_found) << reach_px << " " << seed;
+      EXPECT_NEAR(found.noise.displacement_px.value / 0.10954, 1.0, 0.6);
+      EXPECT_LT(std::abs(std::log(found.noise.reach_px / reach_px)), std::log(3.5));
+      CountCovered(taken.set, taken.motions_true, *estimator, &before);
+      CountCovered(ApplyNoiseTo(taken.set, found.noise, *estimator, seed), taken.motions_true,
+                   *WithSharedNoise(MakeEstimator("rcme_calibrated"), found.noise, false), &after);
+    }
+    EXPECT_LT(before.motions / before.num_motions, 0.65) << reach_px;
+    EXPECT_LT(before.halves / before.num_halves, 0.88) << reach_px;
+    EXPECT_GT(after.motions / after.num_motions, 0.82) << reach_px;
+    EXPECT_GT(after.halves / after.num_halves, 0.9) << reach_px;
+  }
+}
+
+// Ten of twelve others at least named each of these, within three of its standard errors. The regions hold
+// again, since they know how well the fault is known.
+TEST(CalibrateNoise, RemovesFaultsOfTheCameraAndCoverageComesBack) {
+  const auto estimator = MakeEstimator("rcme_calibrated");
+  for (const auto& [fault, planted] : {std::pair{CameraFault::kDistortion, 0.01},
+                                       {CameraFault::kFocalLength, 0.01},
+                                       {CameraFault::kPrincipalPointX, 5.0}}) {
+    Covered before, after;
+    int num_named = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      const auto index = static_cast<Eigen::Index>(fault);
+      const TakenPairs taken = TakePairs(seed, {}, planted * FaultVector::Unit(index));
+      const NoiseCalibration found = CalibrateTaken(taken, seed);
+      for (const CameraCorrection& each : found.noise.corrections) {
+        if (each.fault != static_cast<size_t>(index) || each.removed.value == 0.0) continue;
+        ++num_named;
+        EXPECT_NEAR(each.removed.value, planted, 4.0 * each.removed.standard_error) << seed;
+      }
+      CountCovered(taken.set, taken.motions_true, *estimator, &before);
+      CountCovered(ApplyNoiseTo(taken.set, found.noise, *estimator, seed), taken.motions_true,
+                   *WithSharedNoise(MakeEstimator("rcme_calibrated"), found.noise, false), &after);
+    }
+    EXPECT_GE(num_named, 3) << FindFaultText(fault).name;
+    EXPECT_LT(before.motions / before.num_motions, 0.7) << FindFaultText(fault).name;
+    EXPECT_GT(after.motions / after.num_motions, num_named == 4 ? 0.85 : 0.6) << FindFaultText(fault).name;
+    EXPECT_GT(after.halves / after.num_halves, 0.9) << FindFaultText(fault).name;
+  }
+}
+
+// A swirl of 0.3 px that no fault of the list explains: found, and where matches are most of it removed.
+TEST(CalibrateNoise, FindsADisplacementOfAllImages) {
+  TakenPairs taken = TakePairs(3);
+  const auto swirl = [](const Eigen::Vector2d& x_px) {
+    return Eigen::Vector2d(0.3 * std::sin(x_px.y() / 60.0), 0.3 * std::cos(x_px.x() / 75.0));
+  };
+  for (NamedPair& pair : taken.set.pairs) {
+    for (Correspondence& match : pair.problem.matches) {
+      match.x1_px += swirl(match.x1_px);
+      match.x2_px += swirl(match.x2_px);
+    }
+  }
+  const NoiseCalibration found = CalibrateTaken(taken, 3);
+  EXPECT_LT(found.systematic.p_value, 0.001);
+  ASSERT_GT(found.noise.systematic.columns, 0);
+  EXPECT_THAT(NoiseCalibrationAsText(found, "swirl"), HasSubstr("removed"));
+  double before = 0.0, after = 0.0;
+  for (double x = 100.0; x <= 540.0; x += 20.0) {
+    for (double y = 80.0; y <= 400.0; y += 20.0) {
+      const Eigen::Vector2d at(x, y), is = swirl(at);
+      before += is.squaredNorm();
+      after += (is - DisplacementAt(found.noise.systematic, found.noise.camera, at)).squaredNorm();
+    }
+  }
+  EXPECT_LT(after, 0.6 * before);
+}
+
+// A detector whose noise grows as its stated size says, or not at all.
+TEST(FitSizeExponent, IsThatOfTheNoise) {
+  const auto estimator = MakeEstimator("rcme_calibrated");
+  for (const double growth : {0.0, 0.5, 1.0}) {
+    const TakenPairs taken = TakePairs(
+        2, {{"noise", "octave"}, {"octave_growth", fmt::format("{}", growth)}, {"stated_growth", "1"}});
+    const NoiseCalibration found = CalibrateTaken(taken, 2);
+    EXPECT_NEAR(found.noise.size_exponent.value, growth, 4.0 * found.noise.size_exponent.standard_error);
+    EXPECT_LT(found.noise.size_exponent.standard_error, 0.1);
+    EXPECT_GE(found.sizes.size(), 3u);
+    const MotionProblem applied = ApplyNoise(taken.set.pairs[0].problem, found.noise, "pair");
+    EXPECT_EQ(applied.sigma_px, found.noise.sigma_px.value);
+    EXPECT_NEAR(applied.noise_scale[3],
+                std::pow(taken.set.pairs[0].problem.noise_scale[3], found.noise.size_exponent.value), 1e-12);
+  }
+}
+
+// G Sigma G' against a refit: the least-squares motion of matches with a fault less that without it. The
+// noise is small, since G leaves out the curvature of the residuals.
+TEST(WidenCovariance, AddsHowFarAnErrorOfWhatIsRemovedMovesTheMotion) {
+  const TakenPairs taken = TakePairs(1, {{"outlier_ratio", "0"}, {"sigma_px", "0.02"}});
+  const auto estimator = MakeEstimator("rcme_calibrated");
+  for (const auto& [fault, error] : {std::pair{CameraFault::kFocalLength, 1e-4},
+                                     {CameraFault::kPrincipalPointY, 0.01},
+                                     {CameraFault::kDistortion, 1e-4}}) {
+    const MotionProblem& problem = taken.set.pairs[4].problem;
+    RandomStream rng({.seed = 1, .purpose = 124});
+    MotionEstimate estimate = estimator->Estimate(problem, rng);
+    ASSERT_EQ(estimate.status, MotionStatus::kOk);
+    const auto refit = [&](double by) {
+      const MotionProblem moved =
+          PlantFaults(problem, by * FaultVector::Unit(static_cast<Eigen::Index>(fault)));
+      return RefineBySampson(moved, estimate.inliers, estimate.cam2_from_cam1, Loss::kSquared).cam2_from_cam1;
+    };
+    estimate.cam2_from_cam1 = refit(0.0);
+    const Vector5d moved = LocalCoordinates(refit(-error), refit(error)) / 2.0;
+    CameraNoise noise;
+    noise.sigma_px = {problem.sigma_px, 0.0};
+    noise.corrections = {{static_cast<size_t>(fault), {}, {1e-9, error}}};
+    noise.removed_correlations = {1.0};
+    estimate.pose_cov.setZero();
+    WidenCovariance(problem, noise, false, &estimate);
+    const Matrix5d expected = moved * moved.transpose();
+    EXPECT_LT((estimate.pose_cov - expected).norm(), 0.02 * expected.norm()) << FindFaultText(fault).name;
+  }
+}
+
+// A file without a field does not say that there is none: a robust covariance stays what the pair tells.
+TEST(WidenCovariance, KeepsARobustCovarianceWhereNoFieldWasFound) {
+  const MotionProblem problem = TakePairs(1).set.pairs[4].problem;
+  RandomStream rng({.seed = 1, .purpose = 124});
+  const MotionEstimate given = MakeEstimator("rcme_calibrated")->Estimate(problem, rng);
+  CameraNoise noise;
+  noise.sigma_px = {problem.sigma_px, 0.01};
+  noise.key_point_px = 0.1 * problem.sigma_px;
+  MotionEstimate widened = given;
+  WidenCovariance(problem, noise, true, &widened);
+  EXPECT_EQ(widened.pose_cov, given.pose_cov);
+  noise.displacement_px = {0.5 * problem.sigma_px, 0.01};
+  noise.reach_px = 80.0;
+  WidenCovariance(problem, noise, true, &widened);
+  EXPECT_NE(widened.pose_cov, given.pose_cov);
+}
+
+TEST(ApplyNoise, RefusesAnotherCameraWhereItRemovesSomething) {
+  MotionProblem problem = TakePairs(1).set.pairs[0].problem;
+  CameraNoise noise;
+  noise.sigma_px = {0.3, 0.01};
+  noise.camera = problem.camera1;
+  noise.corrections = {{0, {0.01, 0.001}, {0.01, 0.001}}};
+  EXPECT_NEAR(ApplyNoise(problem, noise, "a.csv").camera2.fx, problem.camera2.fx / 1.01, 1e-9);
+  problem.camera2.fx *= 1.01;
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ApplyNoise(problem, noise, "a.csv"); }, {"a.csv", "camera", "noise file"}));
+  noise.corrections.clear();
+  EXPECT_EQ(ApplyNoise(problem, noise, "a.csv").sigma_px, 0.3);
+}
+
+TEST(ReadNoiseToApply, RefusesMoreThanACameraMayHave) {
+  const TempFolder folder;
+  CameraNoise noise;
+  noise.num_pairs = 5;
+  noise.num_matches = 500;
+  noise.estimator = "rcme";
+  noise.camera = {700.0, 700.0, 319.5, 239.5, 640, 480};
+  noise.sigma_px = {0.3, 0.01};
+  noise.correlations = noise.removed_correlations = {1.0};
+  const auto write = [&](CameraFault fault, double removed) {
+    noise.corrections = {{static_cast<size_t>(fault), {removed, 0.1}, {removed, 0.1}}};
+    return folder.Write("noise.yaml", CameraNoiseAsYaml(noise));
+  };
+  EXPECT_EQ(ReadNoiseToApply(write(CameraFault::kFocalLength, -0.5)).corrections[0].removed.value, -0.5);
+  EXPECT_TRUE(ThrowsInputError([&] { ReadNoiseToApply(write(CameraFault::kFocalLength, -1.0)); },
+                               {"noise.yaml", "focal_length", "removed -1", "at most 0.5"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ReadNoiseToApply(write(CameraFault::kPrincipalPointX, 161.0)); },
+                               {"principal_point_x", "at most 160"}));
+}
+
+// Twins with the field of the noise: halves differ in them as they do in the pairs, and the covariances that
+// know it hold in both. With independent noise in the twins their halves differ less than the pairs' do.
+TEST(Validate, TwinsDrawTheFieldOfTheNoise) {
+  const TakenPairs taken = TakePairs(2, {{"noise", "displacement_field"},
+                                         {"displacement_share", "0.3"},
+                                         {"displacement_reach_px", "80"},
+                                         {"outlier_ratio", "0"}});
+  CameraNoise noise;
+  noise.sigma_px = {0.2, 0.001};
+  noise.displacement_px = {0.2 * std::sqrt(0.3), 0.001};
+  noise.reach_px = 80.0;
+  const auto estimator = WithSharedNoise(MakeEstimator("rcme_calibrated"), noise, false);
+  const auto validate = [&](const TwinField& field) {
+    const SetReport report = Validate(taken.set, *estimator, {1, 3, field});
+    return *std::ranges::find(report.tests, std::string("spatial_halves"), &TruthFreeTest::name);
+  };
+  const TruthFreeTest with = validate({noise.DisplacementShare(), noise.reach_px}), without = validate({});
+  EXPECT_TRUE(with.against_twins.interval.Contains(1.0)) << with.against_twins.value;
+  EXPECT_GT(without.against_twins.interval.lower, 1.0);
+  EXPECT_GT(without.against_twins.value, 1.3 * with.against_twins.value);
+}
+
+TEST(CalibrateNoise, LeavesOtherCamerasOutAndRefusesTooFewPairs) {
+  TakenPairs taken = TakePairs(5);
+  for (size_t i = 2; i < 5; ++i) taken.set.pairs[i].problem.camera2.fx *= 1.2;
+  const NoiseCalibration found = CalibrateTaken(taken, 5);
+  EXPECT_EQ(found.num_other_cameras, 3);
+  EXPECT_EQ(found.noise.num_pairs, 17);
+  const CommandResult result = MakeNoiseCalibrationResult(found, "a");
+  EXPECT_THAT(result.json, HasSubstr("rcme noise calibration 1"));
+  EXPECT_THAT(RenderResult(result, "csv"), HasSubstr("\nsigma_px,0."));
+  taken.set.pairs.resize(7);
+  EXPECT_TRUE(ThrowsInputError([&] { CalibrateTaken(taken, 5); }, {"4 pairs of 7", "takes 5"}));
+}
+
+}  // namespace
+}  // namespace rcme
