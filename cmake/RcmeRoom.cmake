@@ -2,17 +2,21 @@
 add_library(rcme_warnings INTERFACE)
 target_compile_options(rcme_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
 
-# rcme_add_room(NAME LINKS ... [PRIVATE_LINKS ...] [APART ...] [PRECOMPILED ...] [TOGETHER ...]): one library per room, of all
-# sources in its folder but those of APART; headers included from the repository root. Fused multiply-add is off everywhere: results must not depend on the compiler's
-# choice.
+# rcme_add_room(NAME LINKS ... [PRIVATE_LINKS ...] [SOURCES ...] [APART ...] [PRECOMPILED ... | PRECOMPILED_BY ROOM]
+# [TOGETHER ...]): one library per room, of all sources in its folder, or of those SOURCES of it, but those of APART; headers
+# included from the repository root. Fused multiply-add is off everywhere: results must not depend on the compiler's choice.
 #
 # Most of a build goes into reading the same headers again. PRECOMPILED: headers of libraries that much of the room includes,
-# compiled once beside those of the language. TOGETHER: folders whose sources are compiled several at a time, so that names in
-# their anonymous namespaces differ, and in those of all small folders. A source includes what it uses all the same: where
-# CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as in the preset `dev`, each is compiled by itself.
+# compiled once beside those of the language; a room above takes them with PRECOMPILED_BY. TOGETHER: folders whose sources are
+# compiled several at a time, so that names in their anonymous namespaces differ, and in those of all small folders. A source
+# includes what it uses all the same: where CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as in the preset `dev`, each is compiled by
+# itself.
 function(rcme_add_room name)
-  cmake_parse_arguments(ROOM "" "" "LINKS;PRIVATE_LINKS;APART;PRECOMPILED;TOGETHER" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cc)
+  cmake_parse_arguments(ROOM "" "PRECOMPILED_BY" "LINKS;PRIVATE_LINKS;SOURCES;APART;PRECOMPILED;TOGETHER" ${ARGN})
+  set(sources ${ROOM_SOURCES})
+  if(NOT sources)
+    file(GLOB_RECURSE sources CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *.cc)
+  endif()
   list(REMOVE_ITEM sources ${ROOM_APART})
   add_library(rcme_${name} STATIC ${sources})
   add_library(rcme::${name} ALIAS rcme_${name})
@@ -29,6 +33,8 @@ function(rcme_add_room name)
   if(ROOM_PRECOMPILED)
     target_precompile_headers(rcme_${name} PRIVATE <algorithm> <cmath> <functional> <map> <memory> <string> <vector>
                                                    ${ROOM_PRECOMPILED})
+  elseif(ROOM_PRECOMPILED_BY)
+    target_precompile_headers(rcme_${name} REUSE_FROM rcme_${ROOM_PRECOMPILED_BY})
   endif()
   if(ROOM_TOGETHER)
     rcme_compile_together(rcme_${name} 16 ${ROOM_TOGETHER})
@@ -44,6 +50,8 @@ function(rcme_compile_together target size)
   if(CMAKE_DISABLE_PRECOMPILE_HEADERS)
     return()
   endif()
+  get_target_property(of_target ${target} SOURCES)
+  list(TRANSFORM of_target REPLACE "^([^/].*)$" "${CMAKE_CURRENT_SOURCE_DIR}/\\1")
   set(of_small_folders)
   foreach(folder ${ARGN})
     if(folder MATCHES "(^|/)[.]$")
@@ -51,6 +59,10 @@ function(rcme_compile_together target size)
     else()
       file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cc)
     endif()
+    list(TRANSFORM sources REPLACE "/[.]/" "/")
+    set(others ${sources})
+    list(REMOVE_ITEM others ${of_target})
+    list(REMOVE_ITEM sources ${others})
     list(LENGTH sources number)
     math(EXPR doubled "2 * ${number}")
     if(doubled LESS size)

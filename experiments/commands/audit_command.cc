@@ -13,6 +13,7 @@
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/plan_of_cases.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"

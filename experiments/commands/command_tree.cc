@@ -160,9 +160,11 @@ std::string SuggestionsFor(const CLI::App& app) {
 std::string DescribeUnexpected(const CLI::App& app) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::vector<std::string> words = (chosen.empty() ? &app : chosen.front())->remaining();
+  const std::string footer = chosen.empty() ? app.get_footer() : "";
   return fmt::format(
-      "The following arguments were not expected: {}\n{}Run with --help for more information.\n",
-      Printable(fmt::format("{}", fmt::join(words, " "))), SuggestionsFor(app));
+      "The following arguments were not expected: {}\n{}{}{}Run with --help for more information.\n",
+      Printable(fmt::format("{}", fmt::join(words, " "))), SuggestionsFor(app), footer,
+      footer.empty() ? "" : "\n");
 }
 
 }  // namespace rcme

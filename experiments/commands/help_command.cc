@@ -25,8 +25,10 @@ void AddHelpCommand(CLI::App& app) {
     }
     const std::vector<std::string> names = CommandNames(app);
     if (std::ranges::count(names, *name) == 0) {
-      throw InputError(fmt::format("help: {} is not a command{}; give one of: {}", Quoted(*name),
-                                   DidYouMean(*name, names), fmt::join(names, ", ")));
+      const std::string footer = app.get_footer();
+      throw InputError(fmt::format("help: {} is not a command{}; give one of: {}{}{}", Quoted(*name),
+                                   DidYouMean(*name, names), fmt::join(names, ", "),
+                                   footer.empty() ? "" : ". ", footer));
     }
     fmt::print("{}", app.get_subcommand(*name)->help(app.get_name()));
   });

@@ -10,6 +10,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/commands/plan_of_cases.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/commands/time_limit.h"

@@ -7,7 +7,6 @@
 #include <fstream>
 #include <string_view>
 
-#include "experiments/audit/claims/study_cases.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/study/estimator_file.h"
@@ -58,16 +57,6 @@ Study LoadChangedStudy(const std::string& path, const StudyChanges& changes) {
   if (changes.seed >= 0) study.seed = static_cast<std::uint64_t>(changes.seed);
   if (changes.allow_process) AllowAndSay(&study.estimators);
   return study;
-}
-
-StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, PlanEstimators estimators) {
-  const Study study = LoadChangedStudy(path, changes);
-  try {
-    RequireCases(study);  // before a folder of pairs is read
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", path, error.what()));
-  }
-  return MakePlan(study, path, estimators);
 }
 
 bool IsResultFile(const std::string& path) {

@@ -28,10 +28,6 @@ void AddStudyOptions(CLI::App* command, StudyChanges* changes);
 // already.
 Study LoadChangedStudy(const std::string& path, const StudyChanges& changes);
 
-// The plan of the study of a YAML file, changed, that can give cases (audit/claims/study_cases.h). Throws
-// InputError as LoadChangedStudy and RequireCases.
-StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, PlanEstimators estimators);
-
 // Whether a file begins as every SQLite file does: a result of `rcme run`, not a study.
 bool IsResultFile(const std::string& path);
 
