@@ -2,12 +2,12 @@
 add_library(rcme_warnings INTERFACE)
 target_compile_options(rcme_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
 
-# rcme_add_room(NAME LINKS ... [PRIVATE_LINKS ...] [SOURCES ...] [APART ...] [PRECOMPILED ... | PRECOMPILED_BY ROOM]
+# rcme_add_room(NAME LINKS ... [PRIVATE_LINKS ...] [SOURCES ...] [APART ...] [PRECOMPILED ... | PRECOMPILED_BY NAME]
 # [TOGETHER ...]): one library per room, of all sources in its folder, or of those SOURCES of it, but those of APART; headers
 # included from the repository root. Fused multiply-add is off everywhere: results must not depend on the compiler's choice.
 #
 # Most of a build goes into reading the same headers again. PRECOMPILED: headers of libraries that much of the room includes,
-# compiled once beside those of the language; a room above takes them with PRECOMPILED_BY. TOGETHER: folders whose sources are
+# compiled once beside those of the language; PRECOMPILED_BY takes those of another target. TOGETHER: folders whose sources are
 # compiled several at a time, so that names in their anonymous namespaces differ, and in those of all small folders. A source
 # includes what it uses all the same: where CMAKE_DISABLE_PRECOMPILE_HEADERS is on, as in the preset `dev`, each is compiled by
 # itself.

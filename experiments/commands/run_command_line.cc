@@ -28,7 +28,7 @@ namespace rcme {
 namespace {
 
 // Names and paths of the command line go into tables, result files and pages, and onto the terminal.
-void CheckArguments(int argc, const char* const* argv) {
+void CheckIsPlain(int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     if (FindNotPlain(argv[i]) == std::string::npos) continue;
     throw InputError(fmt::format("argument {}: {} is not allowed; give UTF-8 without control characters", i,
@@ -78,7 +78,7 @@ int RunCommandLine(int argc, const char* const* argv, const CommandSet& commands
   commands.add(app);
   app.footer(commands.footer);  // not of each command
   try {
-    CheckArguments(argc, argv);
+    CheckIsPlain(argc, argv);
     app.parse(argc, argv);
     if (app.get_subcommands().empty()) throw CLI::RequiredError::Subcommand(1);
     if (std::fflush(stdout) != 0) throw InputError("standard output cannot be written");

@@ -11,7 +11,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 STUDY = """seed: 3
 trials: 4
 data: {scene: uniform_volume, num_matches: 60, outlier_ratio: 0.2}
-estimators: [{name: standard}, {name: opencv_magsac}, {name: opengv_ransac}]
+estimators: [{name: standard}, {name: opencv_usac}, {name: opengv_ransac}]
 """
 
 
@@ -44,7 +44,7 @@ class Demo(unittest.TestCase):
             tables = [call(by, "summarize", f"{of}.sqlite", "--format", "csv", folder=folder)
                       for by, of in (("RCME", "RCME"), ("RCME_DEMO", "RCME_DEMO"), ("RCME", "RCME_DEMO"))]
             self.assertEqual([table.returncode for table in tables], [0, 0, 0], tables[1].stderr)
-            self.assertIn("opencv_magsac", tables[0].stdout)
+            self.assertIn("opencv_usac", tables[0].stdout)
             self.assertEqual(len({table.stdout for table in tables}), 1)
 
     def test_of_another_command_it_says_how_to_build_it(self):
