@@ -113,6 +113,18 @@ bool IsAbove(const std::vector<UnitScore>& units, double level) {
   return !standardised.empty() && PoolScoreAlone(standardised, 0, 1.0 - 2.0 * level).interval.lower > 0.0;
 }
 
+// Of each pair, at the reach of the greatest gain of the others: choosing it makes no score of the pair
+// greater, so that the test of their mean is one test, not one of each reach.
+std::vector<UnitScore> TakeAtReachOfOthers(const UnitsByReach& units) {
+  std::vector<UnitScore> taken;
+  for (size_t i = 0; i < units.begin()->second.size(); ++i) {
+    const auto best = std::ranges::max_element(
+        units, {}, [&](const auto& of_reach) { return ComputeGain(of_reach.second, i); });
+    if (i < best->second.size()) taken.push_back(best->second[i]);
+  }
+  return taken;
+}
+
 struct PairMoments {
   const FittedPair* pair;
   ResidualMoments moments;
@@ -200,8 +212,7 @@ SharedVariance FitSharedVariance(const std::vector<FittedPair>& pairs) {
   for (const PairMoments& each : ComputeAllMoments(pairs, reach_px, Repeats::kFirstOnly))
     of_field.push_back(TakeField(*each.pair, each.moments, kLongest));
   shared.field = {reach_px, PoolScoreAlone(of_field, 0, 0.95), ComputeGain(of_field, kLeaveNoneOut)};
-  shared.is_found = shared.field.gain > 0.0 &&
-                    IsAbove(of_field, kVarianceLevel / static_cast<double>(shared.by_reach.size()));
+  shared.is_found = shared.field.gain > 0.0 && IsAbove(TakeAtReachOfOthers(units), kVarianceLevel);
   shared.reach_factor = ComputeReachFactor(units, of_field.size());
   const std::vector<PairMoments> at_reach = ComputeAllMoments(pairs, reach_px, Repeats::kAll);
   FitKeyPoints(at_reach, shared.is_found ? shared.field.variance.value : 0.0, &shared);
