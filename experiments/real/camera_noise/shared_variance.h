@@ -37,9 +37,9 @@ struct SharedVariance {
 // v_0 is eliminated in each pair, so that pairs may be of different noise: score b_f - N_f0 b_0 / N_00 and
 // information N_ff - N_f0 N_0f / N_00 of the field are pooled over pairs (stats/pooled_scores.h). The
 // standard error is that of the pairs' scatter, and holds where residuals are not normal. A field is found
-// by the mean over pairs of score / information^1/2, each at the reach that the other pairs choose: one
-// Student's t by their scatter, which neither that choice nor how unlike fields are in size makes unsure.
-// What matches of one key point share follows from all matches, the field given.
+// by the mean over pairs of score / information^1/2, within +-3, each at the reach that the other pairs
+// choose: one Student's t by their scatter, which neither that choice nor how unlike fields are in size makes
+// unsure. What matches of one key point share follows from all matches, the field given.
 SharedVariance FitSharedVariance(const std::vector<FittedPair>& pairs);
 
 }  // namespace rcme
