@@ -89,6 +89,13 @@ Matrix5d ComputeCovarianceOfRemoved(const MotionProblem& problem, const CameraNo
   return covariance.allFinite() ? covariance : Matrix5d::Zero();
 }
 
+// tr(A C): the variance over that of independent errors, summed over directions; zero without a motion.
+double ComputeWidth(const MotionProblem& problem, const MotionEstimate& estimate) {
+  if (estimate.status != MotionStatus::kOk) return 0.0;
+  const MatchScores scores = ScoreFitted(problem, estimate.inliers, estimate.cam2_from_cam1);
+  return (scores.information * estimate.pose_cov).trace();
+}
+
 class SharedNoiseEstimator : public MotionEstimator {
  public:
   SharedNoiseEstimator(std::unique_ptr<MotionEstimator> estimator, const CameraNoise& noise, bool is_robust)
@@ -151,14 +158,13 @@ MotionProblem CorrectReadout(MotionProblem problem, const RelativePose& cam2_fro
 void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, bool is_robust,
                      MotionEstimate* estimate) {
   if (estimate->status != MotionStatus::kOk) return;
-  const KnownVariances known = KnownVariancesOf(noise);
-  // Where no field was found a robust covariance keeps what the pair's own residuals show of one.
-  if (noise.displacement_px.value > 0.0 || (!is_robust && known.own < 1.0)) {
-    RobustCovarianceOptions options;
-    options.known_variances = known;
-    const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(estimate->pose_cov);
-    MakeCovarianceRobust(problem, options, own_cov, estimate);
-  }
+  RobustCovarianceOptions options;
+  options.known_variances = KnownVariancesOf(noise);
+  const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(estimate->pose_cov);
+  MotionEstimate by_file = *estimate;
+  if (options.known_variances->own < 1.0) MakeCovarianceRobust(problem, options, own_cov, &by_file);
+  if (!is_robust || ComputeWidth(problem, by_file) > ComputeWidth(problem, *estimate))
+    *estimate = std::move(by_file);
   if (estimate->status == MotionStatus::kOk)
     estimate->pose_cov += ComputeCovarianceOfRemoved(problem, noise, *estimate);
 }

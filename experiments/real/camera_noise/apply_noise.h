@@ -36,9 +36,9 @@ MotionProblem CorrectReadout(MotionProblem problem, const RelativePose& cam2_fro
 // in place of those that the pair's own residuals tell; C_0 the estimator's own covariance, or with
 // `is_robust` that of the residuals; Sigma the covariance of the faults that are removed and G = -A^-1 sum
 // J_i' D_i how they move the motion, D_i the residual's derivative along them
-// (truth_free/calibration_score.h), A = sum J_i' J_i. Where the file holds no displacement field, a robust
-// covariance keeps the variances that the pair's own residuals tell. As it is where nothing is shared or
-// removed, or there is no motion.
+// (truth_free/calibration_score.h), A = sum J_i' J_i. A robust covariance stays
+// where that of the pair's own residuals is wider in tr(A C): what neighbours of this pair share can be more
+// than the file knows. As it is where nothing is shared or removed, or there is no motion.
 void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, bool is_robust,
                      MotionEstimate* estimate);
 

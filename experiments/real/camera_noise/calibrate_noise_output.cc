@@ -136,9 +136,9 @@ std::string NoiseCalibrationAsText(const NoiseCalibration& calibration, const st
              "shared. Sizes are the stated noise over the median of the pair. The displacement field is "
              "drawn "
              "anew in every image, its correlation exp(-d / reach); that of all images is the same in each, "
-             "over "
-             "6x4 cells. Intervals 95 %, by the scatter of pairs; found: at 5 %, all reaches together. n: "
-             "matches of the noise, pairs of the rest. Faults: rcme help validate.");
+             "over 6x4 cells. Intervals 95 %, by the scatter of pairs; found: at 5 %. n: matches of the "
+             "noise, "
+             "pairs of the rest. Faults: rcme help validate.");
 }
 
 // A row per quantity, for files.

@@ -100,17 +100,42 @@ double ComputeReachFactor(const UnitsByReach& units, size_t num_pairs) {
   return std::exp(std::sqrt((n - 1.0) / n * std::max(0.0, squares - sum * sum / n)));
 }
 
-// One-sided test of the mean of score / information^1/2, which has about variance 1 in each unit: pairs of
-// many matches and of a large field weigh as the others do, so that how unlike fields are does not hide them.
-bool IsAbove(const std::vector<UnitScore>& units, double level) {
-  std::vector<UnitScore> standardised;
-  for (UnitScore unit : units) {
-    if (!(unit.information(0, 0) > 0.0)) continue;
-    unit.score /= std::sqrt(unit.information(0, 0));
+// score / information^1/2, which has about the variance 1 where nothing is shared, within +-3: a pair of a
+// few wrong matches, or of a field much larger than the others', counts as one pair.
+double Standardise(const UnitScore& unit) {
+  const double information = unit.information(0, 0);
+  return information > 0.0 ? std::clamp(unit.score(0) / std::sqrt(information), -3.0, 3.0) : 0.0;
+}
+
+// One-sided test of the mean of standardised scores, by their scatter.
+bool IsAbove(std::vector<UnitScore> units, double level) {
+  for (UnitScore& unit : units) {
+    unit.score(0) = Standardise(unit);
     unit.information.setOnes();
-    standardised.push_back(std::move(unit));
   }
-  return !standardised.empty() && PoolScoreAlone(standardised, 0, 1.0 - 2.0 * level).interval.lower > 0.0;
+  return !units.empty() && PoolScoreAlone(units, 0, 1.0 - 2.0 * level).interval.lower > 0.0;
+}
+
+// Of each pair, at the reach where the standardised scores of the others are greatest: choosing it makes no
+// score of the pair greater, so that the test of their mean is one test, not one of each reach.
+std::vector<UnitScore> TakeAtReachOfOthers(const UnitsByReach& units) {
+  std::map<double, double> sums;
+  for (const auto& [reach, of_reach] : units) {
+    for (const UnitScore& unit : of_reach) sums[reach] += Standardise(unit);
+  }
+  std::vector<UnitScore> taken;
+  for (size_t i = 0; i < units.begin()->second.size(); ++i) {
+    double greatest = -kInfinity;
+    const UnitScore* best = nullptr;
+    for (const auto& [reach, of_reach] : units) {
+      const double of_others = sums[reach] - Standardise(of_reach[i]);
+      if (of_others <= greatest) continue;
+      greatest = of_others;
+      best = &of_reach[i];
+    }
+    taken.push_back(*best);
+  }
+  return taken;
 }
 
 struct PairMoments {
@@ -200,8 +225,7 @@ SharedVariance FitSharedVariance(const std::vector<FittedPair>& pairs) {
   for (const PairMoments& each : ComputeAllMoments(pairs, reach_px, Repeats::kFirstOnly))
     of_field.push_back(TakeField(*each.pair, each.moments, kLongest));
   shared.field = {reach_px, PoolScoreAlone(of_field, 0, 0.95), ComputeGain(of_field, kLeaveNoneOut)};
-  shared.is_found = shared.field.gain > 0.0 &&
-                    IsAbove(of_field, kVarianceLevel / static_cast<double>(shared.by_reach.size()));
+  shared.is_found = shared.field.gain > 0.0 && IsAbove(TakeAtReachOfOthers(units), kVarianceLevel);
   shared.reach_factor = ComputeReachFactor(units, of_field.size());
   const std::vector<PairMoments> at_reach = ComputeAllMoments(pairs, reach_px, Repeats::kAll);
   FitKeyPoints(at_reach, shared.is_found ? shared.field.variance.value : 0.0, &shared);

@@ -18,7 +18,7 @@ struct VarianceByReach {
 
 struct SharedVariance {
   std::vector<VarianceByReach> by_reach;  // from 10 px to the diagonal of the image
-  bool is_found = false;                  // at 5 %, one-sided, all reaches together (Bonferroni)
+  bool is_found = false;                  // at 5 %, one-sided
   VarianceByReach field;                  // at the reach of greatest gain, between those by a parabola
   double reach_factor = 1.0;              // one standard error of it, a jackknife over pairs
   PooledParameter key_point;              // variance that matches of one key point share, px^2; NaN: none do
@@ -36,10 +36,10 @@ struct SharedVariance {
 //
 // v_0 is eliminated in each pair, so that pairs may be of different noise: score b_f - N_f0 b_0 / N_00 and
 // information N_ff - N_f0 N_0f / N_00 of the field are pooled over pairs (stats/pooled_scores.h). The
-// standard error is that of the pairs' scatter, and holds where residuals are not normal. A field is found by
-// the mean over pairs of score / information^1/2 (Student's t by their scatter): the pooled variance itself
-// scatters as much as fields differ from pair to pair. What matches of one
-// key point share follows from all matches, the field given.
+// standard error is that of the pairs' scatter, and holds where residuals are not normal. A field is found
+// by the mean over pairs of score / information^1/2, within +-3, each at the reach that the other pairs
+// choose: one Student's t by their scatter, which neither that choice nor how unlike fields are in size makes
+// unsure. What matches of one key point share follows from all matches, the field given.
 SharedVariance FitSharedVariance(const std::vector<FittedPair>& pairs);
 
 }  // namespace rcme

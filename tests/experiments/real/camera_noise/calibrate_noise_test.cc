@@ -10,6 +10,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "estimator/refinement/sampson_mle.h"
+#include "estimator/robust_covariance/covariance_option.h"
 #include "experiments/real/camera_noise/apply_noise.h"
 #include "experiments/real/camera_noise/calibrate_noise_output.h"
 #include "experiments/real/camera_noise/fitted_pairs.h"
@@ -240,21 +241,27 @@ TEST(WidenCovariance, AddsHowFarAnErrorOfWhatIsRemovedMovesTheMotion) {
   }
 }
 
-// A file without a field does not say that there is none: a robust covariance stays what the pair tells.
-TEST(WidenCovariance, KeepsARobustCovarianceWhereNoFieldWasFound) {
+// What neighbours of the pair share can be more than the file knows: a robust covariance becomes that of the
+// file only where it is wider.
+TEST(WidenCovariance, NeverNarrowsARobustCovariance) {
   const MotionProblem problem = TakePairs(1).set.pairs[4].problem;
   RandomStream rng({.seed = 1, .purpose = 124});
   const MotionEstimate given = MakeEstimator("rcme_calibrated")->Estimate(problem, rng);
+  MotionEstimate robust = given;
+  MakeCovarianceRobust(problem, {}, std::nullopt, &robust);
+  robust.pose_cov *= 1.1;
   CameraNoise noise;
   noise.sigma_px = {problem.sigma_px, 0.01};
-  noise.key_point_px = 0.1 * problem.sigma_px;
-  MotionEstimate widened = given;
-  WidenCovariance(problem, noise, true, &widened);
-  EXPECT_EQ(widened.pose_cov, given.pose_cov);
-  noise.displacement_px = {0.5 * problem.sigma_px, 0.01};
-  noise.reach_px = 80.0;
-  WidenCovariance(problem, noise, true, &widened);
-  EXPECT_NE(widened.pose_cov, given.pose_cov);
+  const auto widen = [&](double share, double reach_px) {
+    noise.displacement_px = {std::sqrt(share) * problem.sigma_px, 0.01};
+    noise.reach_px = reach_px;
+    MotionEstimate widened = robust;
+    WidenCovariance(problem, noise, true, &widened);
+    return widened.pose_cov;
+  };
+  EXPECT_EQ(widen(0.0, 0.0), robust.pose_cov);
+  EXPECT_EQ(widen(1e-4, 80.0), robust.pose_cov);
+  EXPECT_GT(widen(0.5, 150.0).trace(), 1.1 * robust.pose_cov.trace());
 }
 
 TEST(ApplyNoise, RefusesAnotherCameraWhereItRemovesSomething) {
