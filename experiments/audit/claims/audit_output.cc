@@ -385,9 +385,11 @@ Table MakeNumberTable(const Audit& audit) {
 
 Table MakePlanTable(const Audit& plan) {
   const Budget budget = plan.options.budget;
-  Table table{{Column::Key("claim"), Column::Key("quantity"), Column::Count("checks"),
-               Column::Number("holds at nominal", {1.0, "", ".3f"}), Column::Text("claimed"),
-               Column::Count("trials"), Column::Text("found with p = 0.9")}};
+  Column holds = Column::Number("holds_at_nominal", {1.0, "", ".3f"}), found = Column::Text("found");
+  holds.heading = "holds at nominal";
+  found.heading = "found with p = 0.9";
+  Table table{{Column::Key("claim"), Column::Key("quantity"), Column::Count("checks"), holds,
+               Column::Text("claimed"), Column::Count("trials"), found}};
   for (const Claim& claim : plan.claims) {
     const Check& check = claim.checks.front();
     const double holds = HoldsAtNominal(claim, budget, plan.confidence);
