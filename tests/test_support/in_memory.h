@@ -4,6 +4,7 @@
 #include "experiments/audit/claims/audit_work.h"
 #include "experiments/audit/model_choice/choice_counts.h"
 #include "experiments/audit/validity/map_work.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/rare/split_failures.h"
 #include "experiments/rare/stratified_failures.h"
 #include "experiments/tuning/transfer.h"
@@ -32,7 +33,7 @@ inline std::string MapCsvInMemory(const ValidityMapOptions& options, int num_thr
   const MapWork work{options, std::nullopt, ""};
   Runner runner = Runner::InMemory(PlanMapWork(work), num_threads);
   GetMapResults(work, &runner);
-  return ValidityMapCsv(options, TrialsIn(work, runner.plan(), runner.results()));
+  return RenderCsv(MakeValidityMapTable(options, TrialsIn(work, runner.plan(), runner.results())));
 }
 
 inline std::string ReferenceCsvInMemory(const ValidityReferenceOptions& options, int num_threads = 2) {
@@ -40,7 +41,7 @@ inline std::string ReferenceCsvInMemory(const ValidityReferenceOptions& options,
   work.map.conditions.clear();  // no map
   Runner runner = Runner::InMemory(PlanMapWork(work), num_threads);
   GetMapResults(work, &runner);
-  return ValidityReferenceCsv(options, CountsIn(work, runner.plan(), runner.results()));
+  return RenderCsv(MakeValidityReferenceTable(options, CountsIn(work, runner.plan(), runner.results())));
 }
 
 inline Audit RunAuditInMemory(const std::vector<Claim>& all, const AuditOptions& options) {

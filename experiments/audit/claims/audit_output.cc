@@ -385,9 +385,12 @@ Table MakeNumberTable(const Audit& audit) {
 
 Table MakePlanTable(const Audit& plan) {
   const Budget budget = plan.options.budget;
-  Table table{{Column::Key("claim"), Column::Key("quantity"), Column::Count("checks"),
-               Column::Number("holds at nominal", {1.0, "", ".3f"}), Column::Text("claimed"),
-               Column::Count("trials"), Column::Text("found with p = 0.9")}};
+  Column holds_column = Column::Number("holds_at_nominal", {1.0, "", ".3f"}),
+         found_column = Column::Text("found");
+  holds_column.heading = "holds at nominal";
+  found_column.heading = "found with p = 0.9";
+  Table table{{Column::Key("claim"), Column::Key("quantity"), Column::Count("checks"), holds_column,
+               Column::Text("claimed"), Column::Count("trials"), found_column}};
   for (const Claim& claim : plan.claims) {
     const Check& check = claim.checks.front();
     const double holds = HoldsAtNominal(claim, budget, plan.confidence);
