@@ -19,7 +19,7 @@ TrialRecord Record(MotionStatus status, double rotation_deg, double direction_de
   record.direction_error_deg = direction_deg;
   return record;
 }
-TrialRecord Motion(double rotation_deg, double direction_deg) {
+TrialRecord MakeAnsweredRecord(double rotation_deg, double direction_deg) {
   return Record(MotionStatus::kOk, rotation_deg, direction_deg);
 }
 
@@ -34,7 +34,7 @@ TrialMeasure Find(const std::string& name) {
 
 double ComputeMeanMeasure(const std::string& name, const std::vector<double>& errors_deg) {
   double sum = 0.0;
-  for (const double error : errors_deg) sum += Find(name).Of(Motion(error, 0.0)).value();
+  for (const double error : errors_deg) sum += Find(name).Of(MakeAnsweredRecord(error, 0.0)).value();
   return sum / static_cast<double>(errors_deg.size());
 }
 
@@ -76,19 +76,20 @@ TEST(TrialMeasure, ClosedFormsOfExponentialErrors) {
 }
 
 TEST(TrialMeasure, ByHand) {
-  const TrialRecord record = Motion(1.0, 2.5);
+  const TrialRecord record = MakeAnsweredRecord(1.0, 2.5);
   EXPECT_DOUBLE_EQ(Find("auc_5_deg").Of(record).value(), 0.5);
   EXPECT_DOUBLE_EQ(Find("auc_10_deg").Of(record).value(), 0.75);
   EXPECT_DOUBLE_EQ(Find("auc_20_deg").Of(record).value(), 0.875);
   EXPECT_DOUBLE_EQ(Find("maa_10_deg").Of(record).value(), 0.8);  // within 3, 4, ..., 10 deg
-  EXPECT_DOUBLE_EQ(Find("maa_10_deg").Of(Motion(3.0, 2.5)).value(), 0.8) << "at the threshold is within";
-  EXPECT_DOUBLE_EQ(Find("maa_10_deg").Of(Motion(0.0, 0.0)).value(), 1.0);
-  EXPECT_DOUBLE_EQ(Find("auc_5_deg").Of(Motion(5.0, 0.0)).value(), 0.0);
-  EXPECT_DOUBLE_EQ(Find("auc_5_deg").Of(Motion(0.0, 180.0)).value(), 0.0);
+  EXPECT_DOUBLE_EQ(Find("maa_10_deg").Of(MakeAnsweredRecord(3.0, 2.5)).value(), 0.8)
+      << "at the threshold is within";
+  EXPECT_DOUBLE_EQ(Find("maa_10_deg").Of(MakeAnsweredRecord(0.0, 0.0)).value(), 1.0);
+  EXPECT_DOUBLE_EQ(Find("auc_5_deg").Of(MakeAnsweredRecord(5.0, 0.0)).value(), 0.0);
+  EXPECT_DOUBLE_EQ(Find("auc_5_deg").Of(MakeAnsweredRecord(0.0, 180.0)).value(), 0.0);
   EXPECT_DOUBLE_EQ(Find("rotation_error_median_deg").Of(record).value(), 1.0);
   EXPECT_DOUBLE_EQ(Find("direction_error_median_deg").Of(record).value(), 2.5);
   EXPECT_DOUBLE_EQ(Find("max_error_median_deg").Of(record).value(), 2.5);
-  EXPECT_DOUBLE_EQ(Find("max_error_median_deg").Of(Motion(7.0, 2.5)).value(), 7.0);
+  EXPECT_DOUBLE_EQ(Find("max_error_median_deg").Of(MakeAnsweredRecord(7.0, 2.5)).value(), 7.0);
 }
 
 // Every status but ok, with errors that look perfect: none may count. A trial that does not count
@@ -112,12 +113,12 @@ TEST(TrialMeasure, WhatIsNoMotionIsAsWrongAsCanBeOrLeftOut) {
 
 TEST(TrialMeasure, WhatIsNotKnownIsNotCounted) {
   for (const std::string suffix : {"", "_answered"}) {
-    EXPECT_FALSE(Find("auc_5_deg" + suffix).Of(Motion(kNaN, kNaN)));
-    EXPECT_FALSE(Find("max_error_median_deg" + suffix).Of(Motion(kNaN, kNaN)));
+    EXPECT_FALSE(Find("auc_5_deg" + suffix).Of(MakeAnsweredRecord(kNaN, kNaN)));
+    EXPECT_FALSE(Find("max_error_median_deg" + suffix).Of(MakeAnsweredRecord(kNaN, kNaN)));
     // A truth without a direction: the rotation alone is scored.
-    EXPECT_DOUBLE_EQ(Find("auc_5_deg" + suffix).Of(Motion(1.0, kNaN)).value(), 0.8);
-    EXPECT_DOUBLE_EQ(Find("max_error_median_deg" + suffix).Of(Motion(1.0, kNaN)).value(), 1.0);
-    EXPECT_FALSE(Find("direction_error_median_deg" + suffix).Of(Motion(1.0, kNaN)));
+    EXPECT_DOUBLE_EQ(Find("auc_5_deg" + suffix).Of(MakeAnsweredRecord(1.0, kNaN)).value(), 0.8);
+    EXPECT_DOUBLE_EQ(Find("max_error_median_deg" + suffix).Of(MakeAnsweredRecord(1.0, kNaN)).value(), 1.0);
+    EXPECT_FALSE(Find("direction_error_median_deg" + suffix).Of(MakeAnsweredRecord(1.0, kNaN)));
   }
 }
 
