@@ -3,7 +3,9 @@
 # COST there. The name of a test that was left out is skipped.
 set_tests_properties(experiments.Audit.ACorrectGaussianEstimatorPassesAtTheStatedErrorRate PROPERTIES COST 45)
 set_tests_properties(experiments.PlantedFaults.AreCaughtAndTheirSoundTwinsAreNot PROPERTIES COST 45)
+set_tests_properties(experiments.CalibrateNoise.NamesNothingInIndependentNoise PROPERTIES COST 22)
 set_tests_properties(experiments.EstimatorContract.TheRegistryKeepsIt PROPERTIES COST 19)
+set_tests_properties(experiments.CalibrateNoise.RemovesFaultsOfTheCameraAndCoverageComesBack PROPERTIES COST 17)
 set_tests_properties(experiments.RunStudyTest.ThreadsAndGapsChangeNothingOfManyQuickTrials PROPERTIES COST 14)
 set_tests_properties(experiments.RunStudyTest.TenTimesTheTrialsNeedNoMoreMemory PROPERTIES COST 13)
 set_tests_properties(experiments.Posebench.FilesThatCrashTheLibraryAreErrors PROPERTIES COST 12)

@@ -48,9 +48,11 @@ TEST_F(CalibrateNoiseProgram, WritesAFileThatOthersTake) {
       RunRcme({"validate", pairs_, "--noise", file_, "--twins", "1", "--no-advice"});
   ASSERT_EQ(validation.exit_code, 0) << validation.err;
   EXPECT_NE(validation.out.find("spatial_halves"), std::string::npos);
-  const ProgramResult run =
-      RunRcme({"run", folder_.Path("study.yaml"), "--set", "noise=from_file", "--set", "noise_file=" + file_,
-               "--trials", "1", "--out", folder_.Path("r.sqlite")});
+  const std::string study = folder_.Write(
+      "drawn.yaml",
+      "data: {scene: uniform_volume, num_matches: 60, noise: from_file, noise_file: noise.yaml}\n"
+      "estimators: [{name: standard, options: {num_iterations: 20}}]\ntrials: 2\n");
+  const ProgramResult run = RunRcme({"run", study, "--out", folder_.Path("run.sqlite")});
   EXPECT_EQ(run.exit_code, 0) << run.err;
 }
 

