@@ -11,22 +11,22 @@
 namespace rcme {
 namespace {
 
-// The rule's points: u = -14, -13.5, ... up to where the integrand is less than kNegligible of the sum.
-constexpr double kStep = 0.5, kFirst = -14.0;
-constexpr int kNumToPeak = 28, kMostPoints = 120;
-constexpr double kNegligible = 1e-10;
+// The rule's points: u = -14, -13.5, ... up to where the integrand is less than kNegligibleShare of the sum.
+constexpr double kLogStep = 0.5, kFirstLog = -14.0;
+constexpr int kNumStepsToPeak = 28, kMaxNumSteps = 120;
+constexpr double kNegligibleShare = 1e-10;
 
 }  // namespace
 
 double MeanDistance(const Eigen::VectorXd& variances, const Eigen::VectorXd& e) {
-  static const double ratio = PortableExp(kStep), first = PortableExp(kFirst);
+  static const double ratio = PortableExp(kLogStep), first = PortableExp(kFirstLog);
   // Below the first point the integrand falls by this factor a step: it is E Q sqrt(t) there.
-  static const double below = 1.0 / (PortableExp(0.5 * kStep) - 1.0);
+  static const double below = 1.0 / (PortableExp(0.5 * kLogStep) - 1.0);
   const Eigen::Index dimension = variances.size();
   const double mean_square = variances.sum() + e.squaredNorm();
   if (mean_square == 0.0) return 0.0;
   double t = first / mean_square, sum = 0.0;
-  for (int k = 0; k < kMostPoints; ++k, t *= ratio) {
+  for (int k = 0; k < kMaxNumSteps; ++k, t *= ratio) {
     double product = 1.0, exponent = 0.0, slope = 0.0;
     for (Eigen::Index i = 0; i < dimension; ++i) {
       const double inverse = 1.0 / (1.0 + 2.0 * variances(i) * t);
@@ -37,9 +37,9 @@ double MeanDistance(const Eigen::VectorXd& variances, const Eigen::VectorXd& e) 
     }
     const double value = std::sqrt(product * t) * PortableExp(-exponent) * slope;
     sum += k == 0 ? value * (1.0 + below) : value;
-    if (k > kNumToPeak && value < kNegligible * sum) break;
+    if (k > kNumStepsToPeak && value < kNegligibleShare * sum) break;
   }
-  return kStep * sum / std::sqrt(std::numbers::pi);
+  return kLogStep * sum / std::sqrt(std::numbers::pi);
 }
 
 double EnergyScore(const Eigen::VectorXd& e, const Eigen::MatrixXd& covariance) {
