@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/trial/trial_event.h"
@@ -26,11 +28,30 @@ Compared Measure(ComparedKind kind, const TrialMeasure& measure) {
           [measure](const TrialRecord& record, const FailureBounds&) { return measure.Of(record); }};
 }
 
+std::optional<double> KnownNumber(double number) {
+  return std::isnan(number) ? std::nullopt : std::optional<double>(number);
+}
+
 // The less the better, other than the scores of accuracy.
 Compared Brier() {
   return {ComparedKind::kScore, "brier",
           "Brier score (P - y)^2 of the stated probability of failure, 0 best; of answers that have one",
           BrierOfStated};
+}
+
+// Proper scores of the stated density, which have no upper bound: compared as errors are.
+std::vector<Compared> DensityScores() {
+  return {
+      {ComparedKind::kError, "energy_score_deg",
+       "energy score of the stated density, 0 best; of answers that have a covariance",
+       [](const TrialRecord& record, const FailureBounds&) {
+         return KnownNumber(record.density.energy_score_deg);
+       }},
+      {ComparedKind::kError, "log_score",
+       "logarithmic score of the stated density (nats), less is better; of answers whose covariance is "
+       "not singular",
+       [](const TrialRecord& record, const FailureBounds&) { return KnownNumber(record.density.log_score); },
+       "nats"}};
 }
 
 bool IsNamed(const Compared& compared, const std::string& name) {
@@ -58,6 +79,7 @@ const std::vector<Compared>& AllCompared() {
     for (const TrialMeasure& score : TrialScores()) compared.push_back(Measure(ComparedKind::kScore, score));
     compared.push_back(Brier());
     for (const TrialMeasure& error : TrialErrors()) compared.push_back(Measure(ComparedKind::kError, error));
+    for (const Compared& score : DensityScores()) compared.push_back(score);
     return compared;
   }();
   return all;

@@ -13,7 +13,7 @@ namespace rcme {
 enum class ComparedKind {
   kEvent,  // TrialEvents(): the rates
   kScore,  // TrialScores(): the means, in [0, 1]
-  kError   // TrialErrors(): the median of the trials' differences, deg
+  kError   // TrialErrors() and the scores of the stated density: the median of the trials' differences
 };
 std::string Name(ComparedKind kind);  // "event", "score", "error"
 
@@ -23,6 +23,7 @@ struct Compared {
   // What a trial gives: 0 or 1, a score, an error. Nothing where it says nothing about the estimator; a pair
   // needs both.
   std::function<std::optional<double>(const TrialRecord&, const FailureBounds&)> of;
+  const char* unit = "deg";  // of an error
 };
 
 // The events, then the scores, then the errors.

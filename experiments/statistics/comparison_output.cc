@@ -45,7 +45,7 @@ Method FindMethod(const ComparisonRow& row) {
   return FindMethod(is_by_means ? ComparedKind::kScore : row.kind, row.is_anytime_valid);
 }
 
-// In percentage points or degrees.
+// In percentage points or the error's unit.
 NumberFormat DifferenceFormat(ComparedKind kind) {
   return kind == ComparedKind::kError ? NumberFormat{1.0, "", "+.3g"} : NumberFormat{100.0, "", "+.2f"};
 }
@@ -76,11 +76,12 @@ std::string RenderComparedTable(const Compared& compared, const Comparison& comp
   columns.push_back({{"n", ColumnType::kCount}, [](R r) { return r.n; }});
   for (const auto& [heading, count] : ListPairedCounts(compared.kind, comparison.reference))
     columns.push_back({{heading, ColumnType::kCount}, [count = count](R r) { return r.counts.*count; }});
-  columns.push_back({{is_error ? "median difference (deg)" : "difference (% points)", ColumnType::kEstimate,
-                      DifferenceFormat(compared.kind)},
-                     [](R r) {
-                       return r.n > 0 ? Estimate{r.difference, r.interval} : Estimate();
-                     }});
+  columns.push_back(
+      {{is_error ? fmt::format("median difference ({})", compared.unit) : "difference (% points)",
+        ColumnType::kEstimate, DifferenceFormat(compared.kind)},
+       [](R r) {
+         return r.n > 0 ? Estimate{r.difference, r.interval} : Estimate();
+       }});
   columns.push_back({{"p", ColumnType::kNumber}, [](R r) { return r.p_value; }});
   columns.push_back({{"Holm p", ColumnType::kNumber}, [](R r) { return r.holm_p_value; }});
   columns.push_back({{" "}, [](R r) { return std::string(r.holm_p_value < 0.05 ? "*" : ""); }});

@@ -232,6 +232,21 @@ std::string DescribeIntervals(const Summary& summary) {
   return text;
 }
 
+// Coverage is not shown without sharpness: over the bounds, or, where these are unknown, in degrees.
+std::vector<std::string> ChooseQuantities(const Summary& summary) {
+  std::vector<std::string> quantities = {"failure",       "failure_or_refusal", "no_candidate",
+                                         "other_refusal", "kappa_flag",         "nees_coverage"};
+  const bool has_bounds = std::ranges::count(summary.rows, "sd_over_crb", &SummaryRow::quantity) > 0;
+  if (has_bounds) {
+    quantities.push_back("sd_over_crb");
+  } else {
+    quantities.insert(quantities.end(), {"rotation_sd_deg", "direction_sd_deg"});
+  }
+  quantities.insert(quantities.end(), {"nees_median", "energy_score_deg", "log_score", "rotation_error_deg",
+                                       "direction_error_deg", "time_ms"});
+  return quantities;
+}
+
 }  // namespace
 
 std::string QuantitiesAsTable(const Summary& summary, const std::vector<std::string>& quantities) {
@@ -241,9 +256,7 @@ std::string QuantitiesAsTable(const Summary& summary, const std::vector<std::str
 
 std::string SummaryAsTable(const Summary& summary) {
   std::string text = summary.preregistration ? PreregistrationAsText(*summary.preregistration) + "\n" : "";
-  text += FormatQuantities(
-      summary, {"failure", "failure_or_refusal", "no_candidate", "other_refusal", "kappa_flag",
-                "nees_coverage", "nees_median", "rotation_error_deg", "direction_error_deg", "time_ms"});
+  text += FormatQuantities(summary, ChooseQuantities(summary));
   text +=
       FormatAccuracy(summary) + FormatSplit(summary) + FormatSeverity(summary) + DescribeIntervals(summary);
   text +=
@@ -253,6 +266,10 @@ std::string SummaryAsTable(const Summary& summary) {
       "kappa_flag: the paper's own flag.\n"
       "nees_coverage: truth inside the reported 95 % region. covers: the whole\n"
       "interval is within 95 +- 1 %; too narrow: below it; too wide: above it.\n"
+      "sd_over_crb: sharpness, the stated sd over its Cramer-Rao bound; not right below\n"
+      "1; rotation_sd_deg, direction_sd_deg: the stated sd, where no bound is known.\n"
+      "energy_score_deg, log_score: of the stated density, the less the better. The\n"
+      "second leaves out singular_covariance (in --format csv).\n"
       "nees_median: 4.35 expected. auc_T_deg: mean of max(0, 1 - error / T).\n"
       "maa_10_deg: mean share of errors up to 1, 2, ..., 10 deg. --format csv and json\n"
       "hold all quantities, also those that leave refusals out.\n";

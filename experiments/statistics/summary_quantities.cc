@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/trial/severity_columns.h"
@@ -92,6 +93,28 @@ const std::vector<TrialQuantity>& OwnQuantities() {
        [](R r, B b) { return If(HasSucceeded(r, b), r.rotation_error_deg); }},
       {"direction_error_deg", kMean, "error of the translation direction, of successes",
        [](R r, B b) { return If(HasSucceeded(r, b), r.direction_error_deg); }},
+      {"rotation_sd_deg", kMedian,
+       "stated by the covariance: root of the trace of the rotation's block, of returned motions with one",
+       [](R r, B) { return If(IsOk(r), r.density.rotation_sd_deg); }},
+      {"direction_sd_deg", kMedian, "the same of the direction of translation",
+       [](R r, B) { return If(IsOk(r), r.density.direction_sd_deg); }},
+      {"sd_over_crb", kMedian,
+       "sharpness: geometric mean of the two over their Cramer-Rao bounds (no covariance below 1 is right), "
+       "of "
+       "returned motions with a bound",
+       [](R r, B) { return If(IsOk(r), r.density.sd_over_crb); }},
+      {"log_det_cov", kMean, "ln det of the stated covariance (5x5, rad), of returned motions with a density",
+       [](R r, B) { return If(IsOk(r), r.density.log_det_cov); }},
+      {"energy_score_deg", kMean,
+       "energy score of the stated density, 0 best, of returned motions with a covariance and a known truth",
+       [](R r, B) { return If(IsOk(r), r.density.energy_score_deg); }},
+      {"log_score", kMean,
+       "logarithmic score -ln p(error) of the stated density (nats), less is better, of the same but "
+       "singular_covariance",
+       [](R r, B) { return If(IsOk(r), r.density.log_score); }},
+      {"singular_covariance", kRate,
+       "a covariance that is singular, with no density and no log_score, of returned motions with one",
+       [](R r, B) { return If(IsOk(r) && r.density.HasCovariance(), r.density.IsSingular()); }},
       {"inlier_precision", kMean, "true ones among the final inliers, of returned motions",
        [](R r, B) { return If(IsOk(r), r.inlier_precision); }},
       {"inlier_recall", kMean, "final inliers among the true ones, of returned motions",
@@ -129,6 +152,13 @@ const std::vector<TrialQuantity>& OwnQuantities() {
 bool IsOfProbabilities(const std::string& quantity) {
   return quantity == "sigma_estimated_px" || quantity == "inlier_brier" ||
          quantity == "failure_probability" || quantity == "brier" || quantity == "failure_of_sure";
+}
+
+// Of what few data or estimators have: the bounds that real pairs do not have, a covariance.
+bool IsOfDensity(const std::string& quantity) {
+  return quantity == "rotation_sd_deg" || quantity == "direction_sd_deg" || quantity == "sd_over_crb" ||
+         quantity == "log_det_cov" || quantity == "energy_score_deg" || quantity == "log_score" ||
+         quantity == "singular_covariance";
 }
 
 // Of what only an estimator outside the program can do.
@@ -199,6 +229,12 @@ void LeaveOutRows(bool with_times, Summary* summary) {
       rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity) && row.n > 0; });
   if (!has_probabilities)
     std::erase_if(rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity); });
+  std::set<std::string> known;
+  for (const SummaryRow& row : rows)
+    if (row.n > 0) known.insert(row.quantity);
+  std::erase_if(rows, [&](const SummaryRow& row) {
+    return IsOfDensity(row.quantity) && !known.contains(row.quantity);
+  });
   const bool has_silence = std::ranges::any_of(
       rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity) && row.value > 0.0; });
   if (!has_silence) std::erase_if(rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity); });

@@ -30,8 +30,8 @@ const std::vector<ProblemQuantity>& ProblemQuantities();
 bool IsOfTimes(const std::string& quantity);
 
 // Takes away the rows of times, unless asked for, of probabilities, where no estimator states any, of what
-// only estimators outside the program do (timed_out, ...), where none did, and of trials that were not
-// simulated, where all were.
+// only estimators outside the program do (timed_out, ...), where none did, of trials that were not simulated,
+// where all were, and each of the stated density that no answer of the run has (sd_over_crb of real pairs).
 void LeaveOutRows(bool with_times, Summary* summary);
 
 }  // namespace rcme

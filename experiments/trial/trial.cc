@@ -105,6 +105,7 @@ TrialRecord ScoreJudged(const MotionEstimate& judged, const TrialData& data, dou
     return record;
   }
   ScoreMotion(judged, data.truth, &record);
+  record.density = DescribeStatedDensity(judged, data.truth, data.severity, record.nees);
   ScoreInliers(judged, data.truth, &record);
   return record;
 }

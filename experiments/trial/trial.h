@@ -5,6 +5,7 @@
 
 #include "estimator/motion_estimate.h"
 #include "experiments/study/study_plan.h"
+#include "experiments/trial/stated_density.h"
 
 namespace rcme {
 
@@ -28,6 +29,7 @@ struct TrialRecord {
   double failure_probability = 0.0;
   double sigma_estimated_px = 0.0, sigma_estimated_sd_px = 0.0;
   double inlier_brier = 0.0;
+  StatedDensity density;
   int doubt = 0;         // number of the Doubt (motion_estimate.h)
   double seconds = 0.0;  // and the time that an estimator outside the program took
 };

@@ -22,6 +22,37 @@ inline constexpr StoredColumn kEstimatorColumn = {"estimator", "", "number of th
 template <typename Record, typename Wanted>
 concept IsRecord = std::is_same_v<std::remove_const_t<Record>, Wanted>;
 
+template <IsRecord<StatedDensity> Density, typename Visitor>
+void VisitDensityColumns(Density& density, Visitor&& visit) {
+  visit(
+      StoredColumn{"density", "",
+                   "of the stated covariance: 0 none is stated, 1 it has a density, 2 it is singular and has "
+                   "none, so that there is no log_score"},
+      density.kind);
+  visit(StoredColumn{"rotation_sd_deg", "deg",
+                     "stated by the covariance: root of the trace of the rotation's block; NULL: none stated",
+                     kNotNegative},
+        density.rotation_sd_deg);
+  visit(StoredColumn{"direction_sd_deg", "deg", "the same of the direction of translation", kNotNegative},
+        density.direction_sd_deg);
+  visit(
+      StoredColumn{"sd_over_crb", "",
+                   "geometric mean of the two over their Cramer-Rao bounds; NULL likewise, or without bounds",
+                   kNotNegative},
+      density.sd_over_crb);
+  visit(
+      StoredColumn{"log_det_cov", "", "ln det of the stated covariance (5x5, rad); NULL: none, or singular"},
+      density.log_det_cov);
+  visit(StoredColumn{"energy_score_deg", "deg",
+                     "energy score of the stated density for the error, 0 best; NULL: none, or no truth",
+                     kNotNegative},
+        density.energy_score_deg);
+  visit(StoredColumn{"log_score", "nats",
+                     "logarithmic score -ln p(error) of the stated density, less is better; NULL: none, "
+                     "singular, or no truth"},
+        density.log_score);
+}
+
 // Calls `visit` with the StoredColumn and the field of each column, in the file's order.
 template <IsRecord<TrialRecord> Record, typename Visitor>
 void VisitColumns(Record& record, Visitor&& visit) {
@@ -88,6 +119,7 @@ void VisitColumns(Record& record, Visitor&& visit) {
                      "mean squared error of the inlier probabilities, undetectable wrong matches left aside",
                      kFromZeroToOne},
         record.inlier_brier);
+  VisitDensityColumns(record.density, visit);
   visit(
       StoredColumn{
           "doubt", "",

@@ -3,6 +3,11 @@
 A trial is a pure function of study, seed, condition and number, so the first trials of a committed run are those of a
 short one. Every field is hashed but the times: numbers with all their bits, so that nothing is equal that is not the
 same. The kernels give the same bits on every instruction set, and so do these hashes.
+
+A column that result files got later is no part of the older hashes: those that came together are a group with a part of
+its own (LATER), "condition 0, standard, density". What was stored before a group existed is compared without it and
+stays a proof of all that it covers; from the next time on that a result is stored, it covers the group too. A new column
+without a group changes every hash, so that none comes in unnoticed.
 """
 
 import hashlib
@@ -14,6 +19,9 @@ from audit_table import audit_rows
 from recipes import DIGESTS, ResultError, fresh, run
 
 NOT_HASHED = {"seconds", "checksum"}  # the wall time, and what is computed from it
+LATER = {"density": ("density", "rotation_sd_deg", "direction_sd_deg", "sd_over_crb", "log_det_cov", "energy_score_deg",
+                     "log_score")}  # columns of later versions, by group
+GROUPS = {column: group for group, columns in LATER.items() for column in columns}
 ANY_NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")  # what people read is compared without its words
 SKIPPED = re.compile(r"\.(png|pdf|md)$")  # figures and pages say what the tables say
 
@@ -35,9 +43,12 @@ def trials_of(path):
     for table in ("problems", "trials"):
         for row in database.execute(f"SELECT * FROM {table} ORDER BY condition, trial"):
             who = labels[row["estimator"]] if table == "trials" else "problem"
-            fields = [f"{name} {bits(row[name])}" for name in row.keys() if name not in NOT_HASHED | {"estimator"}]
-            part = f"condition {row['condition']}, {who}"
-            texts[part] = texts.get(part, "") + "\n".join(fields) + "\n"
+            for group in ("", *LATER):
+                fields = [f"{name} {bits(row[name])}" for name in row.keys()
+                          if name not in NOT_HASHED | {"estimator"} and GROUPS.get(name, "") == group]
+                if fields:
+                    part = f"condition {row['condition']}, {who}" + (f", {group}" if group else "")
+                    texts[part] = texts.get(part, "") + "\n".join(fields) + "\n"
     database.close()
     return texts
 
@@ -83,9 +94,22 @@ def store(new):
     DIGESTS.write_text(json.dumps(stored() | new, indent=0, sort_keys=True) + "\n")
 
 
+def group_of(part):
+    """The group of LATER that a part is of; none: of the first columns."""
+    file_name, _, what = part.partition(": ")
+    group = what.rpartition(", ")[2]
+    return group if file_name.endswith(".sqlite") and what.count(", ") > 1 and group in LATER else None
+
+
+def compared(old, new):
+    """The parts that `old` covers: all but those of groups that it has no part of."""
+    known = {group_of(part) for part in old} | {None}
+    return [part for part in dict.fromkeys([*old, *new]) if group_of(part) in known]
+
+
 def difference(name, old, new):
     """What a failing test says: which result, the first part that differs, and how to make it again."""
-    parts = [part for part in dict.fromkeys([*old, *new]) if old.get(part) != new.get(part)]
+    parts = [part for part in compared(old, new) if old.get(part) != new.get(part)]
     if not parts:
         return None
     return (f"{name}: the program no longer gives this result: {len(parts)} of {len(new)} parts differ, first "

@@ -3,12 +3,14 @@
 import os
 import pathlib
 import re
+import sqlite3
 import sys
 import tempfile
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts/reproduce"))
 
+from digests import difference, hash_of, trials_of  # noqa: E402
 from recipes import data, is_same, read_recipes, with_data  # noqa: E402
 from tables import filled  # noqa: E402
 
@@ -35,6 +37,48 @@ class TheSame(unittest.TestCase):
     def test_other_tables_are_compared_whole(self):
         self.assertFalse(self.same("a,b\n1,2\n3,4\n", old="a,b\n1,2\n"))
         self.assertFalse(self.same(OLD.replace("s,c,", "s,c,refusal,0.5\ns,c,"), name="summary.txt"))
+
+
+class TheDigests(unittest.TestCase):
+    """Columns that came later have parts of their own: what was stored without them stays a proof."""
+
+    def digests(self, columns):
+        """Of a file with these columns in the table trials, {name: value}."""
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder, "run.sqlite")
+            database = sqlite3.connect(path)
+            database.execute("CREATE TABLE estimators (estimator, label)")
+            database.execute("INSERT INTO estimators VALUES (0, 'a, b')")
+            database.execute("CREATE TABLE problems (condition, trial, weight, checksum)")
+            database.execute("INSERT INTO problems VALUES (0, 0, 1.0, 77)")
+            fields = {"condition": 0, "trial": 0, "estimator": 0, **columns}
+            database.execute(f"CREATE TABLE trials ({', '.join(fields)})")
+            database.execute(f"INSERT INTO trials VALUES ({', '.join('?' * len(fields))})", list(fields.values()))
+            database.commit()
+            database.close()
+            return {f"run.sqlite: {part}": hash_of(text) for part, text in trials_of(path).items()}
+
+    OLD = {"status": "ok", "nees": 4.5, "seconds": 0.1}
+    NEW = {"status": "ok", "nees": 4.5, "log_score": 2.5, "seconds": 0.2}
+
+    def test_a_column_of_a_later_group_leaves_the_old_hashes(self):
+        old, new = self.digests(self.OLD), self.digests(self.NEW)
+        self.assertEqual(len(new), len(old) + 1)
+        self.assertEqual({part: new[part] for part in old}, old)
+        self.assertIsNone(difference("name", old, new))
+
+    def test_the_old_columns_are_compared_all_the_same(self):
+        for change in ({"nees": 4.6}, {"status": "too_few_matches"}):
+            self.assertIn("1 of 3 parts differ", difference("name", self.digests(self.OLD), self.digests(self.NEW | change)))
+
+    def test_the_later_ones_are_once_they_are_stored(self):
+        stored = self.digests(self.NEW)
+        self.assertIsNone(difference("name", stored, self.digests(self.NEW)))
+        self.assertIn("density", difference("name", stored, self.digests(self.NEW | {"log_score": 2.6})))
+        self.assertIn("density", difference("name", stored, self.digests(self.OLD)))
+
+    def test_a_column_without_a_group_is_a_difference(self):
+        self.assertIsNotNone(difference("name", self.digests(self.OLD), self.digests(self.OLD | {"other": 1})))
 
 
 class TheData(unittest.TestCase):

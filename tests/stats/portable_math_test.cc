@@ -27,6 +27,21 @@ double ErrorOfCosSin(double u) {
                                       std::abs(static_cast<long double>(turn.sin) - std::sin(angle))));
 }
 
+TEST(PortableExp, ErrorIsBelow2em15Relative) {
+  RandomStream rng({.seed = 1, .purpose = 3});
+  double worst = 0.0, worst_x = 0.0;
+  for (int i = 0; i < 300'000; ++i) {
+    const double x = i % 2 == 0 ? rng.Uniform(-700.0, 700.0) : rng.Uniform(-2.0, 2.0);
+    const long double exact = std::exp(static_cast<long double>(x));
+    const auto error =
+        static_cast<double>(std::abs((static_cast<long double>(PortableExp(x)) - exact) / exact));
+    if (!(error <= worst)) worst = error, worst_x = x;
+  }
+  EXPECT_LT(worst, 2e-15) << worst_x;
+  EXPECT_EQ(PortableExp(0.0), 1.0);
+  EXPECT_EQ(PortableExp(-701.0), 0.0);
+}
+
 TEST(PortableLog, ErrorIsBelow2em15Relative) {
   RandomStream rng({.seed = 1, .purpose = 1});
   double worst = 0.0, worst_x = 0.0;

@@ -22,6 +22,13 @@ inline TrialRecord Motion(std::uint32_t trial, double rotation_deg, double direc
   record.rotation_error_deg = rotation_deg;
   record.direction_error_deg = direction_deg;
   record.nees = nees;
+  record.density.kind = static_cast<int>(StatedDensity::Kind::kRegular);
+  record.density.rotation_sd_deg = 0.5 + trial;
+  record.density.direction_sd_deg = 2.0 * (0.5 + trial);
+  record.density.sd_over_crb = 1.0 + trial;
+  record.density.log_det_cov = -50.0;
+  record.density.energy_score_deg = 0.5 * rotation_deg;
+  record.density.log_score = nees - 20.0;
   record.inlier_precision = 0.5;
   record.inlier_recall = 0.25;
   record.num_matches = 40;

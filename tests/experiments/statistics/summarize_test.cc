@@ -92,6 +92,44 @@ TEST_F(SummarizeTest, MeansByHand) {
   ExpectMean("num_candidates", {3, 3, 3, 3, 3, 3, 0, 0, 0, 0});
 }
 
+// Coverage has sharpness and scores of the stated density beside it, of every returned motion.
+TEST_F(SummarizeTest, ScoresOfTheStatedDensityByHand) {
+  ExpectMean("energy_score_deg", {0.5, 1.0, 1.5, 1.0, 1.75, 0.5});
+  ExpectMean("log_score", {-16.0, -14.0, 0.0, -18.0, 10.0, -17.0});
+  ExpectMean("log_det_cov", {-50.0, -50.0, -50.0, -50.0, -50.0, -50.0});
+  ExpectRate("singular_covariance", 0, 6);
+  EXPECT_EQ(Row("sd_over_crb").value, 3.0);  // of 1 .. 6 the lower middle
+  EXPECT_EQ(Row("rotation_sd_deg").value, 2.5);
+  EXPECT_EQ(Row("direction_sd_deg").value, 5.0);
+}
+
+// It has no logarithmic score, and is counted instead.
+TEST_F(SummarizeTest, ASingularCovarianceIsNamed) {
+  std::vector<TrialRecord> records = HandMadeRecords();
+  records[1].density.kind = static_cast<int>(StatedDensity::Kind::kSingular);
+  records[1].density.log_det_cov = records[1].density.log_score = kNaN;
+  Write("singular", records);
+  std::map<std::string, SummaryRow> rows;
+  for (const SummaryRow& row : SummarizeRun("singular").rows)
+    if (row.condition == 0 && row.estimator == "standard") rows[row.quantity] = row;
+  EXPECT_EQ(rows.at("singular_covariance").value, 1.0 / 6.0);
+  EXPECT_EQ(rows.at("log_score").n, 5);
+  EXPECT_EQ(rows.at("energy_score_deg").n, 6);
+}
+
+// The text shows sharpness beside coverage: in degrees where no bound is known.
+TEST_F(SummarizeTest, CoverageIsNotShownWithoutSharpness) {
+  const std::string text = SummaryAsTable(SummarizeRun("run"));
+  for (const char* column : {"nees_coverage  ", "sd_over_crb  ", "energy_score_deg  ", "log_score  "})
+    EXPECT_NE(text.find(column), std::string::npos) << column;
+  std::vector<TrialRecord> records = HandMadeRecords();
+  for (TrialRecord& record : records) record.density.sd_over_crb = kNaN;
+  Write("unbounded", records);
+  const Summary unbounded = SummarizeRun("unbounded");
+  EXPECT_EQ(std::ranges::count(unbounded.rows, "sd_over_crb", &SummaryRow::quantity), 0);
+  EXPECT_NE(SummaryAsTable(unbounded).find("rotation_sd_deg  "), std::string::npos);
+}
+
 // Every returned motion counts, failures too: their NEES are 4, 6, 20, 2, 30, 3.
 TEST_F(SummarizeTest, MediansByHand) {
   const SummaryRow nees = Row("nees_median"), time = Row("time_ms");
