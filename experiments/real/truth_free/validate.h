@@ -47,8 +47,8 @@ struct SetReport {
 
 struct ValidationOptions {
   std::uint64_t seed = 1;
-  int num_twins = 3;  // of each pair
-  TwinField field;    // of the twins' noise
+  int num_twins = 3;     // of each pair
+  TwinField field = {};  // of the twins' noise
 };
 
 // What is computed of a pair is a step. Pure in the options' seed and the pairs' names. The random numbers of
