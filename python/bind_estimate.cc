@@ -168,10 +168,11 @@ std::vector<FailureBounds> MakeBounds(const AnglePairs& pairs) {
   return bounds;
 }
 
-py::dict Estimate(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2, double sigma_px,
-                  std::vector<double> noise_scale, const std::string& name, const std::string& file,
-                  const Settings& options, std::uint64_t seed, bool allow_process, const AnglePairs& bounds,
-                  double integrity_risk, const std::optional<MotionPrior>& prior) {
+py::dict EstimatePair(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2,
+                      double sigma_px, std::vector<double> noise_scale, const std::string& name,
+                      const std::string& file, const Settings& options, std::uint64_t seed,
+                      bool allow_process, const AnglePairs& bounds, double integrity_risk,
+                      const std::optional<MotionPrior>& prior) {
   const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
   MotionProblem problem = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
   problem.prior = prior;
@@ -282,7 +283,7 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
 void BindEstimate(py::module_& module) {
   py::class_<Lens>(module, "Camera").def(py::init(&MakeCamera)).def("find_unreached", &FindUnreached);
   py::class_<MotionPrior>(module, "MotionPrior").def(py::init(&MakePrior));
-  module.def("estimate", &Estimate);
+  module.def("estimate", &EstimatePair);
   module.def("estimate_many", &EstimateMany);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <sstream>
 
+#include "experiments/data/camera_noise.h"
 #include "experiments/data/match_file.h"
 #include "experiments/real/images/image_header.h"
 #include "experiments/study/estimator_file.h"
@@ -125,6 +126,31 @@ TEST(MutatedInput, Studies) {
     ToYaml(study);
   });
   EXPECT_GT(outcomes.num_read, 100);  // else the mutants are too far from studies to reach the code behind
+  EXPECT_GT(outcomes.num_refused, 1000);
+}
+
+// What is read is written, and read again as the same.
+TEST(MutatedInput, NoiseFiles) {
+  const std::string noise_file =
+      "rcme_camera_noise: 1\n"
+      "rests_on: {pairs: 12, matches: 3456, effective_pairs: 9.5, estimator: rcme_calibrated}\n"
+      "camera: {width: 640, height: 480, fx: 700.5, fy: 701.25, cx: 319.5, cy: 239.5}\n"
+      "sigma_px: {value: 0.25, standard_error: 0.01}\n"
+      "size_exponent: {value: 0.5, standard_error: 0.125}\n"
+      "key_point_px: 0.03\n"
+      "displacement_field: {sd_px: 0.125, standard_error: 0.02, reach_px: 80, reach_factor: 1.25}\n"
+      "camera_faults:\n"
+      "  focal_length: {value: 0.01, standard_error: 0.001, removed: 0.0098, removed_standard_error: 9e-4}\n"
+      "  distortion: {value: 0.02, standard_error: 0.004}\n"
+      "correlations: [1, -0.5, -0.5, 1]\n"
+      "removed_correlations: [1]\n"
+      "systematic_displacement: {columns: 2, rows: 1, rms_px: 0.25, p_value: 0.002, dx_px: [0.1, -0.2], "
+      "dy_px: [0.3, 0.4]}\n";
+  const Outcomes outcomes = ReadDamaged({noise_file}, YamlWords(), 3000, [](const std::string& input) {
+    const std::string written = CameraNoiseAsYaml(ParseCameraNoise(input, "noise.yaml"));
+    EXPECT_EQ(CameraNoiseAsYaml(ParseCameraNoise(written, "noise.yaml")), written);
+  });
+  EXPECT_GT(outcomes.num_read, 10);  // every key is read, so that few changes leave a noise file
   EXPECT_GT(outcomes.num_refused, 1000);
 }
 

@@ -51,7 +51,7 @@ struct ValidationOptions {
   std::uint64_t seed = 1;
   int num_twins = 3;        // of each pair
   size_t longest_loop = 0;  // images, of the closure by length; 0: it is not asked for
-  TwinField field;          // of the twins' noise
+  TwinField field = {};     // of the twins' noise
 };
 
 // What is computed of a pair is a step. Pure in the options' seed and the pairs' names. The random numbers of
