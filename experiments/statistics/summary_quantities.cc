@@ -99,8 +99,7 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       {"direction_sd_deg", kMedian, "the same of the direction of translation",
        [](R r, B) { return If(IsOk(r), r.density.direction_sd_deg); }},
       {"sd_over_crb", kMedian,
-       "sharpness: geometric mean of the two over their Cramer-Rao bounds (no covariance below 1 is right), "
-       "of "
+       "sharpness: geometric mean of the two over their Cramer-Rao bounds (below 1 none is right), of "
        "returned motions with a bound",
        [](R r, B) { return If(IsOk(r), r.density.sd_over_crb); }},
       {"log_det_cov", kMean, "ln det of the stated covariance (5x5, rad), of returned motions with a density",
