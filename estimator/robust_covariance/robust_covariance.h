@@ -37,7 +37,7 @@ struct RobustCovarianceOptions {
   CalibrationPrior calibration;
   // Variances that are known of the camera, in place of those that the pair's own residuals tell; none of
   // Parameters.
-  std::optional<KnownVariances> known_variances;
+  std::optional<KnownVariances> known_variances = {};
 };
 // covariance_factor and covariance_jackknife.
 std::vector<Parameter> Parameters(RobustCovarianceOptions& options);

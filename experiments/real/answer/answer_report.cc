@@ -17,14 +17,16 @@ namespace rcme {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using F = const FileAnswer&;
 
-bool HasMotion(F file) { return file.error.empty() && file.answer.estimate.status == MotionStatus::kOk; }
+bool HasMotion(const FileAnswer& file) {
+  return file.error.empty() && file.answer.estimate.status == MotionStatus::kOk;
+}
 
 // A number of a motion; nothing without one.
 ColumnOf<FileAnswer> MotionColumn(const Column& column,
                                   const std::function<Value(const MotionEstimate&)>& of) {
-  return {column, [of](F file) { return HasMotion(file) ? of(file.answer.estimate) : Value(); }};
+  return {column,
+          [of](const FileAnswer& file) { return HasMotion(file) ? of(file.answer.estimate) : Value(); }};
 }
 
 // R and t element by element; JSON has them as lists.
@@ -51,7 +53,7 @@ void AddBoundColumns(const AnswerTerms& terms, std::vector<ColumnOf<FileAnswer>>
         Column::Number(fmt::format("failure_probability_{}_{}", terms.bounds[i].max_rotation_error_deg,
                                    terms.bounds[i].max_direction_error_deg));
     column.json_name = kNotInJson;
-    columns->push_back({column, [i](F file) {
+    columns->push_back({column, [i](const FileAnswer& file) {
                           const auto& found = file.answer.for_bounds;
                           return i < found.size() ? Value(found[i].failure_probability) : Value();
                         }});
@@ -61,7 +63,7 @@ void AddBoundColumns(const AnswerTerms& terms, std::vector<ColumnOf<FileAnswer>>
 void AddLevelColumns(const AnswerTerms& terms, std::vector<ColumnOf<FileAnswer>>* columns) {
   if (!terms.integrity_risk) return;
   const auto add = [&](const std::string& name, double ProtectionLevels::*level) {
-    columns->push_back({Column::Number(name), [level](F file) {
+    columns->push_back({Column::Number(name), [level](const FileAnswer& file) {
                           const auto& protection = file.answer.protection;
                           return protection ? Value(kDegPerRad * (protection->levels.*level)) : Value();
                         }});
@@ -77,14 +79,15 @@ std::string FindPairName(const std::string& path) {
 }
 
 std::string RenderAnswers(const std::vector<FileAnswer>& files, const AnswerTerms& terms) {
-  const auto is_read = [](F file) { return file.error.empty(); };
-  const bool has_errors = std::ranges::any_of(
-      files, [&](F file) { return is_read(file) && !std::isnan(file.answer.record.rotation_error_deg); });
+  const auto is_read = [](const FileAnswer& file) { return file.error.empty(); };
+  const bool has_errors = std::ranges::any_of(files, [&](const FileAnswer& file) {
+    return is_read(file) && !std::isnan(file.answer.record.rotation_error_deg);
+  });
   const AnswerTableColumns columns{terms.bounds, terms.integrity_risk.has_value(), has_errors};
   Table table;
   for (const std::string& name : ListAnswerColumns(columns)) table.columns.push_back(Column::Text(name));
   table.columns.front().is_key = true;
-  for (F file : files) {
+  for (const FileAnswer& file : files) {
     if (!is_read(file)) continue;
     const std::vector<std::string> row = FormatAnswerRow(FindPairName(file.path), file.answer, columns);
     table.rows.emplace_back(row.begin(), row.end());
@@ -108,12 +111,12 @@ Json FileAnswerAsJson(const FileAnswer& file, const AnswerTerms& terms) {
 
 Table MakeFileAnswerTable(const std::vector<FileAnswer>& files, const AnswerTerms& terms) {
   const auto of_read = [](const std::function<Value(const PairAnswer&)>& value) {
-    return [value](F file) { return file.error.empty() ? value(file.answer) : Value(); };
+    return [value](const FileAnswer& file) { return file.error.empty() ? value(file.answer) : Value(); };
   };
   std::vector<ColumnOf<FileAnswer>> columns = {
-      {Column::Key("file"), [](F file) { return file.path; }},
+      {Column::Key("file"), [](const FileAnswer& file) { return file.path; }},
       {Column::Text("status"),
-       [](F file) {
+       [](const FileAnswer& file) {
          return StatusName(file.error.empty() ? file.answer.estimate.status : MotionStatus::kInvalidInput);
        }},
       {Column::Count("num_matches"), of_read([](const PairAnswer& a) { return a.record.num_matches; })},
@@ -141,8 +144,9 @@ Table MakeFileAnswerTable(const std::vector<FileAnswer>& files, const AnswerTerm
   add_error("direction_error_deg", &TrialRecord::direction_error_deg);
   add_error("nees", &TrialRecord::nees);
   AddMatrixColumns(&columns);
-  columns.push_back({Column::Text("message"),
-                     [](F file) { return file.error.empty() ? file.answer.estimate.message : file.error; }});
+  columns.push_back({Column::Text("message"), [](const FileAnswer& file) {
+                       return file.error.empty() ? file.answer.estimate.message : file.error;
+                     }});
   return MakeTable(columns, files);
 }
 
