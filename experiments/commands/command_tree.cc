@@ -161,10 +161,14 @@ std::string DescribeUnexpected(const CLI::App& app) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::vector<std::string> words = (chosen.empty() ? &app : chosen.front())->remaining();
   const std::string footer = chosen.empty() ? app.get_footer() : "";
+  const bool is_command = chosen.empty() && !words.empty() && !words.front().starts_with('-');
   return fmt::format(
-      "The following arguments were not expected: {}\n{}{}{}Run with --help for more information.\n",
-      Printable(fmt::format("{}", fmt::join(words, " "))), SuggestionsFor(app), footer,
-      footer.empty() ? "" : "\n");
+      "{}{}{}{}{}\n",
+      is_command ? fmt::format("rcme: there is no command {}\n", Quoted(words.front()))
+                 : fmt::format("The following arguments were not expected: {}\n",
+                               Printable(fmt::format("{}", fmt::join(words, " ")))),
+      SuggestionsFor(app), footer, footer.empty() ? "" : "\n",
+      is_command ? "rcme --help lists the commands." : "Run with --help for more information.");
 }
 
 }  // namespace rcme

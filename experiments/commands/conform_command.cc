@@ -170,7 +170,7 @@ Examples:
   AddStudyAndEstimator(command, arguments.get());
   command->add_option("-o,--out", arguments->out,
                       "the file to be written; with --check the report, instead of standard output");
-  command->add_option("--check", arguments->check, "a file of before, to be tested on the study's problems");
+  command->add_option("--check", arguments->check, "an earlier file, to be tested on the study's problems");
   command
       ->add_option(
           "--models", arguments->models,

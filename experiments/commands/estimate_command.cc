@@ -308,7 +308,7 @@ The default estimator, rcme_calibrated, states the probability that its motion i
 options, so an estimator that you tuned by simulation runs on real pairs with the same
 options. Its answer has its label. For example:
   name: rcme
-  label: rcme_tuned
+  label: tuned_for_my_camera
   options: {reading: rank_aware, mu: 5.25, lambda: 0.6}
 `rcme run STUDY --add-estimator tuned.yaml` reads the same file.
 

@@ -216,6 +216,12 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
         {place, fmt::format("key points lie to the left of and above the principal point ({:.6g}, {:.6g}); "
                             "K is of a larger image, unless the matches are of one corner",
                             camera.cx, camera.cy)});
+  const Eigen::Vector2d reach = (greatest - centre).cwiseAbs().cwiseMax((least - centre).cwiseAbs());
+  if (const double tangent = std::hypot(reach.x() / camera.fx, reach.y() / camera.fy); tangent > kWideCorner)
+    doubts.push_back(
+        {place, fmt::format("with fx = {:.6g} key points lie {:.1f} degrees off the axis; no pinhole "
+                            "image shows that much, so check that fx, fy, cx and cy are in px",
+                            camera.fx, kDegPerRad * std::atan(tangent))});
   const Numbers K = {camera.fx, camera.fy, camera.cx, camera.cy};
   if (const auto order = FindOrder(K, least + greatest, kFarFromCentre);
       order && ComputePixelLength(K) > kOddPixels)

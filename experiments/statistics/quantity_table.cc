@@ -8,6 +8,7 @@
 
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -85,9 +86,9 @@ void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& 
   }
   for (const std::string& quantity : quantities) {
     if (!known.contains(quantity))
-      throw InputError(
-          fmt::format("--quantities: {} is not a quantity of an estimator in this summary; allowed: {}",
-                      Quoted(quantity), fmt::join(known, ", ")));
+      throw InputError(fmt::format(
+          "--quantities: {} is not a quantity of an estimator in this summary{}; allowed: {}",
+          Quoted(quantity), DidYouMean(quantity, {known.begin(), known.end()}), fmt::join(known, ", ")));
   }
 }
 

@@ -170,6 +170,8 @@ TEST(CameraPlausibility, KeyPointsStandForASizeThatIsNotKnown) {
   EXPECT_NE(SayOfPoints({600, 319.5, 600, 239.5, 0, 0}, PointsOnAGrid(), false).find("look like fx cx fy cy"),
             std::string::npos);
   EXPECT_EQ(SayOfPoints({1, 1, 0, 0, 0, 0}, PointsOnAGrid(1.2, 1.2, -0.6), false), "");  // in units of f
+  EXPECT_NE(SayOfPoints({1.5, 1.5, 319.5, 239.5, 0, 0}, PointsOnAGrid(), false).find("degrees off the axis"),
+            std::string::npos);  // fx and fy in mm
   // Without distortion points lie outside, but on either side.
   EXPECT_EQ(SayOfPoints(right, PointsOnAGrid(1100, 480, -230), false), "");
   const Camera sized{600, 600, 319.5, 239.5, 640, 480};
