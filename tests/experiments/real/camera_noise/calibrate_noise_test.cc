@@ -184,7 +184,7 @@ TEST(CalibrateNoise, FindsADisplacementOfAllImages) {
   const NoiseCalibration found = CalibrateTaken(taken, 3);
   EXPECT_LT(found.systematic.p_value, 0.001);
   ASSERT_GT(found.noise.systematic.columns, 0);
-  EXPECT_THAT(NoiseCalibrationAsText(found, "swirl"), HasSubstr("removed"));
+  EXPECT_THAT(MakeNoiseCalibrationResult(found, "swirl").text, HasSubstr("removed"));
   double before = 0.0, after = 0.0;
   for (double x = 100.0; x <= 540.0; x += 20.0) {
     for (double y = 80.0; y <= 400.0; y += 20.0) {
@@ -313,7 +313,7 @@ TEST(Validate, TwinsDrawTheFieldOfTheNoise) {
   noise.reach_px = 80.0;
   const auto estimator = WithSharedNoise(MakeEstimator("rcme_calibrated"), noise, false);
   const auto validate = [&](const TwinField& field) {
-    const SetReport report = Validate(taken.set, *estimator, {1, 3, field});
+    const SetReport report = Validate(taken.set, *estimator, {1, 3, 0, field});
     return *std::ranges::find(report.tests, std::string("spatial_halves"), &TruthFreeTest::name);
   };
   const TruthFreeTest with = validate({noise.DisplacementShare(), noise.reach_px}), without = validate({});
