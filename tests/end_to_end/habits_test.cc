@@ -114,8 +114,8 @@ TEST_F(Habits, EveryCommandShowsExamples) {
 }
 
 TEST_F(Habits, ASlipOfThePenIsUnderstood) {
-  EXPECT_TRUE(
-      IsRefused(RunRcme({"sumarize", "run.sqlite", "more"}), {"not expected: sumarize run.sqlite more\n"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"sumarize", "run.sqlite", "more"}), {"there is no command 'sumarize'\n"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"--trails", "3"}), {"not expected: --trails 3\n"}));
   EXPECT_TRUE(IsRefused(RunRcme({"sumarize", out_}), {"'sumarize' (did you mean 'summarize'?)"}));
   EXPECT_TRUE(IsRefused(Run({"--out", out_, "--trails", "3"}), {"'--trails' (did you mean '--trials'?)"}));
   EXPECT_TRUE(

@@ -174,12 +174,12 @@ TEST_F(TuneProgram, Transfer) {
   EXPECT_EQ(json["families"].size(), 2u);
   EXPECT_NE(result.out.find("outlier_ratio = 0.3"), std::string::npos) << result.out;
   ExpectFormatsAgree({"transfer", study_, "--out", out, "--by", "outlier_ratio"});
-  ExpectFormatsAgree({"tune", study_, "--out", out_});
   const std::string bytes = ReadBytes(out + "/transfer.json");
   ASSERT_EQ(Call("transfer", {"--out", out, "--threads", "1"}).exit_code, 0);
   EXPECT_EQ(ReadBytes(out + "/transfer.json"), bytes);
   EXPECT_TRUE(IsRefused(Call("transfer", {"--out", out, "--by", "scene"}), {"--by scene", "outlier_ratio"}));
   EXPECT_TRUE(IsRefused(Call("transfer", {"--out", out, "--tune", "target=risk"}), {"transfer", "risk"}));
+  ExpectFormatsAgree({"tune", study_, "--out", out_});
 }
 
 }  // namespace
