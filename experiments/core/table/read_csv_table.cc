@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <sstream>
 
 #include "experiments/core/text/field_text.h"
 #include "parameters/parameter.h"
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
@@ -41,8 +41,7 @@ Value ParseValue(const std::string& field, ColumnType type) {
 Table ReadCsvTable(const std::string& text) {
   const NumberFormat all_digits{1.0, "", ".3g", ".2g", ""};
   Fields lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(CsvFields(line));
+  for (const std::string& line : SplitText(text, '\n')) lines.push_back(CsvFields(line));
   Table table;
   if (lines.empty()) return table;
   for (size_t c = 0; c < lines[0].size(); ++c)
