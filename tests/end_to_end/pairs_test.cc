@@ -149,8 +149,8 @@ TEST(PairsProgram, EndsWithTwoAndThePathWhereSomethingIsWrong) {
   EXPECT_TRUE(IsRefused(pairs({"--layout", "npz"}), {"--K: fx fy cx cy", "only key points and matches"}));
   EXPECT_TRUE(IsRefused(pairs({"--layout", "npz", "--K", "500", "500", "320", "240"}),
                         {dataset + ": holds no *.npz"}));
-  EXPECT_TRUE(IsRefused(pairs({"--layout", "npz", "--every", "2"}),
-                        {"--every: does not apply to the layout npz"}));
+  EXPECT_TRUE(
+      IsRefused(pairs({"--layout", "npz", "--every", "2"}), {"--every: does not apply to the layout npz"}));
   EXPECT_TRUE(IsRefused(pairs({"--layout", "kitti", "--K", "1", "1", "0", "0"}),
                         {"--K: does not apply to the layout kitti"}));
   EXPECT_TRUE(IsRefused(pairs({"--layout", "kitti", "--detector", "surf"}), {"--detector", "surf"}));

@@ -48,7 +48,7 @@ inline std::vector<std::pair<std::string, nlohmann::json>> ListFields(const nloh
 }
 
 // Every value of a row of JSON that has a column in CSV is there too; two of them at least, and in some row
-// half of the columns.
+// a third of the columns: arrays of JSON are several in CSV.
 inline void ExpectSameRows(const std::string& csv, const nlohmann::json& rows,
                            double tolerance = kEightDigits) {
   std::vector<std::vector<std::string>> lines;
@@ -70,7 +70,7 @@ inline void ExpectSameRows(const std::string& csv, const nlohmann::json& rows,
     most_compared = std::max(most_compared, num_compared);
   }
   if (!rows.empty()) {
-    EXPECT_GE(2 * most_compared, lines[0].size()) << csv;
+    EXPECT_GE(3 * most_compared, lines[0].size()) << csv;
   }
 }
 
