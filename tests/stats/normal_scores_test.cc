@@ -22,7 +22,7 @@ double CrpsOfNormal(double e, double sd) {
   return sd * (z * std::erf(z / std::numbers::sqrt2) + 2.0 * phi - 1.0 / std::sqrt(std::numbers::pi));
 }
 
-MatrixXd CovarianceOf(RandomStream* rng, double scale_ratio) {
+MatrixXd DrawScaledCovariance(RandomStream* rng, double scale_ratio) {
   MatrixXd root(5, 5);
   for (int i = 0; i < 5; ++i)
     for (int j = 0; j < 5; ++j) root(i, j) = rng->Normal() * std::pow(scale_ratio, i / 4.0);
@@ -62,7 +62,7 @@ TEST(EnergyScore, IsThatOfDraws) {
   // errors: a false alarm in 8 * 7e-6.
   RandomStream rng({.seed = 3, .purpose = 91});
   for (int c = 0; c < 8; ++c) {
-    const MatrixXd covariance = CovarianceOf(&rng, c % 2 == 0 ? 1.0 : 1e-3);
+    const MatrixXd covariance = DrawScaledCovariance(&rng, c % 2 == 0 ? 1.0 : 1e-3);
     const MatrixXd root = covariance.llt().matrixL();
     const auto draw = [&] {
       VectorXd z(5);
@@ -85,7 +85,7 @@ TEST(EnergyScore, IsThatOfDraws) {
 TEST(NormalScores, AreBestForTheTrueDensity) {
   // 5,000 errors from N(0, Sigma), scored by densities whose sds are 0.7, 1 and 1.4 times as large.
   RandomStream rng({.seed = 3, .purpose = 92});
-  const MatrixXd covariance = CovarianceOf(&rng, 0.1), root = covariance.llt().matrixL();
+  const MatrixXd covariance = DrawScaledCovariance(&rng, 0.1), root = covariance.llt().matrixL();
   double energy[3] = {}, log_score[3] = {};
   for (int k = 0; k < 5'000; ++k) {
     VectorXd z(5);

@@ -48,7 +48,7 @@ FaultVector ListRemoved(const CameraNoise& noise, bool is_readout) {
 }
 
 // Over sigma^2.
-KnownVariances KnownVariancesOf(const CameraNoise& noise) {
+KnownVariances FindKnownVariances(const CameraNoise& noise) {
   const double key_point = noise.key_point_px / noise.sigma_px.value;
   KnownVariances known;
   known.of_key_point = key_point * key_point;
@@ -159,7 +159,7 @@ void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, boo
                      MotionEstimate* estimate) {
   if (estimate->status != MotionStatus::kOk) return;
   RobustCovarianceOptions options;
-  options.known_variances = KnownVariancesOf(noise);
+  options.known_variances = FindKnownVariances(noise);
   const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(estimate->pose_cov);
   MotionEstimate by_file = *estimate;
   if (options.known_variances->own < 1.0) MakeCovarianceRobust(problem, options, own_cov, &by_file);

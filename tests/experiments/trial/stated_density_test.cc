@@ -37,7 +37,7 @@ Severity Bounds(double rotation_deg, double direction_deg) {
   return severity;
 }
 
-double NeesOf(const Vector5d& error) {
+double ComputeNeesOfError(const Vector5d& error) {
   return error.head<3>().squaredNorm() / (kRotationSd * kRotationSd) +
          error.tail<2>().squaredNorm() / (kDirectionSd * kDirectionSd);
 }
@@ -47,8 +47,9 @@ const Vector5d kError = (Vector5d() << 0.001, -0.003, 0.002, 0.02, -0.01).finish
 TEST(StatedDensity, SharpnessIsStatedOverTheBounds) {
   const double rotation_deg = kDegPerRad * std::sqrt(3.0) * kRotationSd;
   const double direction_deg = kDegPerRad * std::numbers::sqrt2 * kDirectionSd;
-  const StatedDensity density = DescribeStatedDensity(
-      Answer(), TruthAway(kError), Bounds(0.5 * rotation_deg, 2.0 * direction_deg), NeesOf(kError));
+  const StatedDensity density =
+      DescribeStatedDensity(Answer(), TruthAway(kError), Bounds(0.5 * rotation_deg, 2.0 * direction_deg),
+                            ComputeNeesOfError(kError));
   EXPECT_NEAR(density.rotation_sd_deg, rotation_deg, 1e-12);
   EXPECT_NEAR(density.direction_sd_deg, direction_deg, 1e-12);
   EXPECT_NEAR(density.sd_over_crb, 1.0, 1e-12) << "2 and 1/2";
@@ -62,8 +63,8 @@ TEST(StatedDensity, LogScoreIsTheProductOfOneDimensionalDensities) {
     const double sd = i < 3 ? kRotationSd : kDirectionSd, z = kError(i) / sd;
     expected += 0.5 * z * z + std::log(sd * std::sqrt(2.0 * std::numbers::pi));
   }
-  EXPECT_NEAR(DescribeStatedDensity(Answer(), TruthAway(kError), {}, NeesOf(kError)).log_score, expected,
-              1e-9);
+  EXPECT_NEAR(DescribeStatedDensity(Answer(), TruthAway(kError), {}, ComputeNeesOfError(kError)).log_score,
+              expected, 1e-9);
 }
 
 TEST(StatedDensity, EnergyScoreIsThatOfDraws) {
@@ -82,8 +83,9 @@ TEST(StatedDensity, EnergyScoreIsThatOfDraws) {
     sum += score, squares += score * score;
   }
   const double mean = sum / kNumPairs, sd = std::sqrt(squares / kNumPairs - mean * mean);
-  EXPECT_NEAR(DescribeStatedDensity(Answer(), TruthAway(kError), {}, NeesOf(kError)).energy_score_deg, mean,
-              4.5 * sd / std::sqrt(1.0 * kNumPairs));
+  EXPECT_NEAR(
+      DescribeStatedDensity(Answer(), TruthAway(kError), {}, ComputeNeesOfError(kError)).energy_score_deg,
+      mean, 4.5 * sd / std::sqrt(1.0 * kNumPairs));
 }
 
 TEST(StatedDensity, OfASingularCovarianceHasAnEnergyScoreAlone) {

@@ -29,7 +29,7 @@ void RunNumpy(const TempFolder& folder, const std::string& code) {
   ASSERT_EQ(std::system(command.c_str()), 0) << code;
 }
 
-DatasetOptions OptionsOf(const std::string& folder) {
+DatasetOptions MakeNpzOptions(const std::string& folder) {
   DatasetOptions options;
   options.folder = folder;
   options.name = "hall";
@@ -38,7 +38,7 @@ DatasetOptions OptionsOf(const std::string& folder) {
 }
 
 MatchFile ReadOnly(const std::string& folder) {
-  const auto pairs = OpenNpzPairs(OptionsOf(folder));
+  const auto pairs = OpenNpzPairs(MakeNpzOptions(folder));
   EXPECT_EQ(pairs->size(), 1u);
   return pairs->Read(0).file;
 }
@@ -78,7 +78,7 @@ TEST(OpenNpzPairs, ReadsWhatNumpyWritesInEveryForm) {
     EXPECT_EQ(file.scene, "hall");
     EXPECT_EQ(file.camera2.fy, 510);
     EXPECT_EQ(file.camera1.width, 641);
-    EXPECT_EQ(OpenNpzPairs(OptionsOf(path))->PairId(0), "a_b");
+    EXPECT_EQ(OpenNpzPairs(MakeNpzOptions(path))->PairId(0), "a_b");
   }
 }
 
@@ -90,7 +90,7 @@ TEST(OpenNpzPairs, NeedsNoScoresAndKeepsThoseOfMatchesThatALensShows) {
   RunNumpy(distorted,
            std::string(kByPoint) +
                "p0[0] = 9e5\nsave('a', keypoints0=p0, keypoints1=p1, matches=m, match_confidence=c)\n");
-  DatasetOptions options = OptionsOf(distorted.path());
+  DatasetOptions options = MakeNpzOptions(distorted.path());
   options.lens = LensModel::kRadtan;
   options.distortion = {-0.2, 0, 0, 0};
   const MatchFile file = OpenNpzPairs(options)->Read(0).file;
@@ -111,7 +111,7 @@ TEST(OpenNpzPairs, EndsInMatchFiles) {
   options.out = out.Path("pairs");
   options.gate.criterion.reset();
   PairJournal journal(options.out, "test");
-  MakeListedPairs(*OpenNpzPairs(OptionsOf(folder.path())), options, &journal);
+  MakeListedPairs(*OpenNpzPairs(MakeNpzOptions(folder.path())), options, &journal);
   ExpectMatches(ReadMatchFile(options.out + "/a.csv"));
 }
 
@@ -159,7 +159,7 @@ TEST(OpenNpzPairs, RefusesWhatIsWrongInASentenceThatNamesTheArray) {
 
 TEST(OpenNpzPairs, NeedsAFolderWithFilesAndK) {
   const TempFolder folder;
-  DatasetOptions options = OptionsOf(folder.path());
+  DatasetOptions options = MakeNpzOptions(folder.path());
   EXPECT_TRUE(ThrowsInputError([&] { OpenNpzPairs(options); }, {folder.path(), "holds no *.npz"}));
   options.K.clear();
   EXPECT_TRUE(ThrowsInputError([&] { OpenNpzPairs(options); }, {"--K: fx fy cx cy", "is needed"}));
