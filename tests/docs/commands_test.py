@@ -41,7 +41,7 @@ ELSEWHERE = {
 # Places for the reader's own things, and how a command of minutes becomes one of a second: (pattern, what it becomes).
 SHORTER = [
     (r"^\$rcme", "rcme"),
-    (r"\bSTUDY --until ci=0.01\b", "STUDY --until ci=0.3"),
+    (r"\bSTUDY --until ci=0.01\b", "STUDY --set outlier_ratio=0.1 --until ci=0.3"),
     (r"^rcme (tune|transfer) (STUDY|studies/tune_acceptance.yaml)",
      r"rcme \1 studies/tune_acceptance.yaml --set outlier_ratio=0.1"),
     (r"^rcme tune (\S+)", r"rcme tune \1 --set scene=room"),
@@ -58,7 +58,7 @@ SHORTER = [
     (r"^rcme audit (\S+yaml) (.*?)(--only estimator )?--out", r"rcme audit \1 \2--only inlier.true_pose.rank_aware --set outlier_ratio=0 --out"),
     (r"^rcme ask (.*)--within 1m", r"rcme ask \1--trials 10"),
     (r"^rcme integrity (.*)--trials 500", r"rcme integrity \1--trials 4"),
-    (r"^rcme solve (.*)$", r"rcme solve \1 --trials 100"),
+    (r"^rcme solve (.*)$", r"rcme solve \1 --set num_matches=60 --trials 100"),
     (r"^rcme map (.*)$", r"rcme map \1 --trials 4"),
     (r"^rcme transfer (\S*transfer_mu.yaml)", r"rcme transfer \1 --set scene=uniform_volume --set num_matches=60"),
     (r"^rcme (tune|transfer) (.*)$", r"rcme \1 \2 --tune explore=10 --tune calibrate=40 --tune verify=5 --tune at_most=0.9"),

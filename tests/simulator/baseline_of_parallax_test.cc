@@ -48,9 +48,13 @@ void ExpectParallax(const std::string& scene, const std::string& cameras, const 
   EXPECT_LT(measured.standard_error(), 0.05 * wanted) << "no power";
 }
 
-TEST(ParallaxAskedFor, IsMeasuredInEverySceneWithEveryCameras) {
-  for (const SceneEntry& scene : SceneRegistry()) {
-    for (const CameraEntry& cameras : CameraRegistry()) ExpectParallax(scene.name, cameras.name, "", "1.5");
+TEST(ParallaxAskedFor, IsMeasuredInEveryScene) {
+  for (const SceneEntry& scene : SceneRegistry()) ExpectParallax(scene.name, "", "", "1.5");
+}
+
+TEST(ParallaxAskedFor, IsMeasuredWithEveryCameras) {
+  for (const CameraEntry& cameras : CameraRegistry()) {
+    for (const char* scene : {"uniform_volume", "room"}) ExpectParallax(scene, cameras.name, "", "1.5");
   }
 }
 

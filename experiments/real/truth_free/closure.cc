@@ -132,7 +132,7 @@ std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of,
 
 std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
                                         const std::vector<Loop>& loops, LoopErrorOf error_of,
-                                        SharedErrors shared, TwinKeyPoints twins) {
+                                        SharedErrors shared) {
   std::vector<UnitValues> closures;
   for (const Loop& loop : loops) {
     if (error_of == DirectionClosure && loop.size() != 3) continue;
@@ -142,8 +142,8 @@ std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
       for (const LoopStep& step : loop) {
         const Answered* answered = choose(answers[step.pair]);
         if (!answered || !answered->IsOk()) return std::vector<AnsweredStep>();
-        const NamedPair* named = twins == TwinKeyPoints::kOfPairs ? &answers[step.pair].whole.pair : nullptr;
-        steps.push_back({&answered->pair, &answered->estimate, step.is_forward, named});
+        steps.push_back(
+            {&answered->pair, &answered->estimate, step.is_forward, &answers[step.pair].whole.pair});
       }
       return steps;
     };

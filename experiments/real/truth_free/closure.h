@@ -17,7 +17,8 @@ struct AnsweredStep {
   const NamedPair* pair;
   const MotionEstimate* estimate;
   bool is_forward = true;  // from the pair's image 1 to its image 2
-  // Whose matches, of the same numbers, tell by equal coordinates which share a key point; null: the pair's.
+  // Whose matches, of the same numbers, tell by equal coordinates which share a key point: the pair of a
+  // twin, since each twin is moved to the geometry of its own pair; null: the pair's.
   const NamedPair* key_points = nullptr;
 };
 using AnsweredLoop = std::span<const AnsweredStep>;
@@ -47,15 +48,11 @@ enum class SharedErrors { kAllowedFor, kIgnored };
 std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of, const LoopError& expected,
                                         SharedErrors shared = SharedErrors::kAllowedFor);
 
-// Which coordinates tell that matches of two twins share a key point: their own, which differ from pair to
-// pair, since each twin is moved to the geometry of its pair; or those of the pairs that they were made of.
-enum class TwinKeyPoints { kOwn, kOfPairs };
-
 // Of each loop whose pairs are answered: the value above, and those of its twins. A pair that is in several
-// loops makes these dependent. Directions: of the loops of three images.
+// loops makes these dependent. Matches of twins share a key point where those of their pairs do. Directions:
+// of the loops of three images.
 std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
                                         const std::vector<Loop>& loops, LoopErrorOf error_of,
-                                        SharedErrors shared = SharedErrors::kAllowedFor,
-                                        TwinKeyPoints twins = TwinKeyPoints::kOwn);
+                                        SharedErrors shared = SharedErrors::kAllowedFor);
 
 }  // namespace rcme

@@ -29,8 +29,7 @@ LoopDistances ComputeLoopDistances(const std::vector<PairAnswers>& answers, cons
       members.push_back(images[step.pair].image1);
       members.push_back(images[step.pair].image2);
     }
-    for (const UnitValues& values :
-         ComputeClosures(answers, {loop}, RotationClosure, shared, TwinKeyPoints::kOfPairs)) {
+    for (const UnitValues& values : ComputeClosures(answers, {loop}, RotationClosure, shared)) {
       for (const double value : values.observed) distances.of_pairs.push_back({members, value});
       std::vector<std::int64_t> of_twin = members;
       for (const double value : values.null) {
