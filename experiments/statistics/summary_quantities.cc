@@ -24,6 +24,21 @@ constexpr const char* kNotSimulatedDoc =
 
 bool IsOk(const TrialRecord& r) { return r.status == MotionStatus::kOk; }
 
+bool IsAvailable(const TrialRecord& r, const FailureBounds& bounds) {
+  return r.density.rotation_level_deg <= bounds.max_rotation_error_deg &&
+         r.density.direction_level_deg <= bounds.max_direction_error_deg;
+}
+
+bool HasKnownLevels(const TrialRecord& r) {
+  return IsOk(r) && !std::isnan(r.density.rotation_level_deg) && !std::isnan(r.rotation_error_deg) &&
+         !std::isnan(r.direction_error_deg);
+}
+
+bool IsMisleading(const TrialRecord& r) {
+  return r.rotation_error_deg > r.density.rotation_level_deg ||
+         r.direction_error_deg > r.density.direction_level_deg;
+}
+
 bool IsSure(const TrialRecord& r) {
   const std::optional<double> stated = StatedFailureProbability(r);
   return stated && *stated <= kSureBelow;
@@ -114,6 +129,12 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       {"singular_covariance", kRate,
        "a covariance that is singular, with no density and no log_score, of returned motions with one",
        [](R r, B) { return If(IsOk(r) && r.density.HasCovariance(), r.density.IsSingular()); }},
+      {"available", kRate, "both protection levels (risk 0.01) within the failure bounds, of all trials",
+       [](R r, B b) { return Yes(IsOk(r) && IsAvailable(r, b)); }},
+      {"misleading", kRate,
+       "an error beyond its protection level (risk 0.01 each, so that at most 0.02 is right), of returned "
+       "motions with a known truth",
+       [](R r, B) { return If(HasKnownLevels(r), IsMisleading(r)); }},
       {"inlier_precision", kMean, "true ones among the final inliers, of returned motions",
        [](R r, B) { return If(IsOk(r), r.inlier_precision); }},
       {"inlier_recall", kMean, "final inliers among the true ones, of returned motions",
@@ -157,7 +178,7 @@ bool IsOfProbabilities(const std::string& quantity) {
 bool IsOfDensity(const std::string& quantity) {
   return quantity == "rotation_sd_deg" || quantity == "direction_sd_deg" || quantity == "sd_over_crb" ||
          quantity == "log_det_cov" || quantity == "energy_score_deg" || quantity == "log_score" ||
-         quantity == "singular_covariance";
+         quantity == "singular_covariance" || quantity == "available" || quantity == "misleading";
 }
 
 // Of what only an estimator outside the program can do.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "estimator/protection_level.h"
 #include "stats/normal_scores.h"
 
 namespace rcme {
@@ -17,6 +18,12 @@ void DescribeSharpness(const Matrix5d& pose_cov, const Severity& severity, State
     density->sd_over_crb = std::sqrt(density->rotation_sd_deg * density->direction_sd_deg / bounds);
 }
 
+void DescribeLevels(const MotionEstimate& estimate, StatedDensity* density) {
+  const ProtectionLevels levels = ComputeProtectionLevels(estimate, kLevelRisk);
+  density->rotation_level_deg = kDegPerRad * levels.rotation_rad;
+  density->direction_level_deg = kDegPerRad * levels.direction_rad;
+}
+
 }  // namespace
 
 StatedDensity DescribeStatedDensity(const MotionEstimate& estimate, const Truth& truth,
@@ -25,6 +32,7 @@ StatedDensity DescribeStatedDensity(const MotionEstimate& estimate, const Truth&
   StatedDensity density;
   if (estimate.status != MotionStatus::kOk) return density;
   DescribeSharpness(estimate.pose_cov, severity, &density);
+  DescribeLevels(estimate, &density);
   density.log_det_cov = LogDeterminant(estimate.pose_cov);
   density.kind = static_cast<int>(std::isnan(density.log_det_cov) ? Kind::kSingular : Kind::kRegular);
   if (!truth.cam2_from_cam1_true || !truth.is_direction_known) return density;

@@ -10,6 +10,8 @@
 namespace rcme {
 
 // Unknown numbers are NaN.
+inline constexpr double kLevelRisk = 0.01;  // integrity risk of the protection levels of every trial
+
 struct StatedDensity {
   enum class Kind {
     kNone,      // no valid answer, no covariance
@@ -28,6 +30,8 @@ struct StatedDensity {
   // sum of both densities, and so are these scores of the sum.
   double energy_score_deg = kNaN;
   double log_score = kNaN;  // nats; finite or unknown
+  // What the errors exceed with probability kLevelRisk at most (estimator/protection_level.h).
+  double rotation_level_deg = kNaN, direction_level_deg = kNaN;
 
   bool HasCovariance() const { return kind != static_cast<int>(Kind::kNone); }
   bool IsSingular() const { return kind == static_cast<int>(Kind::kSingular); }

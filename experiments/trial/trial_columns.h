@@ -51,6 +51,13 @@ void VisitDensityColumns(Density& density, Visitor&& visit) {
                      "logarithmic score -ln p(error) of the stated density, less is better; NULL: none, "
                      "singular, or no truth"},
         density.log_score);
+  visit(StoredColumn{"rotation_level_deg", "deg",
+                     "protection level at the risk 0.01: what the rotation error exceeds with at most this "
+                     "probability, as stated; NULL: no covariance",
+                     kNotNegative},
+        density.rotation_level_deg);
+  visit(StoredColumn{"direction_level_deg", "deg", "the same of the direction of translation", kNotNegative},
+        density.direction_level_deg);
 }
 
 // Calls `visit` with the StoredColumn and the field of each column, in the file's order.

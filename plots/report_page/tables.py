@@ -9,7 +9,7 @@ from rates.selection import difference_interval_in_words, interval_in_words, tes
 from reliability_figure.reliability_file import STATED
 
 SHOWN = ("failure", "failure_or_refusal", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "sd_over_crb",
-         "rotation_sd_deg", "direction_sd_deg", "nees_median", "energy_score_deg", "log_score", "rotation_error_deg",
+         "rotation_sd_deg", "direction_sd_deg", "nees_median", "energy_score_deg", "log_score", "available", "misleading", "rotation_error_deg",
          "direction_error_deg", "auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg",
          "max_error_median_deg")  # of the results; all others stand in the table of every number
 PANEL = {"impossible": "impossible", "parallax_median_deg": "parallax", "homography_share": "plane", "crb_direction_deg": "bound"}

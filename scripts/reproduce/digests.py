@@ -20,7 +20,8 @@ from recipes import DIGESTS, ResultError, fresh, run
 
 NOT_HASHED = {"seconds", "checksum"}  # the wall time, and what is computed from it
 LATER = {"density": ("density", "rotation_sd_deg", "direction_sd_deg", "sd_over_crb", "log_det_cov", "energy_score_deg",
-                     "log_score")}  # columns of later versions, by group
+                     "log_score"),
+         "levels": ("rotation_level_deg", "direction_level_deg")}  # columns of later versions, by group
 GROUPS = {column: group for group, columns in LATER.items() for column in columns}
 ANY_NUMBER = re.compile(r"[-+]?\d+\.?\d*(?:e[-+]?\d+)?")  # what people read is compared without its words
 SKIPPED = re.compile(r"\.(png|pdf|md)$")  # figures and pages say what the tables say

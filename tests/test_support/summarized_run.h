@@ -29,6 +29,8 @@ inline TrialRecord Motion(std::uint32_t trial, double rotation_deg, double direc
   record.density.log_det_cov = -50.0;
   record.density.energy_score_deg = 0.5 * rotation_deg;
   record.density.log_score = nees - 20.0;
+  record.density.rotation_level_deg = 1.0 + trial;
+  record.density.direction_level_deg = 2.0 * trial;
   record.inlier_precision = 0.5;
   record.inlier_recall = 0.25;
   record.num_matches = 40;

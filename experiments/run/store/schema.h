@@ -9,7 +9,7 @@
 
 namespace rcme {
 
-inline constexpr const char* kResultFormat = "rcme results 9";  // `run` holds it as "format"
+inline constexpr const char* kResultFormat = "rcme results 10";  // `run` holds it as "format"
 
 struct ResultColumn {
   std::string name, type;  // INTEGER, REAL or TEXT

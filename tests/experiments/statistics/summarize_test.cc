@@ -98,6 +98,8 @@ TEST_F(SummarizeTest, ScoresOfTheStatedDensityByHand) {
   ExpectMean("log_score", {-16.0, -14.0, 0.0, -18.0, 10.0, -17.0});
   ExpectMean("log_det_cov", {-50.0, -50.0, -50.0, -50.0, -50.0, -50.0});
   ExpectRate("singular_covariance", 0, 6);
+  ExpectRate("available", 3, 10);  // rotation levels of 1, 2, 3 deg; the next is beyond the bound of 3
+  ExpectRate("misleading", 4, 6);  // directions beyond levels of 0, 2, 4 and 10 deg
   EXPECT_EQ(Row("sd_over_crb").value, 3.0);  // of 1 .. 6 the lower middle
   EXPECT_EQ(Row("rotation_sd_deg").value, 2.5);
   EXPECT_EQ(Row("direction_sd_deg").value, 5.0);
@@ -121,7 +123,8 @@ TEST_F(SummarizeTest, ASingularCovarianceIsNamed) {
 TEST_F(SummarizeTest, CoverageIsNotShownWithoutSharpness) {
   std::string text = SummaryAsTable(SummarizeRun("run"));
   text.resize(text.find("Rates: intervals"));  // without the legend
-  for (const char* column : {"nees_coverage", "sd_over_crb", "energy_score_deg", "log_score"})
+  for (const char* column :
+       {"nees_coverage", "sd_over_crb", "energy_score_deg", "log_score", "available", "misleading"})
     EXPECT_NE(text.find(column), std::string::npos) << column;
   std::vector<TrialRecord> records = HandMadeRecords();
   for (TrialRecord& record : records) record.density.sd_over_crb = kNaN;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "stats/distributions.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -86,6 +87,19 @@ TEST(StatedDensity, EnergyScoreIsThatOfDraws) {
   EXPECT_NEAR(
       DescribeStatedDensity(Answer(), TruthAway(kError), {}, ComputeNeesOfError(kError)).energy_score_deg,
       mean, 4.5 * sd / std::sqrt(1.0 * kNumPairs));
+}
+
+// Of axes of one standard deviation the squared length over it is chi-square, of 3 and of 2 coordinates.
+TEST(StatedDensity, LevelsAreQuantilesOfChiSquare) {
+  const StatedDensity density = DescribeStatedDensity(Answer(), {}, {}, kNaN);
+  EXPECT_NEAR(density.rotation_level_deg, kDegPerRad * kRotationSd * std::sqrt(ChiSquareQuantile(3, 0.99)),
+              1e-6);
+  EXPECT_NEAR(density.direction_level_deg, kDegPerRad * kDirectionSd * std::sqrt(-2.0 * std::log(0.01)),
+              1e-6);
+  MotionEstimate unsure = Answer();
+  unsure.failure_probability = 0.02;
+  EXPECT_NEAR(DescribeStatedDensity(unsure, {}, {}, kNaN).direction_level_deg, 180.0, 1e-9)
+      << "above the risk";
 }
 
 TEST(StatedDensity, OfASingularCovarianceHasAnEnergyScoreAlone) {

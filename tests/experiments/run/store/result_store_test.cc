@@ -327,7 +327,7 @@ TEST_F(ResultStoreTest, RefusesFilesOfOthers) {
   const std::string later = folder_.Path("later.sqlite");
   { ResultStore::OpenForRun(later, plan_); }
   Query(later, "UPDATE run SET value = 'rcme results 99' WHERE key = 'format'");
-  EXPECT_TRUE(RefusesToRun(later, {"another version", "'rcme results 99'", "'rcme results 9'"}));
+  EXPECT_TRUE(RefusesToRun(later, {"another version", "'rcme results 99'", "'rcme results 10'"}));
   EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading(later); }, {later, "another version"}));
 }
 
