@@ -50,6 +50,9 @@ struct Marginal {
   double claimed = std::numeric_limits<double>::quiet_NaN();  // NaN: nothing
   // How far the interval lies from what is claimed, in half widths of itself; 0: the claim is in it.
   double excess = 0.0;
+  // Of a coverage: how sharp its regions are, the geometric mean of sd_over_crb of the same answers. NaN: not
+  // known, or no coverage.
+  double sd_over_crb = std::numeric_limits<double>::quiet_NaN();
   std::int64_t num_conditions = 0, n = 0;
 };
 
