@@ -250,13 +250,13 @@ std::string Name(MarginalQuantity quantity) {
   return {};
 }
 
-std::vector<Moments> CollectConditionMoments(const ResultStore& run, size_t estimator,
-                                             MarginalQuantity quantity) {
+std::vector<ConditionMoments> CollectConditionMoments(const ResultStore& run, size_t estimator,
+                                                      MarginalQuantity quantity) {
   const Values values = CollectValues(run, run.Description());
   const auto place = std::ranges::find(kMarginalQuantities, quantity) - std::begin(kMarginalQuantities);
-  std::vector<Moments> moments;
+  std::vector<ConditionMoments> moments;
   for (const ConditionValues& one : values[estimator][static_cast<size_t>(place)])
-    moments.push_back(one.moments);
+    moments.push_back({one.moments, one.log_sd_over_crb});
   return moments;
 }
 

@@ -62,10 +62,13 @@ struct Marginals {
   std::vector<Marginal> rows;  // the farthest from what is claimed first, then by regime as listed
 };
 
-// Of one estimator and quantity: what the trials of each condition say of it. Throws InputError for weighted
-// trials.
-std::vector<Moments> CollectConditionMoments(const ResultStore& run, size_t estimator,
-                                             MarginalQuantity quantity);
+// What the trials of a condition say of a quantity of one estimator.
+struct ConditionMoments {
+  Moments of_quantity, log_sd_over_crb;  // the second of a coverage alone, of its answers with a bound
+};
+// By condition. Throws InputError for weighted trials.
+std::vector<ConditionMoments> CollectConditionMoments(const ResultStore& run, size_t estimator,
+                                                      MarginalQuantity quantity);
 
 struct MarginalOptions {
   bool with_pairs = false;
