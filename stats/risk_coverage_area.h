@@ -16,13 +16,10 @@ struct ClusteredOutcome {
 };
 
 // Mean over k = 1..n of the share that failed among the k surest (Geifman & El-Yaniv 2017), equal scores in
-// random order: sum_i y_i (H_n - H_(rank_i - 1)) / n with the harmonic numbers H. Its limit is
-// A = E[y (-log u)], u the rank as a share, so that trial j moves it by
-//   (y_j (-log u_j) - int_(u_j)^1 r(u) / u du - A + E[y]) / n,  r(u) the rate of failures at rank u,
-// and the standard error is by clusters. The interval is Student's on the logarithm; without a failure,
-// [0, q (1 - log q)], the greatest area that a rate q has, with q the upper end of the exact interval of the
-// rate of no failures in as many trials as there are clusters.
-// Throws std::invalid_argument if there are no outcomes or a score is NaN.
+// random order: the ranked loss of ranked_loss.h, a failure a loss of 1. The standard error is by clusters.
+// The interval is Student's on the logarithm; without a failure, [0, q (1 - log q)], the greatest area that a
+// rate q has, with q the upper end of the exact interval of the rate of no failures in as many trials as
+// there are clusters. Throws std::invalid_argument if there are no outcomes or a score is NaN.
 ClusteredEstimate MeasureRiskCoverageArea(std::span<const ClusteredOutcome> outcomes,
                                           double confidence = 0.95);
 

@@ -107,6 +107,9 @@ Answer AnswerQuestion(const ResultStore& run, double at_most) {
     answer.stated = FindEstimate(summary, best, "failure_probability");
     answer.failed = WidenForChoice(EstimateFailed(stated), answer.num_estimators);
   }
+  answer.sd_over_crb = FindEstimate(summary, best, "sd_over_crb").value;
+  answer.rotation_sd_deg = FindEstimate(summary, best, "rotation_sd_deg").value;
+  answer.direction_sd_deg = FindEstimate(summary, best, "direction_sd_deg").value;
   answer.coverage = WidenForChoice(FindEstimate(summary, best, "nees_coverage"), answer.num_estimators);
   return answer;
 }

@@ -11,6 +11,7 @@
 #include "experiments/core/table/table.h"
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/coverage_verdict.h"
+#include "stats/constants.h"
 
 namespace rcme {
 
@@ -40,6 +41,8 @@ struct Answer {
   std::optional<AcceptRule> rule;   // certified; nothing: none is
   Estimate stated, failed;          // mean stated probability, and rate of failure of the same answers
   Estimate coverage;                // of the 95 % region
+  // Medians of what the covariances state, without intervals; NaN: not known.
+  double sd_over_crb = kNaN, rotation_sd_deg = kNaN, direction_sd_deg = kNaN;
 };
 
 // Throws InputError for a run of several conditions, and for a trial that is not sound.

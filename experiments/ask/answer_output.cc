@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 
 namespace rcme {
@@ -16,6 +18,15 @@ namespace {
 
 // The parts of the answer: what a line is about, and what it says.
 using Lines = std::vector<std::pair<std::string, std::string>>;
+
+// A region covers as often as it likes if it is wide enough.
+std::string DescribeSharpness(const Answer& a) {
+  if (!std::isnan(a.sd_over_crb))
+    return fmt::format("; stated sd {:.3g} times the least possible", a.sd_over_crb);
+  if (std::isnan(a.rotation_sd_deg)) return "";
+  return fmt::format("; stated sd {:.2g} deg of rotation, {:.2g} deg of direction", a.rotation_sd_deg,
+                     a.direction_sd_deg);
+}
 
 Lines DescribeAnswer(const Answer& a) {
   const auto percent = [](const Estimate& estimate) { return FormatEstimate(estimate, kPercent); };
@@ -44,7 +55,8 @@ Lines DescribeAnswer(const Answer& a) {
     lines.emplace_back("Trust in P", fmt::format("states {:.2f} % on average; fail: {}",
                                                  100.0 * a.stated.value, percent(a.failed)));
   }
-  lines.emplace_back("Covariance", "95 % region contains the truth in " + percent(a.coverage));
+  lines.emplace_back("Covariance",
+                     "95 % region contains the truth in " + percent(a.coverage) + DescribeSharpness(a));
   lines.emplace_back(
       "Time",
       fmt::format("{:.3g} ms a call{}", a.best.time_ms,
@@ -114,6 +126,9 @@ std::string AnswerAsJson(const Answer& a, const std::string& question) {
     json["failed"] = RenderJson(a.failed);
   }
   json["coverage"] = RenderJson(a.coverage);
+  json["sd_over_crb"] = JsonNumber(a.sd_over_crb);
+  json["rotation_sd_deg"] = JsonNumber(a.rotation_sd_deg);
+  json["direction_sd_deg"] = JsonNumber(a.direction_sd_deg);
   return JsonText(kAnswerFormat, json);
 }
 

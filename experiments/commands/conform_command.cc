@@ -28,7 +28,7 @@ constexpr int kShiftIsNoticed = 1;  // exit code
 struct ConformArguments : EstimatorRunArguments {
   std::string check, models, format = "table";
   std::string new_problem = "usual";
-  bool is_needs = false;
+  bool is_needs = false, is_by_strata = false;
   ConformPromise promise;
 };
 
@@ -127,7 +127,8 @@ void Conform(const ConformArguments& arguments) {
   if (!answers) return;
   const ConformReport report =
       checked ? CheckConform(plan, *checked, *answers) : Calibrate(arguments, plan, new_problem, *answers);
-  PrintResult(MakeConformResult(report), arguments.format, is_check ? arguments.out : "");
+  PrintResult(MakeConformResult(report, arguments.is_by_strata), arguments.format,
+              is_check ? arguments.out : "");
   runner.RemoveCheckpoint();
   if (report.shift && report.shift->noticed_after) throw EndWith{kShiftIsNoticed};
 }
@@ -161,6 +162,7 @@ noticed (at level 5 %), else 0; 2: wrong input.
 
 Examples:
   rcme conform --needs --wrong-and-accepted 0.01
+  rcme conform own_camera --estimator standard --by-strata --out mine.conform.json
   rcme conform own_camera --estimator rcme_calibrated --out mine.conform.json
   rcme conform pairs.yaml --estimator opencv_magsac --level 0.9 --out mine.conform.json
   rcme conform pairs.yaml --models simulated.conform.json --out mine.conform.json
@@ -197,6 +199,10 @@ Examples:
       ->check(MakeChoiceValidator({"usual", "trial", "condition"}))
       ->capture_default_str();
   command->add_flag("--needs", arguments->is_needs, "print how many answers the promises need, and end");
+  command->add_flag(
+      "--by-strata", arguments->is_by_strata,
+      "also coverage and size by quarters of what is visible of an answer (matches, parallax over "
+      "its noise, planarity, stated sd and probability), in table and json");
   AddTrialsOption(command, arguments.get());
   AddFormatOption(command, &arguments->format);
   AddRunOptions(command, arguments.get());

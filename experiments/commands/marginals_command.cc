@@ -19,7 +19,8 @@ estimator:
                           probabilities of failure; claimed: 0
   failed - P at P <= 0.1  the same of the answers that the estimator was sure of
   coverage                truth within the stated 95 % region, of answers with P <= 0.01, or
-                          of successes if the estimator states no probability; claimed: 95 %
+                          of successes if the estimator states no probability; claimed: 95 %.
+                          Beside it sd_over_crb, how sharp these regions are
   failure                 share of the trials that failed; nothing is claimed
 A factor with more than eight levels that are numbers is divided into fifths of its
 conditions. Conditions count as a random sample of a population, as in a study with a

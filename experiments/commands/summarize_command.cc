@@ -9,6 +9,7 @@
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/message.h"
+#include "experiments/statistics/coverage_strata_output.h"
 #include "experiments/statistics/forecast_output.h"
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/summarize_counts.h"
@@ -38,8 +39,16 @@ struct Arguments {
   std::string run, format = "table", raw, fifths_of, out;
   std::vector<std::string> quantities;  // empty: the usual ones of the format
   std::vector<std::string> labels;      // of a table for a paper
-  bool with_times = false, is_pooled = false;
+  bool with_times = false, is_pooled = false, is_by_strata = false;
 };
+
+void PrintStrata(const Arguments& arguments) {
+  if (KeepsCounts(arguments.run))
+    throw InputError(arguments.run + ": --by-strata needs all trials, not counts (rcme run --keep all)");
+  const ResultStore store = ResultStore::OpenForReading(arguments.run);
+  PrintResult(MakeStrataResult(store.Description().study, MeasureCoverageStrata(store)), arguments.format,
+              arguments.out);
+}
 
 // NAME=TEXT each, the text with whatever it has.
 Settings ParseLabels(const std::vector<std::string>& texts) {
@@ -63,15 +72,13 @@ void WarnOfRefusals(const Summary& summary) {
 }
 
 std::string RenderSummary(Summary summary, const Arguments& arguments) {
-  const std::vector<std::string>& quantities = arguments.quantities;
-  if (arguments.format == "latex") {
-    return SummaryAsLatex(summary, quantities.empty() ? DefaultLatexQuantities() : quantities,
-                          ParseLabels(arguments.labels));
-  }
-  if (arguments.format == "markdown") {
-    return RenderMarkdown(
-        MakeQuantityTable(summary, quantities.empty() ? DefaultLatexQuantities() : quantities));
-  }
+  CheckAreQuantities(summary, arguments.quantities);
+  const bool is_of_paper = arguments.format == "latex" || arguments.format == "markdown";
+  const bool are_usual = is_of_paper && arguments.quantities.empty();
+  const std::vector<std::string> quantities =
+      AddSharpness(summary, are_usual ? DefaultLatexQuantities() : arguments.quantities);
+  if (arguments.format == "latex") return SummaryAsLatex(summary, quantities, ParseLabels(arguments.labels));
+  if (arguments.format == "markdown") return RenderMarkdown(MakeQuantityTable(summary, quantities));
   if (arguments.format == "table")
     return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
   if (!quantities.empty()) KeepQuantities(quantities, &summary);
@@ -105,14 +112,16 @@ Examples:
   rcme summarize run.sqlite --format csv --out summary.csv
   rcme summarize run.sqlite --format latex --quantities failure,nees_coverage --labels rcme=RCME
   rcme summarize run.sqlite --fifths-of crb_direction_deg
+  rcme summarize run.sqlite --by-strata
   rcme summarize run.sqlite --raw csv --out trials.csv)");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   CLI::Option* format = AddFormatOption(command, &arguments->format);
   command
-      ->add_option("--quantities", arguments->quantities,
-                   "a,b,...: these alone (rcme list quantities); default: the main ones in a table, all in "
-                   "csv and json")
+      ->add_option(
+          "--quantities", arguments->quantities,
+          "a,b,...: these alone (rcme list quantities), nees_coverage with how sharp the covariances "
+          "are; default: the main ones in a table, all in csv and json")
       ->delimiter(',');
   command
       ->add_option("--labels", arguments->labels,
@@ -138,7 +147,19 @@ Examples:
                    "crb_direction_deg, planarity, ... (rcme list quantities)")
       ->excludes("--raw")
       ->excludes("--pooled");
+  command
+      ->add_flag(
+          "--by-strata", arguments->is_by_strata,
+          "coverage and sharpness by quarters of what is visible at run time (matches, inliers, stated "
+          "sd and probability), over all conditions")
+      ->excludes("--raw")
+      ->excludes("--pooled")
+      ->excludes("--fifths-of")
+      ->excludes("--quantities")
+      ->excludes("--labels")
+      ->excludes("--times");
   command->callback([arguments] {
+    if (arguments->is_by_strata) return PrintStrata(*arguments);
     const Pooling pooling = arguments->is_pooled ? Pooling::kPooled : Pooling::kPerCondition;
     if (arguments->raw.empty() && KeepsCounts(arguments->run)) {
       if (!arguments->fifths_of.empty())

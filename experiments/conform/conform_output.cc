@@ -6,20 +6,22 @@
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <span>
 
+#include "experiments/conform/conform_strata.h"
 #include "experiments/conform/fit_rule.h"
+#include "experiments/conform/region_kinds.h"
 #include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/statistics/coverage_strata_output.h"
+#include "experiments/statistics/share_of_clusters.h"
 #include "stats/clustered_estimate.h"
 #include "stats/conformal.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
 #include "stats/forecast.h"
-#include "stats/intervals.h"
 #include "stats/median_ratio.h"
 #include "stats/risk_control.h"
 
@@ -28,56 +30,21 @@ namespace {
 
 using Judged = std::vector<JudgedAnswer>;
 
-constexpr double kWholeSpaceDeg = 180.0;
 const NumberFormat kShare{100.0, "%", ".1f", ".2g"};
-
-// A region of each answer: the factor of the stated covariance, or a ball.
-struct RegionKind {
-  std::string name;
-  std::function<bool(const JudgedAnswer&)> covers;
-  std::function<double(const JudgedAnswer&)> size_deg;  // geometric mean of the semi-axes
-};
-
-double ComputeRegionSize(const JudgedAnswer& answer, double factor) {
-  const double radius = std::sqrt(factor * ChiSquareQuantile(5, answer.level));
-  const double size_deg = kDegPerRad * radius * std::exp(answer.row.log_det / 10.0);
-  return std::isfinite(factor) ? std::min(size_deg, kWholeSpaceDeg) : kWholeSpaceDeg;
-}
-
-RegionKind RegionOfFactor(const std::string& name, const std::function<double(const JudgedAnswer&)>& factor) {
-  return {name,
-          [factor](const JudgedAnswer& a) { return a.row.nees <= factor(a) * ChiSquareQuantile(5, a.level); },
-          [factor](const JudgedAnswer& a) { return ComputeRegionSize(a, factor(a)); }};
-}
-
-std::vector<RegionKind> RegionKinds(bool is_check) {
-  std::vector<RegionKind> kinds = {RegionOfFactor("stated", [](const JudgedAnswer&) { return 1.0; })};
-  if (!is_check) {
-    kinds.push_back({"one bound", [](const JudgedAnswer& a) { return a.row.max_error_deg <= a.ball_deg; },
-                     [](const JudgedAnswer& a) { return std::min(a.ball_deg, kWholeSpaceDeg); }});
-    kinds.push_back(RegionOfFactor("one factor", [](const JudgedAnswer& a) { return a.one_factor; }));
-  }
-  kinds.push_back(RegionOfFactor("conformed", [](const JudgedAnswer& a) { return a.verdict.factor; }));
-  return kinds;
-}
 
 // The share of the answers, with its interval by groups; `more`: groups of problems for which it does not
 // hold.
 Estimate MeasureShare(const Judged& judged, const std::function<bool(const JudgedAnswer&)>& holds,
                       const std::vector<std::int64_t>& more = {}) {
-  std::vector<double> numbers(more.size(), 0.0);
+  std::vector<bool> numbers(more.size(), false);
   std::vector<std::int64_t> groups = more;
   for (const JudgedAnswer& answer : judged) {
-    numbers.push_back(holds(answer) ? 1.0 : 0.0);
+    numbers.push_back(holds(answer));
     groups.push_back(answer.row.group);
   }
   if (numbers.empty()) return {};
-  const std::set<std::int64_t> different(groups.begin(), groups.end());
-  const std::int64_t n = std::ssize(numbers), count = std::ranges::count(numbers, 1.0);
-  const Interval interval = std::ssize(different) == n
-                                ? ExactBinomialInterval(count, n)
-                                : MeasureBoundedClusteredMean(numbers, 1.0, groups).interval;
-  return {.value = static_cast<double>(count) / static_cast<double>(n), .interval = interval};
+  const ClusteredShare share = MeasureShareOfClusters(numbers, groups);
+  return {.value = share.value(), .interval = share.interval};
 }
 
 double MedianSize(const Judged& judged, const RegionKind& kind) {
@@ -114,7 +81,7 @@ Table MakeRegionTable(const ConformReport& report) {
                              [&](const JudgedAnswer& a) { return kind.size_deg(a) >= kWholeSpaceDeg; })
              .value;
        }}};
-  return MakeTable(columns, RegionKinds(report.is_check));
+  return MakeTable(columns, ListRegionKinds(report.is_check));
 }
 
 struct AcceptKind {
@@ -191,6 +158,10 @@ Table MakeProbabilityTable(const ConformReport& report) {
       {Column::Estimated("log_score"),
        [&](const ProbabilityKind& kind) { return estimate(MeasureLogScore(kind.forecasts)); }}};
   return MakeTable(columns, kinds);
+}
+
+Table MakeConformStrataTable(const ConformReport& report) {
+  return MakeStrataTable("region", {"size_deg"}, MeasureConformStrata(report));
 }
 
 std::string Counted(std::int64_t n, const std::string& one, const std::string& many) {
@@ -289,7 +260,7 @@ std::string DescribeNeeds(const ConformPromise& promise) {
              "many of these.");
 }
 
-std::string ConformAsText(const ConformReport& report) {
+std::string ConformAsText(const ConformReport& report, bool by_strata) {
   const ConformRule& rule = report.rule;
   const std::int64_t num_refusals = std::ranges::count(report.problems, true, &AskedProblem::is_refused);
   std::string text = FormatParagraph(fmt::format(
@@ -317,10 +288,13 @@ std::string ConformAsText(const ConformReport& report) {
         "Pairs of one scene share images and are counted as if they were independent: the promises say too "
         "much.");
   if (report.shift) text += FormatParagraph(DescribeShift(*report.shift, rule));
+  if (by_strata)
+    text +=
+        "\n" + RenderText(MakeConformStrataTable(report)) + "\n" + DescribeStrata(StrataIntervals::kClusters);
   return text;
 }
 
-std::string ConformAsJson(const ConformReport& report) {
+std::string ConformAsJson(const ConformReport& report, bool by_strata) {
   nlohmann::ordered_json json = {
       {"estimator", report.label},
       {"is_check", report.is_check},
@@ -343,11 +317,13 @@ std::string ConformAsJson(const ConformReport& report) {
                      {"feature", shift.feature},
                      {"strange_share", shift.strange_share}};
   }
+  if (by_strata) json["by_strata"] = RenderJson(WithIntervalColumns(MakeConformStrataTable(report)));
   return JsonText(kConformReportFormat, json);
 }
 
-CommandResult MakeConformResult(const ConformReport& report) {
-  return {ConformAsText(report), WithIntervalColumns(MakeRegionTable(report)), ConformAsJson(report)};
+CommandResult MakeConformResult(const ConformReport& report, bool by_strata) {
+  return {ConformAsText(report, by_strata), WithIntervalColumns(MakeRegionTable(report)),
+          ConformAsJson(report, by_strata)};
 }
 
 }  // namespace rcme

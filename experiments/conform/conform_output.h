@@ -14,9 +14,10 @@ std::vector<std::string> DescribePromises(const ConformRule& rule);
 // How many answers and groups a promise needs.
 std::string DescribeNeeds(const ConformPromise& promise);
 
-std::string ConformAsText(const ConformReport& report);
-std::string ConformAsJson(const ConformReport& report);
+// `by_strata`: also by what is visible of an answer (conform_strata.h).
+std::string ConformAsText(const ConformReport& report, bool by_strata = false);
+std::string ConformAsJson(const ConformReport& report, bool by_strata = false);
 
-CommandResult MakeConformResult(const ConformReport& report);
+CommandResult MakeConformResult(const ConformReport& report, bool by_strata = false);
 
 }  // namespace rcme

@@ -10,6 +10,7 @@
 #include "experiments/trial/trial_outcome.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
+#include "stats/moments.h"
 #include "stats/multiple_testing.h"
 #include "stats/score_mean.h"
 #include "stats/stream_median.h"
@@ -36,6 +37,13 @@ class GateEvidence {
     scenes_[static_cast<size_t>(scene)].Add(difference);
   }
 
+  // Of both regions of a pair.
+  void AddSizes(const TrialRecord& of_old, const TrialRecord& of_new) {
+    if (!test_.quantity.log_size) return;
+    const double growth = test_.quantity.log_size(of_new) - test_.quantity.log_size(of_old);
+    if (std::isfinite(growth)) log_growth_.Add(growth);
+  }
+
   GateRow Finish() {
     for (SceneMean& scene : scenes_) {
       if (const std::optional<double> mean = scene.Take()) differences_.Add(*mean);
@@ -45,6 +53,7 @@ class GateEvidence {
     row.n = differences_.n();
     row.of_old = Level(old_);
     row.of_new = Level(new_);
+    if (log_growth_.n() > 0) row.size_ratio = std::exp(log_growth_.mean());
     if (row.n == 0) {
       RequireBothOrNone();
       row.verdict = GateVerdict::kNotMeasured;
@@ -86,6 +95,7 @@ class GateEvidence {
   GateTest test_;
   Numbers old_, new_;
   ScoreMean differences_;
+  Moments log_growth_;
   std::vector<SceneMean> scenes_;
 };
 
@@ -166,6 +176,7 @@ GateLook TakeGateLook(const ReadableRun& run, const std::vector<GateTest>& tests
       std::optional<double> of_old;
       if (records.size() > 1) of_old = tests[i].quantity.of(records.front(), bounds);
       evidence[i].Add(of_old, tests[i].quantity.of(records.back(), bounds), scenes.Of(problem));
+      if (records.size() > 1) evidence[i].AddSizes(records.front(), records.back());
     }
   });
   GateLook look{num_rounds, {}, GateVerdict::kUndecided};

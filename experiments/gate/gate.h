@@ -25,6 +25,7 @@
 
 #include "experiments/gate/gate_quantity.h"
 #include "experiments/statistics/readable_run.h"
+#include "stats/constants.h"
 #include "stats/intervals.h"
 
 namespace rcme {
@@ -37,10 +38,11 @@ std::string Name(GateVerdict verdict);  // "not worse", ...
 // One test at a look.
 struct GateRow {
   GateTest test;
-  std::int64_t n = 0;                       // pairs, of scenes where trials share them; of a limit trials
-  double of_old = 0.0, of_new = 0.0;        // rates, mean scores, medians; NaN: not known
-  double difference = 0.0;                  // as people read it; of a limit the rate
-  Interval interval;                        // each end holds at every look with probability 1 - alpha
+  std::int64_t n = 0;                 // pairs, of scenes where trials share them; of a limit trials
+  double of_old = 0.0, of_new = 0.0;  // rates, mean scores, medians; NaN: not known
+  double difference = 0.0;            // as people read it; of a limit the rate
+  Interval interval;                  // each end holds at every look with probability 1 - alpha
+  double size_ratio = kNaN;           // of miscoverage: the regions' size over the old ones', pair by pair
   double p_worse = 1.0, p_not_worse = 1.0;  // the first is Holm-adjusted
   GateVerdict verdict = GateVerdict::kUndecided;
 };

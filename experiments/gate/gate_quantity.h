@@ -25,6 +25,8 @@ struct GateQuantity {
   bool needs_same_run = false;  // numbers of two runs cannot be compared
   // What a trial gives; nothing where it says nothing about the estimator.
   std::function<std::optional<double>(const TrialRecord&, const FailureBounds&)> of;
+  // Of what regions decide: the logarithm of their size, the geometric mean of the semi-axes; NaN: unknown.
+  std::function<double(const TrialRecord&)> log_size = {};
 
   // Of a new and an old number, in [-1, 1]; 0 for equal ones, infinite ones too.
   double Difference(double of_new, double of_old) const;

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 
-#include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/trial_groups.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
@@ -63,20 +62,15 @@ Answer ReadAnswer(const TrialRecord& record, const FailureBounds& bounds) {
 std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDescription& run,
                                            const Groups& groups) {
   std::vector<std::vector<Answer>> answers(run.estimators.size());
-  // Conditions that share their scenes have one scene per number of a trial.
-  const std::int64_t scenes_apart = HasCommonScenes(run) ? 0 : std::int64_t{1} << 32;
-  const bool is_of_population = IsSampleOfPopulation(run.identity);
-  const TrialGroups draws = is_of_population ? GroupByDraw(run) : TrialGroups();
+  const TrialClusters clusters(run);
   bool is_weighted = false;
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     is_weighted = is_weighted || problem.weight != 1.0;
     const std::int64_t scene = problem.trial / static_cast<std::uint32_t>(run.repeats_per_scene);
-    const std::int64_t cluster = is_of_population ? static_cast<std::int64_t>(draws.group_of(problem))
-                                                  : scene + scenes_apart * problem.condition;
     for (size_t e = 0; e < records.size(); ++e) {
       if (!IsScored(records[e])) continue;
       answers[e].push_back(ReadAnswer(records[e], run.failure));
-      answers[e].back().cluster = cluster;
+      answers[e].back().cluster = clusters.Find(problem);
       answers[e].back().group = groups.of_condition[problem.condition];
       answers[e].back().is_in_even_half = scene % 2 == 0;
     }

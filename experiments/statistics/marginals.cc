@@ -61,6 +61,7 @@ double FindClaimedRate(MarginalQuantity quantity) {
 struct ConditionValues {
   Moments moments;
   std::int64_t num_failed = 0;  // of these trials
+  Moments log_sd_over_crb;      // of those with a bound; only of a coverage
 };
 
 // By estimator, quantity and condition.
@@ -82,8 +83,12 @@ Values CollectValues(const ResultStore& run, const RunDescription& description) 
       for (size_t q = 0; q < kNumQuantities; ++q) {
         const auto value = ValueIn(records[e], description.failure, states[e], kMarginalQuantities[q]);
         if (!value) continue;
-        values[e][q][problem.condition].moments.Add(*value);
-        values[e][q][problem.condition].num_failed += HasFailed(records[e], description.failure);
+        ConditionValues& of_condition = values[e][q][problem.condition];
+        of_condition.moments.Add(*value);
+        of_condition.num_failed += HasFailed(records[e], description.failure);
+        const double sharpness = records[e].density.sd_over_crb;
+        if (kMarginalQuantities[q] == MarginalQuantity::kSureCoverage && sharpness > 0.0)
+          of_condition.log_sd_over_crb.Add(std::log(sharpness));
       }
     }
   });
@@ -158,6 +163,7 @@ std::vector<ConditionValues> Select(const std::vector<ConditionValues>& conditio
     if (!has[c] || conditions[c].moments.n() == 0) continue;
     of_draw[draws[c]].moments.Merge(conditions[c].moments);
     of_draw[draws[c]].num_failed += conditions[c].num_failed;
+    of_draw[draws[c]].log_sd_over_crb.Merge(conditions[c].log_sd_over_crb);
   }
   std::vector<ConditionValues> selected;
   for (const auto& [draw, values] : of_draw) selected.push_back(values);
@@ -199,8 +205,12 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
   marginal.claimed = FindClaimedRate(quantity);
   if (IsShare(quantity)) {
     std::vector<ConditionCount> counts;
-    for (const auto& [moments, num_failed] : conditions)
+    Moments log_sd_over_crb;
+    for (const auto& [moments, num_failed, of_condition] : conditions) {
       counts.push_back({std::llround(moments.mean() * static_cast<double>(moments.n())), moments.n()});
+      log_sd_over_crb.Merge(of_condition);
+    }
+    if (log_sd_over_crb.n() > 0) marginal.sd_over_crb = std::exp(log_sd_over_crb.mean());
     const PopulationRate rate = MeasurePopulationRate(counts, ConditionWeights::kByTrials, confidence);
     marginal.value = rate.value, marginal.interval = rate.interval, marginal.n = rate.n;
   } else {
@@ -240,13 +250,13 @@ std::string Name(MarginalQuantity quantity) {
   return {};
 }
 
-std::vector<Moments> CollectConditionMoments(const ResultStore& run, size_t estimator,
-                                             MarginalQuantity quantity) {
+std::vector<ConditionMoments> CollectConditionMoments(const ResultStore& run, size_t estimator,
+                                                      MarginalQuantity quantity) {
   const Values values = CollectValues(run, run.Description());
   const auto place = std::ranges::find(kMarginalQuantities, quantity) - std::begin(kMarginalQuantities);
-  std::vector<Moments> moments;
+  std::vector<ConditionMoments> moments;
   for (const ConditionValues& one : values[estimator][static_cast<size_t>(place)])
-    moments.push_back(one.moments);
+    moments.push_back({one.moments, one.log_sd_over_crb});
   return moments;
 }
 

@@ -50,6 +50,9 @@ struct Marginal {
   double claimed = std::numeric_limits<double>::quiet_NaN();  // NaN: nothing
   // How far the interval lies from what is claimed, in half widths of itself; 0: the claim is in it.
   double excess = 0.0;
+  // Of a coverage: how sharp its regions are, the geometric mean of sd_over_crb of the same answers. NaN: not
+  // known, or no coverage.
+  double sd_over_crb = std::numeric_limits<double>::quiet_NaN();
   std::int64_t num_conditions = 0, n = 0;
 };
 
@@ -59,10 +62,13 @@ struct Marginals {
   std::vector<Marginal> rows;  // the farthest from what is claimed first, then by regime as listed
 };
 
-// Of one estimator and quantity: what the trials of each condition say of it. Throws InputError for weighted
-// trials.
-std::vector<Moments> CollectConditionMoments(const ResultStore& run, size_t estimator,
-                                             MarginalQuantity quantity);
+// What the trials of a condition say of a quantity of one estimator.
+struct ConditionMoments {
+  Moments of_quantity, log_sd_over_crb;  // the second of a coverage alone, of its answers with a bound
+};
+// By condition. Throws InputError for weighted trials.
+std::vector<ConditionMoments> CollectConditionMoments(const ResultStore& run, size_t estimator,
+                                                      MarginalQuantity quantity);
 
 struct MarginalOptions {
   bool with_pairs = false;

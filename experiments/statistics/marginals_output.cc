@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -34,6 +35,9 @@ MarginalColumns ListColumns(bool for_people) {
     columns.push_back({{.name = "lower,upper", .type = ColumnType::kInterval, .json_name = "interval"},
                        [](const Marginal& one) { return one.interval; }});
   columns.push_back({Column::Number("claimed", kPercent), [](const Marginal& one) { return one.claimed; }});
+  columns.push_back({Column::Number("sd_over_crb"), [](const Marginal& one) {
+                       return std::isnan(one.sd_over_crb) ? Value() : Value(one.sd_over_crb);
+                     }});
   if (!for_people)
     columns.push_back({Column::Number("excess"), [](const Marginal& one) { return one.excess; }});
   columns.push_back({Heading(Column::Count("num_conditions"), "conditions"),
@@ -65,7 +69,9 @@ std::string MarginalsAsTable(const std::string& study, const Marginals& marginal
   text += "\n" +
           FormatParagraph(fmt::format("{} of {} regimes and quantities differ from what is claimed; {} are "
                                       "shown. The {} intervals hold together with {:.0f} % "
-                                      "(Bonferroni), if the conditions are a random sample of a population.",
+                                      "(Bonferroni), if the conditions are a random sample of a population. "
+                                      "sd_over_crb: how sharp the regions of a coverage are, the stated sd "
+                                      "over its Cramer-Rao bound (geometric mean).",
                                       num_wrong, marginals.rows.size() - whole.size(), worst.size(),
                                       marginals.num_intervals, 100.0 * marginals.confidence));
   return text;

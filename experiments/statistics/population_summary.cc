@@ -101,10 +101,17 @@ bool HasPopulationIntervals(const RunDescription& run) {
 
 Summary SummarizePopulation(const RunDescription& run, std::span<const SummaryCell> draws, bool with_times) {
   SummaryCell all(run.estimators.size());
+  if (std::ranges::all_of(draws, &SummaryCell::ranks_errors)) all.RankErrors();
   for (const SummaryCell& draw : draws) all.Merge(draw);
   Summary summary = SummarizeCells(run, OneGroup(), {&all}, with_times);
   summary.is_of_population = true;
-  for (SummaryRow& row : summary.rows) TakeIntervalOfPopulation(ListDrawCounts(run, draws, row), &row);
+  for (SummaryRow& row : summary.rows) {
+    if (row.kind == SummaryRow::Kind::kArea) {
+      row.interval_kind = IntervalKind::kPopulation;  // its clusters are the draws
+    } else {
+      TakeIntervalOfPopulation(ListDrawCounts(run, draws, row), &row);
+    }
+  }
   return summary;
 }
 

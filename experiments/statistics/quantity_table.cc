@@ -38,8 +38,9 @@ std::vector<EstimatorRow> GroupRows(const Summary& summary, bool is_of_problems)
 }
 
 NumberFormat ChooseNumberFormat(SummaryRow::Kind kind) {
-  const bool is_number = kind == SummaryRow::Kind::kMean || kind == SummaryRow::Kind::kMedian;
-  return is_number ? kSignificant : kPercent;
+  const bool is_share = kind == SummaryRow::Kind::kRate || kind == SummaryRow::Kind::kScore ||
+                        kind == SummaryRow::Kind::kVarianceShare;
+  return is_share ? kPercent : kSignificant;
 }
 
 // Behind these columns.
@@ -90,6 +91,25 @@ void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& 
           "--quantities: {} is not a quantity of an estimator in this summary{}; allowed: {}",
           Quoted(quantity), DidYouMean(quantity, {known.begin(), known.end()}), fmt::join(known, ", ")));
   }
+}
+
+std::vector<std::string> AddSharpness(const Summary& summary, std::vector<std::string> quantities) {
+  const auto is_of_sharpness = [](const std::string& quantity) {
+    return quantity == "sd_over_crb" || quantity == "rotation_sd_deg" || quantity == "direction_sd_deg" ||
+           quantity == "log_det_cov";
+  };
+  const auto coverage = std::ranges::find(quantities, "nees_coverage");
+  if (coverage == quantities.end() || std::ranges::any_of(quantities, is_of_sharpness)) return quantities;
+  const auto is_known = [&](const std::string& quantity) {
+    return std::ranges::any_of(summary.rows, [&](const SummaryRow& row) {
+      return row.estimator != kSceneLabel && row.quantity == quantity;
+    });
+  };
+  std::vector<std::string> sharpness = {"sd_over_crb"};
+  if (!is_known("sd_over_crb")) sharpness = {"rotation_sd_deg", "direction_sd_deg"};
+  std::erase_if(sharpness, [&](const std::string& quantity) { return !is_known(quantity); });
+  quantities.insert(coverage + 1, sharpness.begin(), sharpness.end());
+  return quantities;
 }
 
 void KeepQuantities(const std::vector<std::string>& quantities, Summary* summary) {

@@ -20,6 +20,10 @@ Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& q
 
 // Throws InputError for a quantity of --quantities that the summary does not have of its estimators.
 void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& quantities);
+// The same with what says how sharp the stated covariances are behind `nees_coverage`, where none of them
+// does: sd_over_crb, or, where no bound is known, rotation_sd_deg and direction_sd_deg. A region covers as
+// often as it likes if it is wide enough.
+std::vector<std::string> AddSharpness(const Summary& summary, std::vector<std::string> quantities);
 // Takes away all rows but those of these quantities of estimators. Throws as CheckAreQuantities.
 void KeepQuantities(const std::vector<std::string>& quantities, Summary* summary);
 

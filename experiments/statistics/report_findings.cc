@@ -7,6 +7,8 @@
 #include <functional>
 #include <utility>
 
+#include "experiments/statistics/quantity_table.h"
+
 namespace rcme {
 namespace {
 
@@ -61,6 +63,23 @@ void AddByWeight(std::vector<Finding> findings, std::vector<std::string>* senten
   for (Finding& finding : findings) sentences->push_back(std::move(finding.sentence));
 }
 
+// How sharp the regions of a coverage are, where it is known.
+std::string DescribeSharpness(const Summary& summary, const SummaryRow& coverage) {
+  std::string words;
+  for (const std::string& quantity : AddSharpness(summary, {"nees_coverage"})) {
+    for (const SummaryRow& row : summary.rows) {
+      if (row.quantity != quantity || row.estimator != coverage.estimator ||
+          row.condition != coverage.condition || row.n == 0)
+        continue;
+      if (quantity == "sd_over_crb")
+        words += fmt::format(", with an sd of {:.3g} times the Cramer-Rao bound", row.value);
+      else if (quantity != "nees_coverage")
+        words += fmt::format(", with {} {:.3g}", quantity, row.value);
+    }
+  }
+  return words;
+}
+
 // Regions that are far from what they state, the farthest first: of each estimator the worst condition.
 void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentences) {
   std::vector<Finding> findings;
@@ -79,9 +98,9 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
     findings.push_back(
         {farthest,
          fmt::format(
-             "Coverage: the 95 % regions that {} states contain the truth in {}{}: they are too {}{}.", label,
-             RateAt(summary, *worst), summary.is_of_population ? " over the population" : "",
-             worst->value < kStatedCoverage ? "small" : "large",
+             "Coverage: the 95 % regions that {} states contain the truth in {}{}{}: they are too {}{}.",
+             label, RateAt(summary, *worst), summary.is_of_population ? " over the population" : "",
+             DescribeSharpness(summary, *worst), worst->value < kStatedCoverage ? "small" : "large",
              num_known > 1 ? fmt::format(", and far off in {} of {} conditions", num_off, num_known) : "")});
   }
   AddByWeight(std::move(findings), sentences);

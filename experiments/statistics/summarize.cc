@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "experiments/statistics/error_ranking.h"
 #include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scene_split.h"
 #include "experiments/statistics/scenes_of_run.h"
@@ -22,7 +23,9 @@ void AppendHelp(const std::vector<Quantity<Record>>& quantities, std::vector<Qua
 // Cells of counts.
 std::vector<SummaryCell> CollectDraws(const ResultStore& store, const RunDescription& run) {
   const TrialGroups groups = GroupByDraw(run);
-  std::vector<SummaryCell> draws(groups.levels.size(), SummaryCell(run.estimators.size()));
+  SummaryCell empty(run.estimators.size());
+  empty.RankErrors();
+  std::vector<SummaryCell> draws(groups.levels.size(), empty);
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     draws[groups.group_of(problem)].Add(problem, records, run.failure);
   });
@@ -37,6 +40,7 @@ const std::vector<QuantityHelp>& SummaryQuantities() {
   static const std::vector<QuantityHelp> help = [] {
     std::vector<QuantityHelp> rows;
     AppendHelp(TrialQuantities(), &rows);
+    for (const QuantityHelp& area : ErrorRankingQuantities()) rows.push_back(area);
     for (const QuantityHelp& split : SceneSplitQuantities()) rows.push_back(split);
     AppendHelp(ProblemQuantities(), &rows);
     return rows;
@@ -61,6 +65,8 @@ std::string KindName(SummaryRow::Kind kind) {
       return "score";
     case SummaryRow::Kind::kVarianceShare:
       return "share";
+    case SummaryRow::Kind::kArea:
+      return "area";
   }
   return "";
 }

@@ -30,8 +30,9 @@ struct SummaryRow {
     kRate,
     kMean,
     kMedian,
-    kScore,         // mean of numbers in [0, 1]
-    kVarianceShare  // of a variance (scene_split.h)
+    kScore,          // mean of numbers in [0, 1]
+    kVarianceShare,  // of a variance (scene_split.h)
+    kArea            // between two curves (error_ranking.h)
   };
 
   std::uint32_t condition = 0;
@@ -40,8 +41,8 @@ struct SummaryRow {
   Kind kind = Kind::kRate;
   double value = 0.0;  // NaN where n is 0
   IntervalKind interval_kind = IntervalKind::kExact;
-  Interval interval;            // all but means: 95 %; NaN where a median's would not hold
-  double standard_error = 0.0;  // means and rates of weighted trials: Monte-Carlo standard error
+  Interval interval;            // all but means: 95 %; NaN where a median's or an area's would not hold
+  double standard_error = 0.0;  // means, areas and rates of weighted trials: Monte-Carlo standard error
   std::int64_t n = 0;           // trials that the number is of; of repeated scenes: scenes
   // Of pooled draws of a population: the interval for these very conditions, each tried for ever, and how
   // many independent trials would tell as much of the population (Kish's effective n).
@@ -51,7 +52,7 @@ struct SummaryRow {
   std::optional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
 };
 
-std::string KindName(SummaryRow::Kind kind);  // "rate", "mean", "median", "score", "share"
+std::string KindName(SummaryRow::Kind kind);  // "rate", "mean", "median", "score", "share", "area"
 
 // Stands in the place of an estimator in rows about the problems themselves.
 inline constexpr const char* kSceneLabel = "scene";
@@ -91,7 +92,8 @@ const std::vector<QuantityHelp>& SummaryQuantities();
 // the intervals of scores.
 //
 // Every quantity of every estimator in every condition, then those of the problems, from the raw trials, in
-// one pass, in memory that does not grow with the trials. Times (which no two runs share) only if asked for.
+// one pass, in memory that does not grow with the trials but for the ranking of errors (error_ranking.h).
+// Times (which no two runs share) only if asked for.
 //
 // Pooled: all trials of all conditions as if they were of one, which has no levels. Intervals are then of
 // these very conditions; where the conditions are a sample of a population, of that (population_summary.h).

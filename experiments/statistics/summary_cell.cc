@@ -31,6 +31,7 @@ QuantityCounts EmptyCounts(Kind kind) {
       return ExactScores();
     case Kind::kMean:
     case Kind::kVarianceShare:
+    case Kind::kArea:
       break;
   }
   return ExactMoments();
@@ -259,7 +260,10 @@ SummaryCell::SummaryCell(size_t num_estimators, int repeats_per_scene) : Summary
   for (QuantitySums& estimator : estimators_) PrepareForRows(has_repeats, &estimator);
   PrepareForRows(/*has_repeats=*/false, &problems_);  // all trials of a scene have one: it counts once
   if (has_repeats) splits_.assign(num_estimators, SceneSplit(repeats_per_scene));
+  RankErrors();
 }
+
+void SummaryCell::RankErrors() { rankings_.resize(estimators_.size()); }
 
 void SummaryCell::Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records,
                       const FailureBounds& bounds, bool is_first_of_scene) {
@@ -268,9 +272,11 @@ void SummaryCell::Add(const ProblemRecord& problem, const std::vector<TrialRecor
   for (size_t e = 0; e < estimators_.size(); ++e)
     AddRecord(records[e], problem.weight, is_first_of_scene, bounds, TrialQuantities(), &estimators_[e]);
   for (size_t e = 0; e < splits_.size(); ++e) splits_[e].Add(records[e], bounds);
+  for (size_t e = 0; e < rankings_.size(); ++e) rankings_[e].Add(records[e]);
 }
 
 void SummaryCell::EndScene() {
+  for (ErrorRanking& ranking : rankings_) ranking.EndCluster();
   if (splits_.empty()) return;
   for (QuantitySums& sums : estimators_) {
     ++sums.num_scenes;
@@ -286,6 +292,7 @@ void SummaryCell::Merge(const SummaryCell& other) {
   num_trials_ += other.num_trials_;
   for (size_t e = 0; e < estimators_.size(); ++e) MergeSums(other.estimators_[e], &estimators_[e]);
   MergeSums(other.problems_, &problems_);
+  for (size_t e = 0; e < rankings_.size(); ++e) rankings_[e].Merge(other.rankings_.at(e));
 }
 
 void SummaryCell::AppendRows(const RunDescription& run, SummaryRow cell,
@@ -293,6 +300,8 @@ void SummaryCell::AppendRows(const RunDescription& run, SummaryRow cell,
   for (size_t e = 0; e < estimators_.size(); ++e) {
     cell.estimator = run.estimators[e].label;
     AppendQuantityRows(TrialQuantities(), estimators_[e], cell, rows);
+    if (!rankings_.empty() && !estimators_[e].is_weighted)
+      rankings_[e].AppendRows(cell, /*counts_clusters=*/!splits_.empty(), rows);
     if (!splits_.empty()) splits_[e].AppendRows(cell, rows);
   }
   cell.estimator = kSceneLabel;

@@ -8,8 +8,8 @@
 // at most 1e-10 (stats/exact_scores.h).
 //
 // Rows are read in one order; their means are sums in floating point, and the bounds of scores are those of
-// the scores themselves. Rows alone give rates of weighted trials, and of repeated scenes means and a split
-// (scene_split.h).
+// the scores themselves. Rows alone give rates of weighted trials, of repeated scenes means and a split
+// (scene_split.h), and how errors rank (error_ranking.h).
 #pragma once
 
 #include <string>
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "experiments/run/store/counts_tables.h"
+#include "experiments/statistics/error_ranking.h"
 #include "experiments/statistics/scene_split.h"
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/summarize.h"
@@ -55,7 +56,10 @@ class SummaryCell {
   // Of rows: every scene counts once, as summarize.h says.
   SummaryCell(size_t num_estimators, int repeats_per_scene);
 
-  // The trials of a scene one after the other, then EndScene, which does nothing without repeats.
+  // Of counts of a run that has its trials: rank errors as well; before the first trial.
+  void RankErrors();
+
+  // The trials of a scene one after the other, then EndScene; of counts without it, all trials are alike.
   void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records, const FailureBounds& bounds,
            bool is_first_of_scene = true);
   void EndScene();
@@ -63,6 +67,7 @@ class SummaryCell {
   void Merge(const SummaryCell& other);
 
   std::int64_t num_trials() const { return num_trials_; }
+  bool ranks_errors() const { return !rankings_.empty(); }
   const QuantitySums& of_estimator(size_t estimator) const { return estimators_[estimator]; }
   const QuantitySums& of_problems() const { return problems_; }
   // The rows of a summary; `cell` holds what they share but for the estimator.
@@ -78,7 +83,8 @@ class SummaryCell {
   std::int64_t num_trials_ = 0;
   std::vector<QuantitySums> estimators_;
   QuantitySums problems_;
-  std::vector<SceneSplit> splits_;  // by estimator; none without repeats
+  std::vector<SceneSplit> splits_;      // by estimator; none without repeats
+  std::vector<ErrorRanking> rankings_;  // by estimator; none of counts alone
 };
 
 // The summary of a run, of one group after the other.

@@ -46,7 +46,8 @@ namespace {
 
 // The kinds that are shown in per cent.
 bool IsShare(SummaryRow::Kind kind) {
-  return kind != SummaryRow::Kind::kMean && kind != SummaryRow::Kind::kMedian;
+  return kind != SummaryRow::Kind::kMean && kind != SummaryRow::Kind::kMedian &&
+         kind != SummaryRow::Kind::kArea;
 }
 
 // One word.
@@ -70,7 +71,8 @@ std::string IntervalKindName(IntervalKind kind) {
 
 bool HasStandardError(const SummaryRow& row) {
   const bool is_rate = row.kind == SummaryRow::Kind::kRate;
-  return is_rate ? row.interval_kind == IntervalKind::kWeighted : row.kind == SummaryRow::Kind::kMean;
+  if (is_rate) return row.interval_kind == IntervalKind::kWeighted;
+  return row.kind == SummaryRow::Kind::kMean || row.kind == SummaryRow::Kind::kArea;
 }
 
 // NaN: the verdict is known, or no number of trials may decide it.
@@ -135,6 +137,22 @@ std::string FormatAccuracy(const Summary& summary) {
       RenderText(MakeQuantityTable(
           summary, {"auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg", "rotation_error_median_deg",
                     "direction_error_median_deg", "max_error_median_deg"})));
+}
+
+bool HasErrorRanking(const Summary& summary) {
+  return std::ranges::any_of(summary.rows,
+                             [](const SummaryRow& row) { return row.kind == SummaryRow::Kind::kArea; });
+}
+
+// How stated uncertainty ranks errors; empty where nobody states any, and of counts.
+std::string FormatErrorRanking(const Summary& summary) {
+  if (!HasErrorRanking(summary)) return "";
+  return fmt::format(
+      "Ranking of errors by the stated sd (AUSE: area between the sparsification curves\n"
+      "of this order and of the oracle's, by the errors themselves, over the mean\n"
+      "error; 0 best. random: of a random order)\n\n{}\n",
+      RenderText(MakeQuantityTable(
+          summary, {"rotation_ause", "rotation_ause_random", "direction_ause", "direction_ause_random"})));
 }
 
 // The estimators of which a verdict depends on the sampler's seed, each with the condition where it does most
@@ -221,6 +239,8 @@ std::string DescribeIntervals(const Summary& summary) {
                 "95 % intervals; of an even n the lower of the two middle numbers.\n"
                 "auc and maa: {}.\n",
                 IntervalKindsIn(summary), DescribeIntervalKind(IntervalKind::kBetting));
+  if (HasErrorRanking(summary) && !summary.is_of_population)
+    text += "ause: Student's 95 % intervals, each scene a cluster.\n";
   if (summary.repeats_per_scene > 1) {
     text += fmt::format(
         "n counts scenes: rates, scores and means are of the means over a scene's\n"
@@ -232,19 +252,11 @@ std::string DescribeIntervals(const Summary& summary) {
   return text;
 }
 
-// Coverage is not shown without sharpness: over the bounds, or, where these are unknown, in degrees.
 std::vector<std::string> ChooseQuantities(const Summary& summary) {
-  std::vector<std::string> quantities = {"failure",       "failure_or_refusal", "no_candidate",
-                                         "other_refusal", "kappa_flag",         "nees_coverage"};
-  const bool has_bounds = std::ranges::count(summary.rows, "sd_over_crb", &SummaryRow::quantity) > 0;
-  if (has_bounds) {
-    quantities.push_back("sd_over_crb");
-  } else {
-    quantities.insert(quantities.end(), {"rotation_sd_deg", "direction_sd_deg"});
-  }
-  quantities.insert(quantities.end(), {"nees_median", "energy_score_deg", "log_score", "available",
-                                       "misleading", "rotation_error_deg", "direction_error_deg", "time_ms"});
-  return quantities;
+  return AddSharpness(
+      summary, {"failure", "failure_or_refusal", "no_candidate", "other_refusal", "kappa_flag",
+                "nees_coverage", "nees_median", "energy_score_deg", "log_score", "available", "misleading",
+                "rotation_error_deg", "direction_error_deg", "time_ms"});
 }
 
 }  // namespace
@@ -257,8 +269,8 @@ std::string QuantitiesAsTable(const Summary& summary, const std::vector<std::str
 std::string SummaryAsTable(const Summary& summary) {
   std::string text = summary.preregistration ? PreregistrationAsText(*summary.preregistration) + "\n" : "";
   text += FormatQuantities(summary, ChooseQuantities(summary));
-  text +=
-      FormatAccuracy(summary) + FormatSplit(summary) + FormatSeverity(summary) + DescribeIntervals(summary);
+  text += FormatAccuracy(summary) + FormatErrorRanking(summary) + FormatSplit(summary) +
+          FormatSeverity(summary) + DescribeIntervals(summary);
   text +=
       "(n ...): the trials of a number that is not of all of them; without a known\n"
       "truth a motion neither fails nor succeeds.\n"

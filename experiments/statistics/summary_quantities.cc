@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "experiments/statistics/error_ranking.h"
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/trial/severity_columns.h"
 #include "experiments/trial/trial_measure.h"
@@ -178,7 +179,8 @@ bool IsOfProbabilities(const std::string& quantity) {
 bool IsOfDensity(const std::string& quantity) {
   return quantity == "rotation_sd_deg" || quantity == "direction_sd_deg" || quantity == "sd_over_crb" ||
          quantity == "log_det_cov" || quantity == "energy_score_deg" || quantity == "log_score" ||
-         quantity == "singular_covariance" || quantity == "available" || quantity == "misleading";
+         quantity == "singular_covariance" || quantity == "available" || quantity == "misleading" ||
+         IsOfErrorRanking(quantity);
 }
 
 // Of what only an estimator outside the program can do.

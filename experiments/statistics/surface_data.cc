@@ -55,14 +55,14 @@ std::string NameOfQuantity(MarginalQuantity quantity) {
   return quantity == MarginalQuantity::kFailedLessStated ? "P-y" : Name(quantity);
 }
 
-// Count, mean and spread of the quantity in each condition of a run.
+// Count, mean and spread of the quantity in each condition of a run, of a coverage with its sharpness.
 Json RenderConditionMoments(const ResultStore& store, const RunDescription& run, size_t number,
                             size_t estimator, MarginalQuantity quantity) {
   Json conditions = Json::array();
   const auto values = CollectConditionMoments(store, estimator, quantity);
   const double sign = quantity == MarginalQuantity::kFailedLessStated ? -1.0 : 1.0;  // P - y, not failed - P
   for (size_t c = 0; c < run.conditions.size(); ++c) {
-    const Moments& moments = values[c];
+    const auto& [moments, log_sd_over_crb] = values[c];
     const std::vector<std::string>& levels = run.conditions[c].levels;
     const auto draw = FindDraw(run.factors, levels);
     conditions.push_back({{"run", number},
@@ -72,6 +72,7 @@ Json RenderConditionMoments(const ResultStore& store, const RunDescription& run,
                           {"n", moments.n()},
                           {"mean", moments.n() > 0 ? Json(sign * moments.mean()) : Json()},
                           {"sd", moments.n() > 1 ? Json(std::sqrt(moments.variance())) : Json()}});
+    if (log_sd_over_crb.n() > 0) conditions.back()["sd_over_crb"] = std::exp(log_sd_over_crb.mean());
   }
   return conditions;
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "experiments/statistics/scenes_of_run.h"
 #include "experiments/study/population.h"
 #include "experiments/trial/severity_columns.h"
 #include "parameters/input_error.h"
@@ -76,6 +77,17 @@ std::vector<size_t> NumberDraws(const RunDescription& run) {
 
 TrialGroups OneGroup() {
   return {{}, {{}}, [](const ProblemRecord&) { return size_t{0}; }};
+}
+
+TrialClusters::TrialClusters(const RunDescription& run)
+    : repeats_per_scene_(static_cast<std::uint32_t>(run.repeats_per_scene)),
+      conditions_apart_(HasCommonScenes(run) ? 0 : std::int64_t{1} << 32) {
+  if (IsSampleOfPopulation(run.identity)) draws_ = GroupByDraw(run);
+}
+
+std::int64_t TrialClusters::Find(const ProblemRecord& problem) const {
+  if (draws_) return static_cast<std::int64_t>(draws_->group_of(problem));
+  return problem.trial / repeats_per_scene_ + conditions_apart_ * problem.condition;
 }
 
 TrialGroups GroupByFifth(const ResultStore& store, const std::string& quantity) {

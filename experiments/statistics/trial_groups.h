@@ -1,7 +1,9 @@
 // How the trials of a run are put together for a summary.
 #pragma once
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,19 @@ TrialGroups GroupByDraw(const RunDescription& run);
 
 // Of each condition the number of its draw (GroupByDraw), or its own where there are no draws.
 std::vector<size_t> NumberDraws(const RunDescription& run);
+
+// Which trials depend on each other: those of a draw, where the conditions are a sample of a population, else
+// those of a scene. Conditions that share their scenes have one scene per number of a trial.
+class TrialClusters {
+ public:
+  explicit TrialClusters(const RunDescription& run);
+  std::int64_t Find(const ProblemRecord& problem) const;
+
+ private:
+  std::optional<TrialGroups> draws_;
+  std::uint32_t repeats_per_scene_;
+  std::int64_t conditions_apart_;
+};
 
 // Five groups with equally many trials, those with the least value of a number of the problem first
 // (kSeverityColumns: "crb_direction_deg"); equal values are in one group, and the trials of which it is

@@ -14,7 +14,7 @@ from common.command_line import PlotError
 from common.factor_axis import FactorAxis
 from common.text_size import wrap, width_of
 from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, kind_in_words,
-                             n_in_words, select_rates, title_of)
+                             n_in_words, select_rates, sharpness_in_words, title_of)
 
 COLORS = colormaps["cividis_r"]  # even steps to the eye, with every colour vision and in grey; dark is much
 LEAST_TOP = 0.05  # a scale that ended lower would paint rates that hardly differ from zero as dark as a failure
@@ -184,7 +184,7 @@ def draw(summary, x, y, quantities, estimators=()):
         [f"Study {rows.study.iloc[0]}", *fixed_levels(rows, others), n_in_words(rows, "cell"),
          f"in each cell the {kind_in_words(rows).lower()} in %, " + (
              "below it" if cell_width is None or has_room_for_interval(cell_width) else "above and below it the ends of") +
-         f" its {interval_in_words(rows)} interval"]) + ".")
+         f" its {interval_in_words(rows)} interval", *sharpness_in_words(summary, quantities)]) + ".")
     return figure
 
 

@@ -6,10 +6,11 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from common import direct_labels, style
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
-from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, kind_in_words,
-                             n_in_words, select_rates, title_of)
+from rates.selection import (DRAWN_KINDS, NUMBER_KINDS, check_factor, check_no_repetition, fixed_levels, interval_in_words,
+                             kind_in_words, n_in_words, select_rates, title_of, with_sharpness)
 
 STATED_LEVELS = {"nees_coverage": 0.95}  # what a quantity is where the covariance holds
+LEAST = {"sd_over_crb": 1}  # below it no covariance is right
 SMALL = 0.02  # where half of the rates that are not zero lie below it, a linear axis shows them all as nothing
 STATED = dict(color="0.35", linewidth=0.9, linestyle=style.DASHED, zorder=1, label="_stated")
 WANTED = ("success",)  # rates that are near one where all is well
@@ -44,6 +45,11 @@ def draw_upper_limits(axes, zeros, looks):
                 axes.plot([row.x], [row.upper], **mark, transform=axes.transData + aside, clip_on=False, zorder=4)
 
 
+def are_numbers(points):
+    """Of any size, where rates are between 0 and 1."""
+    return points.kind.isin(NUMBER_KINDS).any()
+
+
 def is_small(points):
     """Whether a logarithmic axis shows what a linear one does not."""
     positive = points.value[(points.kind == "rate") & (points.value > 0) & ~points.quantity.isin((*WANTED, *STATED_LEVELS))]
@@ -51,7 +57,7 @@ def is_small(points):
 
 
 def draw_panel(axes, points, looks, axis, room, log_y):
-    """One quantity in one panel, all estimators; the y values are fractions, the tick labels per cent."""
+    """One quantity in one panel, all estimators; the y values of rates are fractions, their tick labels per cent."""
     points = points.sort_values("x", kind="stable")
     if log_y:
         axes.set_yscale("log", nonpositive="clip")
@@ -64,17 +70,18 @@ def draw_panel(axes, points, looks, axis, room, log_y):
             draw_line(axes, of_estimator, look)
         else:
             draw_abreast(axes, of_estimator, look, abreast(axes, position, len(looks), room))
-    for quantity in set(points.quantity) & set(STATED_LEVELS):
-        axes.axhline(STATED_LEVELS[quantity], **STATED)
-    if points.upper.isna().all():
+    for quantity in set(points.quantity) & {*STATED_LEVELS, *LEAST}:
+        axes.axhline((STATED_LEVELS | LEAST)[quantity], **STATED)
+    if points.value.isna().all():
         axes.text(0.5, 0.5, "no trials (n = 0)", transform=axes.transAxes, ha="center", va="center", color="0.4")
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda fraction, _: f"{100 * fraction:g}"))
+    if not are_numbers(points):
+        axes.yaxis.set_major_formatter(FuncFormatter(lambda fraction, _: f"{100 * fraction:g}"))
 
 
 def set_y_limits(column_of_axes, points, log_y):
     """From zero; on a logarithmic axis from half of the least value that is drawn."""
     if not log_y:
-        column_of_axes[0].set_ylim(bottom=0, top=None if points.upper.max() > 0 else 1)
+        column_of_axes[0].set_ylim(bottom=0, top=None if points[["value", "upper"]].max().max() > 0 else 1)
         return
     drawn = points.value.where(points.value > 0, points.upper)
     smallest = min(drawn.dropna(), default=0.1)
@@ -86,8 +93,7 @@ def set_y_limits(column_of_axes, points, log_y):
 
 def with_content(rows, quantities):
     """(quantities with a panel, those without: no trial had them); of none with content the first keeps its panel."""
-    shown = [quantity for quantity in quantities if (rows.upper[rows.quantity == quantity] > 0).any() and
-             (rows.value[rows.quantity == quantity] > 0).any()] or list(quantities[:1])
+    shown = [quantity for quantity in quantities if (rows.value[rows.quantity == quantity] > 0).any()] or list(quantities[:1])
     return shown, [quantity for quantity in quantities if quantity not in shown]
 
 
@@ -97,11 +103,20 @@ def without_content_in_words(rows, quantity):
     return f"{title_of(quantity)}: " + (f"0 everywhere, at most {100 * upper:.2g} % at a point" if upper == upper else "no trials")
 
 
+def rates_of(rows):
+    return rows[rows.kind.isin(DRAWN_KINDS)]
+
+
 def caption_of(rows, other_factors, is_numeric, has_arrows, left_out):
+    rates = rates_of(rows)
+    kinds = ([interval_in_words(rates)] if len(rates) else []) + [
+        words for kind, words in NUMBER_KINDS.items() if (rows.kind == kind).any()]
     return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, "point"),
-                      f"{'bands' if is_numeric else 'bars'}: {interval_in_words(rows)} intervals"] +
+                      f"{'bands' if is_numeric else 'bars'}: {', '.join(kinds)} intervals"] +
                      (["arrows: rate zero, at its upper bound"] if has_arrows else []) +
                      [f"dashed: the stated level, {100 * level:g} %" for quantity, level in STATED_LEVELS.items()
+                      if quantity in set(rows.quantity)] +
+                     [f"dashed: {least}, below which no covariance is right" for quantity, least in LEAST.items()
                       if quantity in set(rows.quantity)] +
                      [without_content_in_words(rows, quantity) for quantity in left_out]) + "."
 
@@ -122,7 +137,8 @@ def draw(summary, x, quantities, log_y=None):
     """The whole figure: quantities side by side, one row of panels per combination of the other factors. Names stand beside
     the lines where there is one panel abreast and room, in a legend elsewhere. `log_y` None: where rates are small."""
     check_factor(summary, "--x", x)
-    rows = select_rates(summary, quantities)
+    quantities = with_sharpness(summary, quantities)
+    rows = select_rates(summary, quantities, or_numbers=True)
     axis = FactorAxis(x, rows[x])
     other_factors = [factor for factor in summary.factors if factor != x]
     rows = rows_that_vary(rows.assign(x=axis.positions(rows[x])), other_factors)
@@ -143,8 +159,11 @@ def draw(summary, x, quantities, log_y=None):
         set_y_limits(panels[:, c], drawn[quantity], is_log[quantity])
     for axes in style.bottom_panels(panels):
         axis.prepare(axes, len(quantities))  # the x axis is shared by all panels
-    for axes in style.left_panels(panels):
-        axes.set_ylabel(f"{kind_in_words(rows)} (%)")
+    left = style.left_panels(panels)
+    for (_, c), axes in zip(itertools.product(range(len(parts)), range(len(quantities))), panels.flat):
+        points = drawn[quantities[c]]
+        if any(axes is one for one in left):
+            axes.set_ylabel(title_of(quantities[c]) if are_numbers(points) else f"{kind_in_words(rates_of(rows))} (%)")
     has_names = axis.is_numeric and len(quantities) == 1 and len(parts) <= 2 and direct_labels.make_room(
         figure, len(parts), [look.label for look in looks.values()])
     has_arrows = any(is_log[quantity] and (drawn[quantity].value == 0).any() for quantity in quantities)

@@ -12,10 +12,16 @@ TITLES = {  # other quantities: their name in words
     "other_refusal": "Other refusals",
     "failure_probability": "Stated probability of failure",
     "kappa_flag": "Kappa-flag rate", "nees_coverage": "NEES coverage",
+    "sd_over_crb": "Stated sd over its bound", "rotation_ause": "AUSE of rotation", "direction_ause": "AUSE of direction",
+    "rotation_ause_random": "AUSE of rotation, random order", "direction_ause_random": "AUSE of direction, random order",
     "auc_5_deg": "AUC@5\u00b0", "auc_10_deg": "AUC@10\u00b0", "auc_20_deg": "AUC@20\u00b0", "maa_10_deg": "mAA(10\u00b0)",
 }
 ANSWERED = "_answered"  # the suffix of measures that leave refusals out
 DRAWN_KINDS = ("rate", "score", "share")  # numbers between 0 and 1 with an interval
+NUMBER_KINDS = {"median": "medians with distribution-free", "area": "areas with Student's"}  # of any size; interval if known
+NUMBERS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg", "rotation_ause", "rotation_ause_random", "direction_ause",
+           "direction_ause_random")  # those of them that are drawn
+SHARPNESS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg", "log_det_cov")
 
 
 def title_of(quantity):
@@ -23,6 +29,26 @@ def title_of(quantity):
     if measure in TITLES and quantity.endswith(ANSWERED):
         return sheet.current().text_of(quantity, TITLES[measure] + ", refusals left out")
     return sheet.current().text_of(quantity, TITLES[quantity]) if quantity in TITLES else style.in_words(quantity)
+
+
+def with_sharpness(summary, quantities):
+    """The same with sd_over_crb behind a coverage, where the table has it and no sharpness is asked for: a region covers
+    as often as it likes if it is wide enough."""
+    rows = summary.rows
+    is_known = ((rows.quantity == "sd_over_crb") & (rows.n != "0")).any()
+    if "nees_coverage" not in quantities or not is_known or set(quantities) & set(SHARPNESS):
+        return list(quantities)
+    place = quantities.index("nees_coverage") + 1
+    return [*quantities[:place], "sd_over_crb", *quantities[place:]]
+
+
+def sharpness_in_words(summary, quantities):
+    """Of a figure of coverages that has no room for sharpness: the range of the medians in the table."""
+    rows = summary.rows[(summary.rows.quantity == "sd_over_crb") & (summary.rows.n != "0")]
+    if "nees_coverage" not in quantities or not len(rows):
+        return []
+    values = sorted(map(float, rows.value))
+    return [f"stated sd {values[0]:.3g} to {values[-1]:.3g} times the Cram\u00e9r-Rao bound (medians)"]
 
 
 def kind_in_words(rows):
@@ -44,10 +70,11 @@ def check_one_study(summary):
                         f"--where study={' or study='.join(studies)}.")
 
 
-def select_rates(summary, quantities):
-    """The rows of the asked rates or scores, with `value`, `lower`, `upper` and `n` as numbers; NaN where n is 0."""
+def select_rates(summary, quantities, or_numbers=False):
+    """The rows of the asked rates or scores, with `value`, `lower`, `upper` and `n` as numbers; NaN where n is 0.
+    `or_numbers`: NUMBERS too, which are of any size and may have no interval."""
     path = summary.path
-    is_drawn = summary.rows.kind.isin(DRAWN_KINDS)
+    is_drawn = summary.rows.kind.isin(DRAWN_KINDS) | (or_numbers & summary.rows.quantity.isin(NUMBERS))
     rates = list(dict.fromkeys(summary.rows.quantity[is_drawn]))
     for quantity in quantities:
         if quantity not in rates:
@@ -58,6 +85,8 @@ def select_rates(summary, quantities):
         n=numbers(summary, "n"),
         **{column: numbers(summary, column, may_be_empty=True) for column in ("value", "lower", "upper")})
     for row in selected.itertuples():
+        if row.kind in NUMBER_KINDS and not (row.lower > row.value or row.value > row.upper):
+            continue
         if not (0 <= row.lower <= row.value <= row.upper <= 1 or (row.n == 0 and math.isnan(row.value))):
             raise PlotError(f"{path}: line {row.line}: a {row.kind} must lie in its interval and both in 0..1, "
                             "and may be empty only where n is 0.")

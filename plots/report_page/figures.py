@@ -11,7 +11,7 @@ from common.summary_csv import where
 from page.html import code, element, joined
 from page.picture import picture_of
 from rates import cells, differences, lines
-from rates.selection import title_of
+from rates.selection import title_of, with_sharpness
 from reliability_figure import panels as reliability
 
 QUANTITIES = ("failure", "failure_or_refusal", "no_candidate")  # the first two that a table has: an old one lacks the second
@@ -48,9 +48,10 @@ def quantities_of(run):
 
 
 def measures_of(run):
-    """Those that some estimator has a number of."""
+    """Those that some estimator has a number of, a coverage with its sharpness."""
     rows = run.summary.rows
-    return [quantity for quantity in MEASURES if ((rows.quantity == quantity) & (rows.n != "0")).any()]
+    return with_sharpness(run.summary, [quantity for quantity in MEASURES
+                                        if ((rows.quantity == quantity) & (rows.n != "0")).any()])
 
 
 def rates_in_words(quantities):

@@ -11,7 +11,8 @@ from reliability_figure.reliability_file import STATED
 SHOWN = ("failure", "failure_or_refusal", "no_candidate", "other_refusal", "kappa_flag", "nees_coverage", "sd_over_crb",
          "rotation_sd_deg", "direction_sd_deg", "nees_median", "energy_score_deg", "log_score", "available", "misleading", "rotation_error_deg",
          "direction_error_deg", "auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg",
-         "max_error_median_deg")  # of the results; all others stand in the table of every number
+         "max_error_median_deg", "rotation_ause", "rotation_ause_random", "direction_ause",
+         "direction_ause_random")  # of the results; all others stand in the table of every number
 PANEL = {"impossible": "impossible", "parallax_median_deg": "parallax", "homography_share": "plane", "crb_direction_deg": "bound"}
 WORST_MARGINALS = 12
 MANY_ROWS = 40  # a longer table is folded
@@ -52,7 +53,8 @@ def cell(row, num_trials):
     """One number with its interval or standard error, and its n where that is not the row's."""
     if row is None or row["n"] == "0":
         return DASH
-    whole = {"rate": rate_cell, "score": rate_cell, "share": rate_cell, "mean": mean_cell, "median": median_cell}[row["kind"]](row)
+    whole = {"rate": rate_cell, "score": rate_cell, "share": rate_cell, "mean": mean_cell, "median": median_cell,
+             "area": median_cell}[row["kind"]](row)
     return whole if row["n"] == num_trials else joined([whole, Html("<br>"), small(f"n = {row['n']}")])
 
 
@@ -114,7 +116,8 @@ def results(run):
     return table(
         f"Rates of each estimator {'over all conditions' if run.is_of_population else 'in each condition'}, in per cent of "
         f"its n trials with {interval_in_words(run.summary.rows[run.summary.rows.kind == 'rate'])} intervals, scores with anytime-valid "
-        "ones, medians with distribution-free ones, and means with their Monte-Carlo standard errors; n stands with a "
+        "ones, medians with distribution-free ones, areas (AUSE) with Student's, and means with their Monte-Carlo standard "
+        "errors; n stands with a "
         "number that is not of all trials. "
         "T is a trial worth a look: the command beside the condition runs it again.",
         ["T", "estimator", "n", *map(heading, shown)],
@@ -150,12 +153,19 @@ def reliability(run):
          f"failed at P \u2264 {at_most}", f"trials at P \u2264 {at_most}"], [(None, lines)], class_="results")
 
 
+def sharpness_of(row):
+    """Beside a coverage: the stated sd over its bound."""
+    text = getattr(row, "sd_over_crb", "")
+    return [Html("<br>"), small(f"sd {float(text):.3g} times the bound")] if text else []
+
+
 def marginals(run):
     """The regimes in which an estimator is farthest from what is claimed, the first of them first."""
     rows = run.marginals.rows
     worst = rows[(rows.excess > 0) & (rows.regime != "all")]
     lines = [[style.label_of(row.estimator), row.regime, row.quantity,
-              joined([f"{100 * row.value:.2f} %", Html("<br>"), small(f"[{100 * row.lower:.2f}, {100 * row.upper:.2f}]")]),
+              joined([f"{100 * row.value:.2f} %", Html("<br>"), small(f"[{100 * row.lower:.2f}, {100 * row.upper:.2f}]"),
+                      *sharpness_of(row)]),
               f"{100 * row.claimed:.0f} %", f"{row.num_conditions} ({int(row.n):,})"]
              for row in worst.head(WORST_MARGINALS).itertuples()]
     if not lines:

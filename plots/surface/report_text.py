@@ -50,6 +50,10 @@ def heading(data):
     if num_sample:
         mean = data.conditions["mean"][data.is_sample].mean()
         text += f" Mean over the random draws, each the same weight: {100 * mean:.1f} %."
+    if "sd_over_crb" in data.conditions:
+        sharpness = data.conditions["sd_over_crb"].dropna()
+        text += (f" The stated sd is {sharpness.min():.3g} to {sharpness.max():.3g} times its Cramer-Rao bound (geometric "
+                 "mean of a condition): a region covers as often as it likes if it is wide enough.")
     return "\n".join(lines) + paragraph(text)
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import functools
+import io
 import json
 import os
 import resource
@@ -171,7 +172,23 @@ def is_same(path, target, table):
     new, old = content(path, table), target.read_bytes()
     if table == "audit":
         return without_times(new.decode()) == without_times(old.decode())
-    return new == old or (target.suffix == ".csv" and without_newer_quantities(new.decode(), old.decode()) == old.decode())
+    if new == old or target.suffix != ".csv":
+        return new == old
+    new, old = without_newer_columns(new.decode(), old.decode()), old.decode()
+    return without_newer_quantities(new, old) == old
+
+
+def without_newer_columns(new, old):
+    """A table without the columns that the committed one does not have, as without_newer_quantities; one without such
+    columns stays as it is written."""
+    cells = list(csv.reader(new.splitlines()))
+    header = next(csv.reader(old.splitlines()), [])
+    kept = [place for place, name in enumerate(cells[0] if cells else []) if name in header]
+    if not cells or len(kept) == len(cells[0]) or any(len(row) != len(cells[0]) for row in cells):
+        return new
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([row[place] for place in kept] for row in cells)
+    return text.getvalue()
 
 
 def without_newer_quantities(new, old):

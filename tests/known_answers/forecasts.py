@@ -1,6 +1,6 @@
 """Known answers about stated probabilities, by the definitions: of tests/stats/isotonic_regression_test.cc, reliability_test.cc,
-calibration_error_test.cc, calibration_line_test.cc, clustered_estimate_test.cc and risk_coverage_area_test.cc. Exact
-fractions where there is no root or logarithm.
+calibration_error_test.cc, calibration_line_test.cc, clustered_estimate_test.cc, risk_coverage_area_test.cc and
+sparsification_test.cc. Exact fractions where there is no root or logarithm.
 
     /usr/bin/python3 tests/known_answers/forecasts.py
 """
@@ -85,8 +85,8 @@ def calibration_line(forecasts):
                                                             covariance[1, 1] ** 0.5))
 
 
-def risk_coverage_area(scored):
-    """The mean over all orders of equal scores."""
+def area_of_mean_losses(scored):
+    """The mean loss of the first k, averaged over k and over all orders of equal scores."""
     areas = []
     for order in set(permutations(range(len(scored)))):
         scores = [scored[i][0] for i in order]
@@ -94,7 +94,15 @@ def risk_coverage_area(scored):
             continue
         failed = [scored[i][1] for i in order]
         areas.append(sum(Fraction(sum(failed[:k]), k) for k in range(1, len(scored) + 1)) / len(scored))
-    print("area under the risk-coverage curve %.12f" % (sum(areas) / len(areas)))
+    return sum(areas) / len(areas)
+
+
+def sparsification(pairs):
+    """AUSE of (stated, error) and that of a random order."""
+    mean = Fraction(sum(error for _, error in pairs), len(pairs))
+    stated = area_of_mean_losses([(-s, error) for s, error in pairs])
+    oracle = area_of_mean_losses([(-error, error) for _, error in pairs])
+    print("AUSE %.12f, of a random order %.12f" % ((stated - oracle) / mean, 1 - oracle / mean))
 
 
 if __name__ == "__main__":
@@ -104,4 +112,6 @@ if __name__ == "__main__":
     calibration_errors(FORECASTS, 4)
     calibration_errors(FORECASTS, 10)
     calibration_line(FORECASTS)
-    risk_coverage_area([(9, 0), (8, 0), (8, 1), (5, 0), (5, 1), (5, 1), (2, 0), (1, 1)])
+    print("area under the risk-coverage curve %.12f" %
+          area_of_mean_losses([(9, 0), (8, 0), (8, 1), (5, 0), (5, 1), (5, 1), (2, 0), (1, 1)]))
+    sparsification([(2, 3), (1, 1), (4, 2), (4, 9), (3, 1), (1, 4), (7, 6), (5, 5)])

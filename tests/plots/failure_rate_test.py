@@ -251,6 +251,21 @@ class WhatAReviewerLooksFor(FailureRateTest):
         self.assertEqual(levels, [[0.95], []])
         self.assertIn("dashed: the stated level, 95 %", figure.texts[0].get_text().replace("\n", " "))
 
+    def test_a_coverage_is_not_drawn_without_its_sharpness(self):
+        sharp = """demo,"a, first",0.4,1,standard,sd_over_crb,median,1.5,1.25,2.5,,400
+demo,b,0.0,1,standard,sd_over_crb,median,3,2,4,,390
+"""
+        figure = self.draw(TABLE + COVERAGE + sharp, ["nees_coverage"])
+        self.assertEqual([axes.get_title("left") for axes in figure.axes],
+                         ["(a) NEES coverage", "(b) Stated sd over its bound"])
+        points = line_of(figure.axes[1], "Standard")
+        self.assertEqual(points[:2], [(0.0, 3), (0.4, 1.5)])
+        self.assertEqual([line.get_ydata()[0] for line in figure.axes[1].lines if line.get_label() == "_stated"], [1])
+        caption = figure.texts[0].get_text().replace("\n", " ")
+        for words in ("medians with distribution-free intervals", "1, below which no covariance is right"):
+            self.assertIn(words, caption)
+        self.assertEqual(len(self.draw(TABLE + COVERAGE + sharp, ["failure"]).axes), 1)
+
     def test_rates_that_are_small_have_a_logarithmic_axis_unless_asked_otherwise(self):
         scales = [axes.get_yscale() for axes in self.draw(TABLE + SMALL, ["failure", "invalid_motion"], log_y=None).axes]
         self.assertEqual(scales, ["linear", "log"])

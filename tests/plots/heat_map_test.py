@@ -98,6 +98,12 @@ class Drawn(HeatMapTest):
         self.assertEqual(caption, "Study demo; n = 0\u2013400 per cell; in each cell the rate in %, below it its exact 95 % "
                                   "(Clopper-Pearson) interval.")
 
+    def test_the_caption_of_a_coverage_says_how_sharp_it_is(self):
+        rows = "".join(f"demo,{c},{c},1,a,nees_coverage,rate,0.9,0.8,0.95,,10\n"
+                       f"demo,{c},{c},1,a,sd_over_crb,median,{1.25 + c},1,9,,10\n" for c in range(3))
+        caption = self.draw(HEADER + "\n" + rows, quantities=["nees_coverage"]).texts[0].get_text().replace("\n", " ")
+        self.assertIn("stated sd 1.25 to 3.25 times the Cram\u00e9r-Rao bound", caption)
+
     def test_many_levels_go_into_more_rows_of_panels(self):
         lines = [f"demo,{c},{c},{y},{name},failure,rate,0.1,0.05,0.2,,10" for c in range(8) for y in (1, 2)
                  for name in ("a", "b", "c")]

@@ -50,14 +50,15 @@ class Page(ReportTest):
         self.add_run()
         self.assertNotIn("Where it is not what it claims", self.page())
         (self.data / "run_0001" / "marginals.csv").write_text(
-            "estimator,regime,quantity,value,lower,upper,claimed,excess,num_conditions,n\n"
-            "mine,noise = laplace,coverage,0.4,0.31,0.52,0.95,3.2,17,93\n"
-            "standard,all,failure,0.2,0.1,0.3,,0,40,400\n"
-            "standard,noise = laplace,failure,0.2,0.1,0.3,,0,17,93\n")
+            "estimator,regime,quantity,value,lower,upper,claimed,sd_over_crb,excess,num_conditions,n\n"
+            "mine,noise = laplace,coverage,0.4,0.31,0.52,0.95,1.4321,3.2,17,93\n"
+            "standard,all,failure,0.2,0.1,0.3,,,0,40,400\n"
+            "standard,noise = laplace,failure,0.2,0.1,0.3,,,0,17,93\n")
         page = self.page()
         section = page[page.index("Where it is not what it claims</h3>"):page.index("Findings</h3>")]
         self.assertIn("40.00 %", section)
         self.assertIn("[31.00, 52.00]", section)
+        self.assertIn("sd 1.43 times the bound", section)
         self.assertIn("17 (93)", section)
         self.assertNotIn("[10.00, 30.00]", section)  # nothing is claimed of failures
         self.assertIn("The 1 of 1 regimes", section)
@@ -89,6 +90,16 @@ class Page(ReportTest):
         self.assertIn("NEES coverage against noise.", page)
         self.assertNotIn("AUC@10", page)
         self.assertIn("--quantities nees_coverage", page)
+
+    def test_coverage_is_drawn_with_its_sharpness_and_areas_are_in_the_table(self):
+        more = "".join(f"demo,{condition},{level},mine,{row}\n" for condition, level in enumerate(("gaussian", "laplace"))
+                       for row in ("nees_coverage,rate,0.8,0.7,0.9,,10", "sd_over_crb,median,1.5,1.2,1.9,,10",
+                                   "rotation_ause,area,0.1234,0.0456,0.2012,0.03,10"))
+        self.add_run(summary_csv=summary() + more)
+        page = self.page()
+        self.assertIn("--quantities nees_coverage,sd_over_crb", page)
+        text = "".join(Structure(page).text)
+        self.assertIn("0.123[0.0456, 0.201]", text)
 
     def test_prose_is_as_wide_as_a_small_screen_and_paper_is_upright(self):
         self.assertRegex(report.CSS, r"\ncaption \{[^}]*max-width: min\(60rem, calc\(100vw")

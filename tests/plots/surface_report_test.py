@@ -14,6 +14,7 @@ from scipy import stats
 from surface.cross_validation import count_masses, cross_validate, exact_interval, score_count, transform_histogram
 from surface.effects import WIDEST_BAND, measure_effects
 from surface.proposals import propose
+from surface.report_text import heading
 from surface.surface_data import read_surface_data
 
 NUMBER, TRIALS = 100, 20
@@ -64,6 +65,16 @@ class PredictionTest(SurfaceTestCase):
             self.assertEqual(check.beats_constant, beats)
             share, low, high, expected = check.inside
             self.assertTrue(low <= expected <= high, f"{share} of the held-out conditions inside, {expected} expected")
+
+
+class HeadingTest(SurfaceTestCase):
+    def test_a_coverage_is_not_said_without_its_sharpness(self):
+        value = self.known(quantity="coverage")
+        self.assertNotIn("Cramer-Rao", heading(self.data(value)))
+        for c, condition in enumerate(value["conditions"][1:]):
+            condition["sd_over_crb"] = 1.25 + c % 3
+        self.assertIn("The stated sd is 1.25 to 3.25 times its Cramer-Rao bound",
+                      " ".join(heading(self.data(value)).split()))
 
 
 class EffectsTest(SurfaceTestCase):

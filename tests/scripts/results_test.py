@@ -29,6 +29,12 @@ class TheSame(unittest.TestCase):
         self.assertTrue(self.same(OLD))
         self.assertTrue(self.same(OLD.replace("s,c,", "s,c,refusal,0.5\ns,c,")))
 
+    def test_a_column_that_is_new_is_no_difference(self):
+        old, new = 'a,b\n"1, x",2\n', 'a,c,b\n"1, x",7,2\n'
+        self.assertTrue(self.same(new, old=old))
+        self.assertFalse(self.same(new.replace(",2", ",3"), old=old))
+        self.assertFalse(self.same(old, old=new))
+
     def test_anything_else_is(self):
         for new in (OLD.replace("0.2", "0.3"), OLD.replace("s,c,failure,0.2\n", ""), OLD + "s,d,failure,0.2\n",
                     OLD.replace("value", "rate"), OLD.replace("failure", "refusal"), "", "study\n"):

@@ -37,6 +37,7 @@ inline constexpr const char* kReliabilityFormat = "rcme reliability 1";
 inline constexpr const char* kRepetitionsFormat = "rcme tuning repetitions 1";
 inline constexpr const char* kReportFormat = "rcme report 1";
 inline constexpr const char* kRunFormat = "rcme run 1";
+inline constexpr const char* kStrataFormat = "rcme strata 1";
 inline constexpr const char* kSummaryFormat = "rcme summary 1";
 inline constexpr const char* kSurfaceFormat = "rcme surface 1";
 inline constexpr const char* kSurfaceDataFormat = "rcme surface data 1";

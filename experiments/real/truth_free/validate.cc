@@ -199,6 +199,18 @@ TruthFreeVerdict JudgeSigma(const ComparedMedians& estimated_px, double assumed_
   return is_nominal ? TruthFreeVerdict::kHolds : TruthFreeVerdict::kUndecided;
 }
 
+void SetSharpness(const std::vector<PairAnswers>& answers, SetReport* report) {
+  std::vector<double> rotation, direction;
+  for (const PairAnswers& pair : answers) {
+    if (!pair.whole.IsOk()) continue;
+    const Matrix5d& cov = pair.whole.estimate.pose_cov;
+    rotation.push_back(kDegPerRad * std::sqrt(cov.topLeftCorner<3, 3>().trace()));
+    direction.push_back(kDegPerRad * std::sqrt(cov.bottomRightCorner<2, 2>().trace()));
+  }
+  report->rotation_sd_deg = ComputeMedian(std::move(rotation));
+  report->direction_sd_deg = ComputeMedian(std::move(direction));
+}
+
 }  // namespace
 
 SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options,
@@ -232,6 +244,7 @@ SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const V
                   TestCovariances("directions", 1, CloseLoops(answers, loops, DirectionClosure), rng),
                   TestCovariances(kSimulationTest, 5, simulation, rng)};
   report.covariances = JudgeTests(report.tests);
+  SetSharpness(answers, &report);
   report.assumed_sigma_px = set.pairs.empty() ? kNaN : set.pairs.front().problem.sigma_px;
   report.sigma_px = CompareSigma(answers, rng);
   report.sigma_verdict = JudgeSigma(report.sigma_px, report.assumed_sigma_px);

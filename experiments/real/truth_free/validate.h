@@ -14,6 +14,7 @@
 #include "experiments/real/truth_free/size_test.h"
 #include "experiments/real/truth_free/truth_free_verdict.h"
 #include "experiments/real/truth_free/twin.h"
+#include "stats/constants.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {
@@ -37,6 +38,9 @@ struct SetReport {
   std::map<size_t, int> num_loops;  // whose pairs are all answered, by the number of images
   std::vector<TruthFreeTest> tests;
   CovarianceVerdict covariances;  // of all tests
+  // How sharp the covariances are: medians over the answered pairs of what is stated, the root of the trace
+  // of the rotation's and of the direction's block. NaN: none is answered.
+  double rotation_sd_deg = kNaN, direction_sd_deg = kNaN;
   double assumed_sigma_px = 0.0;
   ComparedMedians sigma_px;                                    // estimated from residuals, median over pairs
   TruthFreeVerdict sigma_verdict = TruthFreeVerdict::kNoData;  // of the assumed one

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
@@ -55,6 +56,13 @@ std::string DescribeCovariances(const CovarianceVerdict& of) {
   if (of.verdict == TruthFreeVerdict::kNoData) return text;
   return fmt::format("{}{} ({})", text, DescribeCause(of.cause, of.verdict == TruthFreeVerdict::kTooSmall),
                      fmt::join(of.tests, ", "));
+}
+
+// Beside coverage: a covariance covers as often as it likes if it is wide enough.
+std::string DescribeSharpness(const SetReport& report) {
+  if (std::isnan(report.rotation_sd_deg)) return "";
+  return FormatParagraph(fmt::format("stated sd (median): {:.2g} deg of rotation, {:.2g} deg of direction",
+                                     report.rotation_sd_deg, report.direction_sd_deg));
 }
 
 bool IsKnown(const DistanceCorrelation& c) { return std::isfinite(c.difference.lower); }
@@ -127,6 +135,10 @@ std::vector<SetRow> MakeSetRows(const SetReport& set) {
   };
   add("covariances", "", VerdictName(set.covariances.verdict), "", set.num_answered, none,
       set.covariances.cause);
+  for (const auto& [name, sd_deg] : {std::pair("rotation_sd_deg", set.rotation_sd_deg),
+                                     std::pair("direction_sd_deg", set.direction_sd_deg)}) {
+    if (!std::isnan(sd_deg)) add(name, "", "", "", set.num_answered, ComparedMedians{sd_deg, none.interval});
+  }
   for (const TruthFreeTest& test : set.tests) {
     add(test.name, test.name, VerdictName(test.verdict), DescribeVerdict(test), test.num_values, test.ratio,
         test.cause, &test);
@@ -210,6 +222,8 @@ std::vector<ColumnOf<SetReport>> MakeSetColumns() {
       {Column::Text("covariances"), [](S s) { return VerdictName(s.covariances.verdict); }},
       {Column::Text("cause"), [](S s) { return CauseName(s.covariances.cause); }},
       {Column::Text("by_tests"), [](S s) { return fmt::format("{}", fmt::join(s.covariances.tests, " ")); }},
+      {Column::Number("rotation_sd_deg"), [](S s) { return s.rotation_sd_deg; }},
+      {Column::Number("direction_sd_deg"), [](S s) { return s.direction_sd_deg; }},
       {Column::Number("assumed_sigma_px"), [](S s) { return s.assumed_sigma_px; }},
       {Column::Number("sigma_px"), [](S s) { return s.sigma_px.value; }},
       {MakeIntervalColumn("sigma_px"), [](S s) { return s.sigma_px.interval; }},
@@ -305,7 +319,8 @@ std::string SetAsTable(const SetReport& report) {
       rows);
   std::string text = FormatParagraph(fmt::format("{}: {} pairs, {} answered, {}", report.name,
                                                  report.num_pairs, report.num_answered, LoopsText(report))) +
-                     FormatParagraph(DescribeCovariances(report.covariances)) + "\n" + RenderText(table);
+                     FormatParagraph(DescribeCovariances(report.covariances)) + DescribeSharpness(report) +
+                     "\n" + RenderText(table);
   for (const std::string& advice : report.advice) text += FormatParagraph("  -> " + advice);
   return text + "\n";
 }

@@ -2,12 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "experiments/ask/accept_rule.h"
+#include "experiments/ask/answer_output.h"
 #include "experiments/ask/question.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -74,6 +76,24 @@ TEST(Ask, TheStudyIsTheQuestion) {
     const bool is_there = std::ranges::count(study.data, Settings::value_type(key, value)) == 1;
     EXPECT_TRUE(is_there) << key;
   }
+}
+
+TEST(Ask, CoverageIsNotSaidWithoutSharpness) {
+  Answer answer;
+  answer.best.label = "ours";
+  answer.coverage = {.value = 0.94, .interval = {0.9, 0.97}};
+  const auto says = [&](const std::string& words) {  // in however many lines
+    std::istringstream text(AnswerAsText(answer, "?", "folder"));
+    std::string all, word;
+    while (text >> word) all += word + " ";
+    return all.find(words) != std::string::npos;
+  };
+  EXPECT_FALSE(says("stated sd"));
+  answer.rotation_sd_deg = 0.25, answer.direction_sd_deg = 1.5;
+  EXPECT_TRUE(says("; stated sd 0.25 deg of rotation, 1.5 deg of direction"));
+  answer.sd_over_crb = 1.625;
+  EXPECT_TRUE(says("; stated sd 1.62 times the least possible"));
+  EXPECT_EQ(nlohmann::json::parse(AnswerAsJson(answer, "?"))["sd_over_crb"], 1.625);
 }
 
 // 300 answers of P 0.004, none of which fails, and 100 of P 0.15, of which half do. P(Binomial(300, 0.05) =

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/gate/gate_output.h"
+#include "stats/constants.h"
 #include "stats/random.h"
 #include "tests/test_support/coverage_count.h"
 #include "tests/test_support/expect_input_error.h"
@@ -70,6 +72,29 @@ TEST(GateQuantity, DifferencesAndMargins) {
   EXPECT_TRUE(ThrowsInputError([&] { with_margin("faliure=0.1"); }, {"did you mean 'failure'?"}));
   EXPECT_TRUE(ThrowsInputError([&] { with_margin("failure=1.5"); }, {"between 0 and 1"}));
   EXPECT_TRUE(ThrowsInputError([&] { with_margin("time=0.1"); }, {"is not judged"}));
+}
+
+// Regions twice as large lack the truth less often: beside miscoverage stands what that cost. ln det of five
+// axes twice as long is 10 ln 2 greater; pairs with a singular covariance say nothing of it.
+TEST(Gate, MiscoverageIsNotShownWithoutTheSizeOfTheRegions) {
+  const auto wider = [](std::uint32_t, std::uint32_t t) {
+    std::vector<TrialRecord> records(2, MakeGateRecord(false));
+    records[0].density.log_det_cov = -60.0 + t % 7;
+    records[1].density.log_det_cov =
+        t % 5 == 0 ? kNaN : records[0].density.log_det_cov + 10.0 * std::log(2.0);
+    return records;
+  };
+  GateReport report;
+  report.new_label = "new", report.old_label = "old";
+  report.num_conditions = kConditions;
+  report.look = TakeGateLook(MakeRun(wider, 50), MakeGateTests({"failure", "miscoverage"}, {}), 50);
+  ASSERT_EQ(report.look.rows.size(), 2u);
+  EXPECT_TRUE(std::isnan(report.look.rows[0].size_ratio));
+  EXPECT_NEAR(report.look.rows[1].size_ratio, 2.0, 1e-12);
+  EXPECT_NE(GateAsText(report).find("2 times as large"), std::string::npos) << GateAsText(report);
+  EXPECT_NE(RenderResult(MakeGateResult(report), "csv").find("size_ratio"), std::string::npos);
+  for (GateRow& row : report.look.rows) row.size_ratio = kNaN;
+  EXPECT_EQ(GateAsText(report).find("regions"), std::string::npos);
 }
 
 // Without a discordant pair a stake f of the gambler's grows by 1 + f (0.5 / 0.4975 - 1) a trial.

@@ -64,7 +64,29 @@ TEST_F(MarginalsOfRun, WhereNothingIsWrongNothingIsFound) {
   const Marginals marginals = Measure([](const Condition&) { return 0.2; });
   // All and 5 + 2 regimes; no answer is sure, so that two quantities remain.
   EXPECT_EQ(marginals.num_intervals, 16u);
-  for (const Marginal& one : marginals.rows) EXPECT_EQ(one.excess, 0.0) << one.regime;
+  for (const Marginal& one : marginals.rows) {
+    EXPECT_EQ(one.excess, 0.0) << one.regime;
+    EXPECT_TRUE(std::isnan(one.sd_over_crb)) << one.regime;  // of no coverage
+  }
+}
+
+// In each condition the trials 0, ..., 39 with 1, ..., 40 times the bound: the geometric mean is 40!^(1 /
+// 40).
+TEST_F(MarginalsOfRun, ACoverageHasItsSharpness) {
+  const Marginals marginals = Measure([](const Condition&) { return 0.0; }, false, 1e-3);
+  int num_coverages = 0;
+  for (const Marginal& one : marginals.rows) {
+    const bool is_coverage = one.quantity == MarginalQuantity::kSureCoverage;
+    num_coverages += is_coverage;
+    if (is_coverage) {
+      EXPECT_NEAR(one.sd_over_crb, std::exp(std::lgamma(41.0) / 40.0), 1e-9) << one.regime;
+    } else {
+      EXPECT_TRUE(std::isnan(one.sd_over_crb)) << one.regime;
+    }
+  }
+  EXPECT_EQ(num_coverages, 8);
+  for (const std::string& text : {MarginalsAsTable("wide", marginals, 3), MarginalsAsCsv(marginals)})
+    EXPECT_NE(text.find("sd_over_crb"), std::string::npos);
 }
 
 TEST_F(MarginalsOfRun, TheWrongRegimeComesFirst) {

@@ -17,6 +17,7 @@
 #include "stats/population_mean.h"
 #include "stats/population_rate.h"
 #include "stats/random.h"
+#include "stats/sparsification.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/summarized_run.h"
 #include "tests/test_support/temp_folder.h"
@@ -98,6 +99,27 @@ TEST_F(PopulationSummary, RatesHaveTheIntervalOverDraws) {
   EXPECT_FALSE(Summarize(Open(), false).is_of_population);  // a condition's own numbers
 }
 
+// Of all trials together, the trials of a draw as one cluster.
+TEST_F(PopulationSummary, RankingsOfErrorsHaveTheIntervalOverDraws) {
+  std::vector<StatedError> errors;
+  Open().ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    errors.push_back({records[0].density.rotation_sd_deg, records[0].rotation_error_deg,
+                      static_cast<std::int64_t>(problem.condition / 2)});
+  });
+  const Sparsification expected = MeasureSparsification(errors);
+  int num_checked = 0;
+  for (const SummaryRow& row : Summarize(Open(), false, Pooling::kPooled).rows) {
+    if (row.estimator != "standard" || row.quantity != "rotation_ause") continue;
+    ++num_checked;
+    EXPECT_EQ(row.n, 120);
+    EXPECT_DOUBLE_EQ(row.value, expected.ause.value);
+    EXPECT_NEAR(row.standard_error, expected.ause.standard_error, 1e-12);
+    EXPECT_NEAR(row.interval.upper, expected.ause.interval.upper, 1e-12);
+    EXPECT_EQ(expected.ause.num_clusters, 12);
+  }
+  EXPECT_EQ(num_checked, 1);
+}
+
 TEST_F(PopulationSummary, DifferencesHaveTheIntervalOverDraws) {
   CompareOptions options;
   options.pooling = Pooling::kPooled;
@@ -155,8 +177,10 @@ TEST(PopulationSummaryOfCounts, IsThatOfTheTrials) {
     RunStudy(plan, 2, &store);
   }
   CountStudy(plan, 2, folder.Path("counts.sqlite"), Shard{1, 1});
-  const Summary of_trials =
+  Summary of_trials =
       Summarize(ResultStore::OpenForReading(folder.Path("trials.sqlite")), false, Pooling::kPooled);
+  std::erase_if(of_trials.rows,  // a ranking needs the trials
+                [](const SummaryRow& row) { return row.kind == SummaryRow::Kind::kArea; });
   const Summary of_counts =
       SummarizeCounts(OpenCounts(folder.Path("counts.sqlite")), false, Pooling::kPooled);
   EXPECT_EQ(SummaryAsCsv(of_trials), SummaryAsCsv(of_counts));

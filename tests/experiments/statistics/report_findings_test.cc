@@ -101,6 +101,19 @@ TEST(ListFindings, WhatMattersMostComesFirst) {
   EXPECT_THAT(sentences[5], HasSubstr("Failure rate of a"));
 }
 
+TEST(ListFindings, ACoverageIsNotSaidWithoutItsSharpness) {
+  SummaryRow sharpness = Rate("sd_over_crb", "a", 0, 0.62, 0.1);
+  sharpness.kind = SummaryRow::Kind::kMedian;
+  const Summary summary = MakeSummary(
+      {Rate("nees_coverage", "a", 0, 0.8, 0.05), sharpness, Rate("sd_over_crb", "a", 1, 0.9, 0.1)});
+  const std::vector<std::string> sentences = ListFindings(summary, {}, {});
+  ASSERT_EQ(sentences.size(), 1u);
+  EXPECT_EQ(
+      sentences[0],
+      "Coverage: the 95 % regions that a states contain the truth in 80.00 % [75.00, 85.00] at outlier_ratio "
+      "0.1, with an sd of 0.62 times the Cramer-Rao bound: they are too small.");
+}
+
 TEST(ListFindings, TheOneAheadComesBeforeTheOneBehind) {
   Comparison comparison;
   comparison.reference = "c";

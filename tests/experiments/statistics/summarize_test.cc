@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/summary_output.h"
 #include "parameters/input_error.h"
 #include "stats/confidence_sequence.h"
@@ -105,6 +106,51 @@ TEST_F(SummarizeTest, ScoresOfTheStatedDensityByHand) {
   EXPECT_EQ(Row("direction_sd_deg").value, 5.0);
 }
 
+// By numpy: the mean of cumsum(e[order]) / (1, ..., 6) for the order of the stated sd and for that of the
+// errors, 1, 2, 3, 2, 3.5, 1 and 2, 4, 15, 3, 1, 40 deg, the stated sd rising. Failures are among them,
+// refusals not.
+TEST_F(SummarizeTest, RankingsOfErrorsByHand) {
+  const struct {
+    const char* quantity;
+    double value;
+  } kExpected[] = {{"rotation_ause", 0.17333333333333},
+                   {"rotation_ause_random", 0.30266666666667},
+                   {"direction_ause", 0.16923076923077},
+                   {"direction_ause_random", 0.64871794871795}};
+  for (const auto& [quantity, value] : kExpected) {
+    const SummaryRow row = Row(quantity);
+    EXPECT_EQ(row.kind, SummaryRow::Kind::kArea) << quantity;
+    EXPECT_NEAR(row.value, value, 1e-12) << quantity;
+    EXPECT_EQ(row.n, 6) << quantity;
+    EXPECT_GT(row.standard_error, 0.0) << quantity;
+    EXPECT_TRUE(row.interval.Contains(value)) << quantity;
+    EXPECT_EQ(Row(quantity, 1).n, 0) << quantity;  // without a trial
+  }
+  EXPECT_NE(SummaryAsTable(SummarizeRun("run")).find("rotation_ause_random"), std::string::npos);
+  EXPECT_NE(SummaryAsCsv(SummarizeRun("run")).find("direction_ause,area,0.16923077,"), std::string::npos);
+}
+
+// An answer without a covariance ranks nothing; of none there is no row.
+TEST_F(SummarizeTest, WhatStatesNothingIsNotRanked) {
+  std::vector<TrialRecord> records = HandMadeRecords();
+  records[5].density = {};
+  records[4].direction_error_deg = kNaN;  // its truth is not known
+  Write("some", records);
+  for (const SummaryRow& row : SummarizeRun("some").rows) {
+    if (row.condition != 0) continue;
+    if (row.quantity == "rotation_ause") {
+      EXPECT_EQ(row.n, 5);
+    } else if (row.quantity == "direction_ause") {
+      EXPECT_EQ(row.n, 4);
+    }
+  }
+  for (TrialRecord& record : records) record.density = {};
+  Write("none", records);
+  const Summary none = SummarizeRun("none");
+  EXPECT_EQ(std::ranges::count(none.rows, "rotation_ause", &SummaryRow::quantity), 0);
+  EXPECT_EQ(SummaryAsTable(none).find("ause"), std::string::npos);
+}
+
 // It has no logarithmic score, and is counted instead.
 TEST_F(SummarizeTest, ASingularCovarianceIsNamed) {
   std::vector<TrialRecord> records = HandMadeRecords();
@@ -132,6 +178,25 @@ TEST_F(SummarizeTest, CoverageIsNotShownWithoutSharpness) {
   const Summary unbounded = SummarizeRun("unbounded");
   EXPECT_EQ(std::ranges::count(unbounded.rows, "sd_over_crb", &SummaryRow::quantity), 0);
   EXPECT_NE(SummaryAsTable(unbounded).find("rotation_sd_deg  "), std::string::npos);
+}
+
+// Whatever the format, and whatever was asked for.
+TEST_F(SummarizeTest, SharpnessIsAddedToCoverage) {
+  using Names = std::vector<std::string>;
+  const Summary summary = SummarizeRun("run");
+  EXPECT_EQ(AddSharpness(summary, {"failure", "nees_coverage", "auc_10_deg"}),
+            (Names{"failure", "nees_coverage", "sd_over_crb", "auc_10_deg"}));
+  EXPECT_EQ(AddSharpness(summary, {"nees_coverage", "rotation_sd_deg"}),
+            (Names{"nees_coverage", "rotation_sd_deg"}));
+  EXPECT_EQ(AddSharpness(summary, {"failure"}), (Names{"failure"}));
+  std::vector<TrialRecord> records = HandMadeRecords();
+  for (TrialRecord& record : records) record.density.sd_over_crb = kNaN;
+  Write("unbounded", records);
+  EXPECT_EQ(AddSharpness(SummarizeRun("unbounded"), {"nees_coverage"}),
+            (Names{"nees_coverage", "rotation_sd_deg", "direction_sd_deg"}));
+  for (TrialRecord& record : records) record.density = {};
+  Write("none", records);
+  EXPECT_EQ(AddSharpness(SummarizeRun("none"), {"nees_coverage"}), (Names{"nees_coverage"}));
 }
 
 // Every returned motion counts, failures too: their NEES are 4, 6, 20, 2, 30, 3.
@@ -193,7 +258,8 @@ TEST_F(SummarizeTest, ScoresAndMedianErrorsComeLast) {
   EXPECT_EQ((time + 2)->quantity, "auc_5_deg");
   EXPECT_EQ((time + 9)->quantity, "maa_10_deg_answered");
   EXPECT_EQ((time + 15)->quantity, "max_error_median_deg_answered");
-  EXPECT_EQ((time + 16)->estimator, kSceneLabel);
+  EXPECT_EQ((time + 16)->quantity, "rotation_ause");
+  EXPECT_EQ((time + 20)->estimator, kSceneLabel);
 }
 
 // A covariance that is not positive definite has an infinite NEES, which a median survives and a mean does
@@ -504,6 +570,8 @@ TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
       EXPECT_GT(row.standard_error, 0.0);
       EXPECT_LT(row.interval.lower, 0.1875);
       EXPECT_EQ(row.interval.upper, 1.0);  // four trials bound nothing
+    } else if (row.kind == SummaryRow::Kind::kArea) {
+      ADD_FAILURE() << row.quantity << " of weighted trials";
     } else if (row.kind != SummaryRow::Kind::kRate || row.quantity == "kappa_flag") {
       EXPECT_EQ(row.n, 0) << row.quantity;  // a mean, or of a part of the trials
     }

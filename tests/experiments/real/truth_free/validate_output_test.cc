@@ -84,6 +84,8 @@ SetReport SetReportByHand() {
   report.num_loops = {{3, 2}, {4, 1}};
   report.tests = TestsByHand();
   report.covariances = {TruthFreeVerdict::kTooSmall, FaultCause::kData, {"spatial_halves", "closure"}};
+  report.rotation_sd_deg = 0.25;
+  report.direction_sd_deg = 1.5;
   report.assumed_sigma_px = 0.5;
   report.sigma_px = {0.6, {0.55, 0.7}};
   report.sigma_verdict = TruthFreeVerdict::kUndecided;
@@ -152,6 +154,8 @@ TEST(MakeValidationTable, HasARowOfEveryTest) {
   EXPECT_EQ(RenderCsv(MakeValidationTable({SetReportByHand()})),
             "set,pairs,answered,test,value,lower,upper,n,coverage,twin_coverage,verdict,cause\n" +  //
                 set + "covariances,,,,8,,,too small,data\n" +                                       //
+                set + "rotation_sd_deg,0.25,,,8,,,,\n" +                                            //
+                set + "direction_sd_deg,1.5,,,8,,,,\n" +                                            //
                 set + "simulation,1.1,0.9,1.2,24,0.96,0.94,holds,\n" +                              //
                 set + "spatial_halves,2.1,1.8,2.5,16,0.75,0.9375,too small,data\n" +                //
                 set + "closure,,0,,0,,,no data,\n" +                                                //
@@ -181,10 +185,12 @@ TEST(ValidationAsTable, BeginsWithTheSet) {
   EXPECT_THAT(TableOfSet(report),
               testing::StartsWith(
                   "fountain, east: 10 pairs, 8 answered, 3 loops of images (2 of 3, 1 of 4) "
-                  "covariances: too small; the data: in simulation it is not (spatial_halves, closure)"));
+                  "covariances: too small; the data: in simulation it is not (spatial_halves, closure) "
+                  "stated sd (median): 0.25 deg of rotation, 1.5 deg of direction"));
   EXPECT_THAT(TableOfSet(report), HasSubstr(" -> look at the lens"));
   report.num_loops.clear();
   report.covariances = {};
+  report.rotation_sd_deg = report.direction_sd_deg = kNotKnown;
   EXPECT_THAT(TableOfSet(report),
               testing::StartsWith("fountain, east: 10 pairs, 8 answered, 0 loops of images "
                                   "covariances: no data"));
@@ -231,10 +237,11 @@ TEST(MakeValidationResult, HasTheNumbersOfTheSet) {
   EXPECT_EQ(whole["nominal_correlation"], 0.05);
   EXPECT_EQ(whole["sets"].size(), 2u);
   const nlohmann::json json = MakeJson(SetReportByHand());
-  EXPECT_EQ(json.at("rows").size(), 14u);
+  EXPECT_EQ(json.at("rows").size(), 16u);
   EXPECT_EQ(json.at("sets").at(0),
             nlohmann::json::parse(R"({"set": "fountain, east", "pairs": 10, "answered": 8,
       "covariances": "too small", "cause": "data", "by_tests": "spatial_halves closure",
+      "rotation_sd_deg": 0.25, "direction_sd_deg": 1.5,
       "assumed_sigma_px": 0.5, "sigma_px": 0.6, "sigma_px_interval": [0.55, 0.7], "sigma_verdict": "undecided",
       "calibration_pairs": 7, "calibration_p_value": 0.001, "calibration_dispersion": 1.5,
       "calibration_verdict": "wrong", "size_pairs": 6, "size_slope": 0.4, "size_slope_interval": [0.3, 0.5],
