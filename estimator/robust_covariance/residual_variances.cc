@@ -7,10 +7,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "estimator/kernels/correlated_pairs.h"
+
 namespace rcme {
 namespace {
 
-constexpr Eigen::Index kNumLengths = 3;
+constexpr Eigen::Index kNumLengths = kNumCorrelationLengths;
 constexpr double kLongestPx = kNeighbourLengthsPx.back();  // the others are a third and a ninth
 constexpr int kOwn = 0, kKeyPoint = 1, kFirstLength = 2, kNumParts = kNumVarianceParts;
 constexpr size_t kMostKeyPoints = 1500;
@@ -19,7 +21,6 @@ constexpr double kLeastDeviance = 1.0;  // half of what Akaike's criterion asks 
 
 using Parts = ResidualMoments::Parts;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 5>;
-using ByLength = Eigen::Matrix<double, Eigen::Dynamic, kNumLengths>;
 
 // Key points, n of N that the matches have, and their matches' rows of U.
 struct KeyPoints {
@@ -82,23 +83,6 @@ KeyPoints SelectKeyPoints(const MatchScores& scores, std::span<const int> groups
   return points;
 }
 
-// c of a key point and those before it, the longest length last.
-ByLength ComputeCorrelations(const KeyPoints& points, size_t g) {
-  ByLength c(static_cast<Eigen::Index>(g), kNumLengths);
-  for (size_t h = 0; h < g; ++h) {
-    const double e1 = std::exp(-(points.at[g].x1_px - points.at[h].x1_px).norm() / kLongestPx);
-    const double e2 = std::exp(-(points.at[g].x2_px - points.at[h].x2_px).norm() / kLongestPx);
-    const double cos1 = points.normals[g].head<2>().dot(points.normals[h].head<2>());
-    const double cos2 = points.normals[g].tail<2>().dot(points.normals[h].tail<2>());
-    const double third1 = e1 * e1 * e1, third2 = e2 * e2 * e2;
-    const auto row = static_cast<Eigen::Index>(h);
-    c(row, 0) = cos1 * third1 * third1 * third1 + cos2 * third2 * third2 * third2;
-    c(row, 1) = cos1 * third1 + cos2 * third2;
-    c(row, 2) = cos1 * e1 + cos2 * e2;
-  }
-  return c;
-}
-
 // Sums over pairs of different key points.
 struct PairSums {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();   // of c_k c_l
@@ -107,23 +91,59 @@ struct PairSums {
   std::array<Rows, kNumLengths> sums, means;           // row g: of c_gh times the sum, the mean of rows of h
 };
 
+// Places of the block that hold a key point; the last may have fewer.
+size_t CountInBlock(const KeyPoints& points, size_t block) {
+  return std::min<size_t>(kBlockSize, points.at.size() - block * kBlockSize);
+}
+
+std::vector<CorrelatedBlock> PackKeyPoints(const KeyPoints& points) {
+  std::vector<CorrelatedBlock> blocks((points.at.size() + kBlockSize - 1) / kBlockSize);
+  for (size_t g = 0; g < points.at.size(); ++g) {
+    CorrelatedBlock& block = blocks[g / kBlockSize];
+    const size_t lane = g % kBlockSize;
+    const auto row = static_cast<Eigen::Index>(g);
+    const Correspondence& at = points.at[g];
+    const double x_px[4] = {at.x1_px.x(), at.x1_px.y(), at.x2_px.x(), at.x2_px.y()};
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      block.at[i][lane] = x_px[i] / (kDistanceUnit * kLongestPx);
+      block.normal[i][lane] = points.normals[g](i);
+    }
+    block.residual[lane] = points.residuals(row);
+    block.weight[lane] = 1.0 / points.num_matches(row);
+    for (Eigen::Index j = 0; j < 5; ++j) {
+      block.row[j][lane] = points.sums(row, j);
+      block.mean[j][lane] = points.means(row, j);
+    }
+  }
+  return blocks;
+}
+
+Eigen::Matrix3d TwiceTheSymmetric(const double* triangle) {
+  Eigen::Matrix3d matrix;
+  for (int row = 0, i = 0; row < 3; ++row) {
+    for (int column = 0; column <= row; ++column, ++i)
+      matrix(row, column) = matrix(column, row) = 2.0 * triangle[i];
+  }
+  return matrix;
+}
+
 PairSums VisitPairs(const KeyPoints& points) {
-  PairSums pairs;
-  pairs.sums.fill(Rows::Zero(points.size(), 5));
-  pairs.means.fill(Rows::Zero(points.size(), 5));
-  const Eigen::VectorXd weights = points.num_matches.cwiseInverse();
-  for (Eigen::Index g = 1; g < points.size(); ++g) {
-    const ByLength c = ComputeCorrelations(points, static_cast<size_t>(g));
-    pairs.squares += 2.0 * c.transpose() * c;
-    pairs.weighted += 2.0 * weights(g) * c.transpose() * weights.head(g).asDiagonal() * c;
-    pairs.products += 2.0 * points.residuals(g) * c.transpose() * points.residuals.head(g);
-    for (Eigen::Index k = 0; k < kNumLengths; ++k) {
-      Rows& sums = pairs.sums[static_cast<size_t>(k)];
-      Rows& means = pairs.means[static_cast<size_t>(k)];
-      sums.row(g) += c.col(k).transpose() * points.sums.topRows(g);
-      means.row(g) += c.col(k).transpose() * points.means.topRows(g);
-      sums.topRows(g) += c.col(k) * points.sums.row(g);
-      means.topRows(g) += c.col(k) * points.means.row(g);
+  const CorrelatedPairSums visited =
+      SumCorrelatedPairs(PackKeyPoints(points), points.num_matches.maxCoeff() > 1.0);
+  PairSums pairs{TwiceTheSymmetric(visited.squares),
+                 TwiceTheSymmetric(visited.weighted),
+                 2.0 * Eigen::Vector3d::Map(visited.products),
+                 {},
+                 {}};
+  for (size_t k = 0; k < kNumLengths; ++k) {
+    pairs.sums[k].resize(points.size(), 5);
+    pairs.means[k].resize(points.size(), 5);
+    for (size_t b = 0; b < visited.smoothed.size(); ++b) {
+      for (Eigen::Index j = 0; j < 5; ++j) {
+        const size_t n = CountInBlock(points, b);
+        std::copy_n(visited.smoothed[b].row[k][j], n, pairs.sums[k].col(j).data() + b * kBlockSize);
+        std::copy_n(visited.smoothed[b].mean[k][j], n, pairs.means[k].col(j).data() + b * kBlockSize);
+      }
     }
   }
   return pairs;
