@@ -94,11 +94,11 @@ HWY_INLINE void FillTile(const CorrelatedBlock* points, int rows, int first, int
 
 // The sums over all pairs that are no one's own.
 struct alignas(64) WholeSums {
-  double squares[6][kBlockSize] = {}, weighted[6][kBlockSize] = {}, products[kLengths][kBlockSize] = {};
+  double squares[6][kBlockSize] = {}, excess[6][kBlockSize] = {}, products[kLengths][kBlockSize] = {};
 };
 
-// Adds weight_h c_k c_m over the pairs of a tile, by a weight of each h, times one of each g.
-template <bool are_weighted>
+// Adds c_k c_m over the pairs of a tile, `is_excess`: times the product of both weights less one.
+template <bool is_excess>
 HWY_INLINE void AddSquares(const CorrelatedBlock* points, const Tile& tile, int rows, int first, int last,
                            int lane, double (&sums)[6][kBlockSize]) {
   Vec totals[6];
@@ -107,13 +107,13 @@ HWY_INLINE void AddSquares(const CorrelatedBlock* points, const Tile& tile, int 
     const Vec weight_g = Set(points[rows].weight[g]);
     for (int b = first; b < last; ++b) {
       const double(&c)[kLengths][kBlockSize] = tile.c[b - first][g];
-      const Vec of_g[kLengths] = {Load(c[0] + lane), Load(c[1] + lane), Load(c[2] + lane)};
-      Vec weight;
-      if constexpr (are_weighted) weight = weight_g * Load(points[b].weight + lane);
+      const Vec of_pair[kLengths] = {Load(c[0] + lane), Load(c[1] + lane), Load(c[2] + lane)};
+      Vec excess;
+      if constexpr (is_excess) excess = FusedMulSub(weight_g, Load(points[b].weight + lane), Set(1.0));
       for (int k = 0, i = 0; k < kLengths; ++k) {
-        Vec c_k = of_g[k];
-        if constexpr (are_weighted) c_k = c_k * weight;
-        for (int m = 0; m <= k; ++m, ++i) totals[i] = FusedMulAdd(c_k, of_g[m], totals[i]);
+        Vec c_k = of_pair[k];
+        if constexpr (is_excess) c_k = c_k * excess;
+        for (int m = 0; m <= k; ++m, ++i) totals[i] = FusedMulAdd(c_k, of_pair[m], totals[i]);
       }
     }
   }
@@ -172,14 +172,14 @@ HWY_INLINE void AddRowSums(const RowSums& row_sums, double (&smoothed)[kLengths]
   }
 }
 
-template <bool are_repeated>
-HWY_INLINE void SumPairs(const CorrelatedBlock* points, int num_blocks, CorrelatedPairSums* sums) {
+// Blocks from `num_repeated` on have points of one match each: no excess.
+void SumPairs(const CorrelatedBlock* points, int num_blocks, int num_repeated, CorrelatedPairSums* sums) {
   WholeSums whole;
   Tile tile;
   for (int rows = 0; rows < num_blocks; ++rows) {
-    RowSums of_rows, of_means;
+    RowSums of_rows, of_excess;
     for (int first = 0; first <= rows; first += kTileBlocks) {
-      const int last = std::min(first + kTileBlocks, rows + 1);
+      const int last = std::min(first + kTileBlocks, rows + 1), last_repeated = std::min(last, num_repeated);
       for (int lane = 0; lane < kBlockSize; lane += kLanes) {
         FillTile(points, rows, first, last, lane, &tile);
         AddSquares<false>(points, tile, rows, first, last, lane, whole.squares);
@@ -187,31 +187,25 @@ HWY_INLINE void SumPairs(const CorrelatedBlock* points, int num_blocks, Correlat
         AddToRows<&CorrelatedBlock::row>(points + first, tile, last - first, lane, &of_rows);
         for (int b = first; b < last; ++b)
           AddToOthers(points[rows].row, tile, b - first, lane, sums->smoothed[static_cast<size_t>(b)].row);
-        if constexpr (are_repeated) {
-          AddSquares<true>(points, tile, rows, first, last, lane, whole.weighted);
-          AddToRows<&CorrelatedBlock::mean>(points + first, tile, last - first, lane, &of_means);
-          for (int b = first; b < last; ++b)
-            AddToOthers(points[rows].mean, tile, b - first, lane,
-                        sums->smoothed[static_cast<size_t>(b)].mean);
+        if (first < last_repeated) {
+          AddSquares<true>(points, tile, rows, first, last_repeated, lane, whole.excess);
+          AddToRows<&CorrelatedBlock::excess>(points + first, tile, last_repeated - first, lane, &of_excess);
         }
+        if (rows >= num_repeated) continue;
+        for (int b = first; b < last; ++b)
+          AddToOthers(points[rows].excess, tile, b - first, lane,
+                      sums->smoothed[static_cast<size_t>(b)].mean);
       }
     }
     SmoothedBlock& smoothed = sums->smoothed[static_cast<size_t>(rows)];
     AddRowSums(of_rows, smoothed.row);
-    if constexpr (are_repeated) AddRowSums(of_means, smoothed.mean);
+    if (num_repeated > 0) AddRowSums(of_excess, smoothed.mean);
   }
   for (int i = 0; i < 6; ++i) {
     sums->squares[i] = SumOfEight(whole.squares[i]);
-    sums->weighted[i] = are_repeated ? SumOfEight(whole.weighted[i]) : sums->squares[i];
+    sums->weighted[i] = sums->squares[i] + SumOfEight(whole.excess[i]);
   }
   for (int k = 0; k < kLengths; ++k) sums->products[k] = SumOfEight(whole.products[k]);
-}
-
-void SumPairsOnce(const CorrelatedBlock* points, int num_blocks, CorrelatedPairSums* sums) {
-  SumPairs<false>(points, num_blocks, sums);
-}
-void SumPairsRepeated(const CorrelatedBlock* points, int num_blocks, CorrelatedPairSums* sums) {
-  SumPairs<true>(points, num_blocks, sums);
 }
 
 }  // namespace rcme::HWY_NAMESPACE
@@ -220,21 +214,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace rcme {
 
-HWY_EXPORT(SumPairsOnce);
-HWY_EXPORT(SumPairsRepeated);
+HWY_EXPORT(SumPairs);
 
-CorrelatedPairSums SumCorrelatedPairs(const std::vector<CorrelatedBlock>& points, bool are_repeated) {
+CorrelatedPairSums SumCorrelatedPairs(const std::vector<CorrelatedBlock>& points, size_t num_repeated) {
   CorrelatedPairSums sums;
   sums.smoothed.resize(points.size());
-  const int num_blocks = static_cast<int>(points.size());
-  if (are_repeated) {
-    HWY_DYNAMIC_DISPATCH(SumPairsRepeated)(points.data(), num_blocks, &sums);
-    return sums;
+  HWY_DYNAMIC_DISPATCH(SumPairs)
+  (points.data(), static_cast<int>(points.size()),
+   static_cast<int>((num_repeated + kBlockSize - 1) / kBlockSize), &sums);
+  for (SmoothedBlock& smoothed : sums.smoothed) {
+    double *mean = &smoothed.mean[0][0][0], *row = &smoothed.row[0][0][0];  // the former has the excess
+    for (int i = 0; i < kNumCorrelationLengths * 5 * kBlockSize; ++i) mean[i] += row[i];
   }
-  HWY_DYNAMIC_DISPATCH(SumPairsOnce)(points.data(), num_blocks, &sums);
-  for (SmoothedBlock& smoothed : sums.smoothed)
-    std::copy(&smoothed.row[0][0][0], &smoothed.row[0][0][0] + kNumCorrelationLengths * 5 * kBlockSize,
-              &smoothed.mean[0][0][0]);
   return sums;
 }
 

@@ -14,17 +14,17 @@ inline constexpr int kNumCorrelationLengths = 3;  // 1, 1/3 and 1/9 of the longe
 // In these units of the longest length l, exp(-d / l) = 2^(-d / 8).
 inline constexpr double kDistanceUnit = std::numbers::ln2 / 8.0;
 
-// Eight points, each with a residual and five numbers of its own. All zero beyond the last point.
+// Eight points, each with a residual and a row of five numbers. All zero beyond the last point.
 struct alignas(64) CorrelatedBlock {
   double at[4][kBlockSize] = {};      // x1, y1, x2, y2 in units of kDistanceUnit l
   double normal[4][kBlockSize] = {};  // u, of length 1: its halves belong to the two images
   double residual[kBlockSize] = {};
-  double weight[kBlockSize] = {};   // 1 / m, m the point's number of matches
-  double row[5][kBlockSize] = {};   // sums over the matches
-  double mean[5][kBlockSize] = {};  // row / m
+  double weight[kBlockSize] = {};     // 1 / m, m the number of the point's matches
+  double row[5][kBlockSize] = {};     // a sum over these
+  double excess[5][kBlockSize] = {};  // of their mean over the sum: (1 / m - 1) row
 };
 
-// For each of eight points g: sums over h /= g of c_gh(l_k) times row h, and times mean h.
+// For each of eight points g: sums over h /= g of c_gh(l_k) times row h, and times the mean row / m.
 struct alignas(64) SmoothedBlock {
   double row[kNumCorrelationLengths][5][kBlockSize] = {};
   double mean[kNumCorrelationLengths][5][kBlockSize] = {};
@@ -37,8 +37,8 @@ struct CorrelatedPairSums {
   double products[kNumCorrelationLengths] = {};  // of c(l_k) times both residuals
   std::vector<SmoothedBlock> smoothed;
 };
-// Where no point has two matches (`are_repeated` false), weights are 1 and means are rows: `weighted` and
-// `mean` are then those of `squares` and `row`, at no cost.
-CorrelatedPairSums SumCorrelatedPairs(const std::vector<CorrelatedBlock>& points, bool are_repeated);
+// The first `num_repeated` points are those of several matches: only their pairs take the time of a second
+// pass.
+CorrelatedPairSums SumCorrelatedPairs(const std::vector<CorrelatedBlock>& points, size_t num_repeated);
 
 }  // namespace rcme

@@ -54,7 +54,7 @@ KeyPoints SelectKeyPoints(const MatchScores& scores, std::span<const int> groups
   points.normals.resize(static_cast<size_t>(n));
   points.num_matches = points.residuals = points.mean_squares = Eigen::VectorXd::Zero(n);
   points.sums = Rows::Zero(n, 5);
-  std::vector<Matrix5d> squares(static_cast<size_t>(n), Matrix5d::Zero());
+  std::vector<Vector5d> rows(groups.size());
   for (size_t i = 0; i < groups.size(); ++i) {
     const Eigen::Index g = places[static_cast<size_t>(groups[i])];
     if (g < 0) continue;
@@ -62,20 +62,24 @@ KeyPoints SelectKeyPoints(const MatchScores& scores, std::span<const int> groups
       points.at[static_cast<size_t>(g)] = scores.matches[i];
       points.normals[static_cast<size_t>(g)] = scores.normals[i];
     }
-    const Vector5d row = L.triangularView<Eigen::Lower>().solve(scores.rows[i]);
+    rows[i] = L.triangularView<Eigen::Lower>().solve(scores.rows[i]);
     points.num_matches(g) += 1.0;
     points.residuals(g) += scores.residuals[i];
     points.mean_squares(g) += scores.residuals[i] * scores.residuals[i];
-    points.sums.row(g) += row;
-    squares[static_cast<size_t>(g)] += row * row.transpose();
+    points.sums.row(g) += rows[i];
+  }
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const Eigen::Index g = places[static_cast<size_t>(groups[i])];
+    if (g < 0) continue;
+    const double m = points.num_matches(g);
+    const Matrix5d square = rows[i] * rows[i].transpose();
+    points.squares += square;
+    points.within += square / m;
+    if (m > 1.0) points.between -= square / (m * (m - 1.0));
   }
   for (Eigen::Index g = 0; g < n; ++g) {
     const double m = points.num_matches(g);
-    const Matrix5d& square = squares[static_cast<size_t>(g)];
-    points.squares += square;
-    points.within += square / m;
-    if (m > 1.0)
-      points.between += (points.sums.row(g).transpose() * points.sums.row(g) - square) / (m * (m - 1.0));
+    if (m > 1.0) points.between += points.sums.row(g).transpose() * points.sums.row(g) / (m * (m - 1.0));
   }
   points.residuals.array() /= points.num_matches.array();
   points.mean_squares.array() /= points.num_matches.array();
@@ -91,28 +95,32 @@ struct PairSums {
   std::array<Rows, kNumLengths> sums, means;           // row g: of c_gh times the sum, the mean of rows of h
 };
 
-// Places of the block that hold a key point; the last may have fewer.
-size_t CountInBlock(const KeyPoints& points, size_t block) {
-  return std::min<size_t>(kBlockSize, points.at.size() - block * kBlockSize);
+// The places of the key points, those of several matches first.
+std::vector<Eigen::Index> OrderByRepetition(const KeyPoints& points) {
+  std::vector<Eigen::Index> order(points.at.size());
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_partition(order.begin(), order.end(),
+                        [&](Eigen::Index g) { return points.num_matches(g) > 1.0; });
+  return order;
 }
 
-std::vector<CorrelatedBlock> PackKeyPoints(const KeyPoints& points) {
-  std::vector<CorrelatedBlock> blocks((points.at.size() + kBlockSize - 1) / kBlockSize);
-  for (size_t g = 0; g < points.at.size(); ++g) {
-    CorrelatedBlock& block = blocks[g / kBlockSize];
-    const size_t lane = g % kBlockSize;
-    const auto row = static_cast<Eigen::Index>(g);
-    const Correspondence& at = points.at[g];
+std::vector<CorrelatedBlock> PackKeyPoints(const KeyPoints& points, const std::vector<Eigen::Index>& order) {
+  std::vector<CorrelatedBlock> blocks((order.size() + kBlockSize - 1) / kBlockSize);
+  for (size_t place = 0; place < order.size(); ++place) {
+    CorrelatedBlock& block = blocks[place / kBlockSize];
+    const size_t lane = place % kBlockSize;
+    const Eigen::Index g = order[place];
+    const Correspondence& at = points.at[static_cast<size_t>(g)];
     const double x_px[4] = {at.x1_px.x(), at.x1_px.y(), at.x2_px.x(), at.x2_px.y()};
     for (Eigen::Index i = 0; i < 4; ++i) {
       block.at[i][lane] = x_px[i] / (kDistanceUnit * kLongestPx);
-      block.normal[i][lane] = points.normals[g](i);
+      block.normal[i][lane] = points.normals[static_cast<size_t>(g)](i);
     }
-    block.residual[lane] = points.residuals(row);
-    block.weight[lane] = 1.0 / points.num_matches(row);
+    block.residual[lane] = points.residuals(g);
+    block.weight[lane] = 1.0 / points.num_matches(g);
     for (Eigen::Index j = 0; j < 5; ++j) {
-      block.row[j][lane] = points.sums(row, j);
-      block.mean[j][lane] = points.means(row, j);
+      block.row[j][lane] = points.sums(g, j);
+      block.excess[j][lane] = (block.weight[lane] - 1.0) * points.sums(g, j);
     }
   }
   return blocks;
@@ -128,8 +136,9 @@ Eigen::Matrix3d TwiceTheSymmetric(const double* triangle) {
 }
 
 PairSums VisitPairs(const KeyPoints& points) {
-  const CorrelatedPairSums visited =
-      SumCorrelatedPairs(PackKeyPoints(points), points.num_matches.maxCoeff() > 1.0);
+  const std::vector<Eigen::Index> order = OrderByRepetition(points);
+  const auto num_repeated = static_cast<size_t>((points.num_matches.array() > 1.0).count());
+  const CorrelatedPairSums visited = SumCorrelatedPairs(PackKeyPoints(points, order), num_repeated);
   PairSums pairs{TwiceTheSymmetric(visited.squares),
                  TwiceTheSymmetric(visited.weighted),
                  2.0 * Eigen::Vector3d::Map(visited.products),
@@ -138,11 +147,11 @@ PairSums VisitPairs(const KeyPoints& points) {
   for (size_t k = 0; k < kNumLengths; ++k) {
     pairs.sums[k].resize(points.size(), 5);
     pairs.means[k].resize(points.size(), 5);
-    for (size_t b = 0; b < visited.smoothed.size(); ++b) {
+    for (size_t place = 0; place < order.size(); ++place) {
+      const SmoothedBlock& block = visited.smoothed[place / kBlockSize];
       for (Eigen::Index j = 0; j < 5; ++j) {
-        const size_t n = CountInBlock(points, b);
-        std::copy_n(visited.smoothed[b].row[k][j], n, pairs.sums[k].col(j).data() + b * kBlockSize);
-        std::copy_n(visited.smoothed[b].mean[k][j], n, pairs.means[k].col(j).data() + b * kBlockSize);
+        pairs.sums[k](order[place], j) = block.row[k][j][place % kBlockSize];
+        pairs.means[k](order[place], j) = block.mean[k][j][place % kBlockSize];
       }
     }
   }
