@@ -13,12 +13,12 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Picks row[index of the lane] of rows of eight numbers; the indices are 0 to 7, one per lane, aligned.
+// Picks row[index of the lane] of rows of eight numbers; the indices are 0 to 7, one per lane.
 class Lookup {
-  using IndexTag = hn::RebindToSigned<Tag>;
-
  public:
-  explicit Lookup(const std::int64_t* indices);
+  using IndexTag = hn::RebindToSigned<Tag>;
+  HWY_INLINE explicit Lookup(hn::Vec<IndexTag> indices);
+  explicit Lookup(const std::int64_t* indices) : Lookup(hn::Load(IndexTag(), indices)) {}  // aligned
   HWY_INLINE Vec operator()(const double* row) const;
 
  private:
@@ -32,15 +32,13 @@ class Lookup {
 };
 
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE Lookup::Lookup(const std::int64_t* indices) : index_(*indices) {}
+HWY_INLINE Lookup::Lookup(hn::Vec<IndexTag> indices) : index_(indices.raw) {}
 HWY_INLINE Vec Lookup::operator()(const double* row) const { return Vec(row[index_]); }
 #else
-HWY_INLINE Lookup::Lookup(const std::int64_t* indices)
-    : within_(hn::IndicesFromVec(
-          Tag(), hn::And(hn::Load(IndexTag(), indices), hn::Set(IndexTag(), std::int64_t{kLanes - 1})))),
-      is_upper_(hn::RebindMask(
-          Tag(), hn::Load(IndexTag(), indices) > hn::Set(IndexTag(), std::int64_t{kLanes - 1}))),
-      indices_(hn::Load(IndexTag(), indices)) {}
+HWY_INLINE Lookup::Lookup(hn::Vec<IndexTag> indices)
+    : within_(hn::IndicesFromVec(Tag(), hn::And(indices, hn::Set(IndexTag(), std::int64_t{kLanes - 1})))),
+      is_upper_(hn::RebindMask(Tag(), indices > hn::Set(IndexTag(), std::int64_t{kLanes - 1}))),
+      indices_(indices) {}
 HWY_INLINE Vec Lookup::operator()(const double* row) const {
   if constexpr (kLanes == 8) return hn::TableLookupLanes(Load(row), within_);
   if constexpr (kLanes == 4) {

@@ -1,5 +1,6 @@
 #include "estimator/refinement/sampson_equations.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -42,6 +43,18 @@ SampsonResidual SampsonLinearization::Evaluate(const Correspondence& match, doub
     residual.r_p(k) = d.g / residual.norm - residual.r * d_length / length;
   }
   return residual;
+}
+
+SampsonScore SampsonLinearization::Score(const Correspondence& match, double noise_scale) const {
+  const EpipolarConstraint c = EvaluateConstraint(F_, match);
+  const double norm = sigma_px_ * noise_scale * c.gradient.norm();
+  SampsonScore score{.r = c.g / norm, .norm = norm, .g_p = {}, .gradient = c.gradient};
+  const Eigen::Vector3d x1 = match.x1_px.homogeneous(), x2 = match.x2_px.homogeneous();
+  for (int k = 0; k < 5; ++k) {
+    const Eigen::Vector3d line = dF_[static_cast<size_t>(k)] * x1;
+    score.g_p(k) = x2.dot(line);
+  }
+  return score;
 }
 
 NormalEquations LinearizeSampson(const MotionProblem& problem, std::span<const int> indices,

@@ -17,11 +17,19 @@ struct SampsonResidual {
   Vector5d g_p;       // of g
   Vector5d r_p;       // of r
 };
+// The same without the derivatives of r, which take most of the time.
+struct SampsonScore {
+  double r = 0.0;            // g / (sigma |J|)
+  double norm = 0.0;         // sigma |J|
+  Vector5d g_p;              // of g
+  Eigen::Vector4d gradient;  // J'
+};
 class SampsonLinearization {
  public:
   SampsonLinearization(const MotionProblem& problem, const RelativePose& pose);
   // Of a match whose sigma is sigma_px times `noise_scale`.
   SampsonResidual Evaluate(const Correspondence& match, double noise_scale = 1.0) const;
+  SampsonScore Score(const Correspondence& match, double noise_scale = 1.0) const;
 
  private:
   double sigma_px_;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <map>
 #include <numeric>
 #include <vector>
 
@@ -17,10 +16,14 @@ class DisjointSets {
   void Unite(size_t i, size_t k) { parent_[Find(i)] = Find(k); }
   // The number of each thing's set: 0, 1, ... in the order of their first members.
   std::vector<int> Numbers() {
-    std::vector<int> numbers;
-    std::map<size_t, int> number_of;
-    for (size_t i = 0; i < parent_.size(); ++i)
-      numbers.push_back(number_of.try_emplace(Find(i), static_cast<int>(number_of.size())).first->second);
+    std::vector<int> numbers, number_of(parent_.size(), -1);
+    numbers.reserve(parent_.size());
+    int num_sets = 0;
+    for (size_t i = 0; i < parent_.size(); ++i) {
+      int& number = number_of[Find(i)];
+      if (number < 0) number = num_sets++;
+      numbers.push_back(number);
+    }
     return numbers;
   }
 

@@ -7,10 +7,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "estimator/kernels/correlated_pairs.h"
+
 namespace rcme {
 namespace {
 
-constexpr Eigen::Index kNumLengths = 3;
+constexpr Eigen::Index kNumLengths = kNumCorrelationLengths;
 constexpr double kLongestPx = kNeighbourLengthsPx.back();  // the others are a third and a ninth
 constexpr int kOwn = 0, kKeyPoint = 1, kFirstLength = 2, kNumParts = kNumVarianceParts;
 constexpr size_t kMostKeyPoints = 1500;
@@ -19,7 +21,6 @@ constexpr double kLeastDeviance = 1.0;  // half of what Akaike's criterion asks 
 
 using Parts = ResidualMoments::Parts;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 5>;
-using ByLength = Eigen::Matrix<double, Eigen::Dynamic, kNumLengths>;
 
 // Key points, n of N that the matches have, and their matches' rows of U.
 struct KeyPoints {
@@ -53,7 +54,7 @@ KeyPoints SelectKeyPoints(const MatchScores& scores, std::span<const int> groups
   points.normals.resize(static_cast<size_t>(n));
   points.num_matches = points.residuals = points.mean_squares = Eigen::VectorXd::Zero(n);
   points.sums = Rows::Zero(n, 5);
-  std::vector<Matrix5d> squares(static_cast<size_t>(n), Matrix5d::Zero());
+  std::vector<Vector5d> rows(groups.size());
   for (size_t i = 0; i < groups.size(); ++i) {
     const Eigen::Index g = places[static_cast<size_t>(groups[i])];
     if (g < 0) continue;
@@ -61,42 +62,29 @@ KeyPoints SelectKeyPoints(const MatchScores& scores, std::span<const int> groups
       points.at[static_cast<size_t>(g)] = scores.matches[i];
       points.normals[static_cast<size_t>(g)] = scores.normals[i];
     }
-    const Vector5d row = L.triangularView<Eigen::Lower>().solve(scores.rows[i]);
+    rows[i] = L.triangularView<Eigen::Lower>().solve(scores.rows[i]);
     points.num_matches(g) += 1.0;
     points.residuals(g) += scores.residuals[i];
     points.mean_squares(g) += scores.residuals[i] * scores.residuals[i];
-    points.sums.row(g) += row;
-    squares[static_cast<size_t>(g)] += row * row.transpose();
+    points.sums.row(g) += rows[i];
+  }
+  for (size_t i = 0; i < groups.size(); ++i) {
+    const Eigen::Index g = places[static_cast<size_t>(groups[i])];
+    if (g < 0) continue;
+    const double m = points.num_matches(g);
+    const Matrix5d square = rows[i] * rows[i].transpose();
+    points.squares += square;
+    points.within += square / m;
+    if (m > 1.0) points.between -= square / (m * (m - 1.0));
   }
   for (Eigen::Index g = 0; g < n; ++g) {
     const double m = points.num_matches(g);
-    const Matrix5d& square = squares[static_cast<size_t>(g)];
-    points.squares += square;
-    points.within += square / m;
-    if (m > 1.0)
-      points.between += (points.sums.row(g).transpose() * points.sums.row(g) - square) / (m * (m - 1.0));
+    if (m > 1.0) points.between += points.sums.row(g).transpose() * points.sums.row(g) / (m * (m - 1.0));
   }
   points.residuals.array() /= points.num_matches.array();
   points.mean_squares.array() /= points.num_matches.array();
   points.means = points.num_matches.cwiseInverse().asDiagonal() * points.sums;
   return points;
-}
-
-// c of a key point and those before it, the longest length last.
-ByLength ComputeCorrelations(const KeyPoints& points, size_t g) {
-  ByLength c(static_cast<Eigen::Index>(g), kNumLengths);
-  for (size_t h = 0; h < g; ++h) {
-    const double e1 = std::exp(-(points.at[g].x1_px - points.at[h].x1_px).norm() / kLongestPx);
-    const double e2 = std::exp(-(points.at[g].x2_px - points.at[h].x2_px).norm() / kLongestPx);
-    const double cos1 = points.normals[g].head<2>().dot(points.normals[h].head<2>());
-    const double cos2 = points.normals[g].tail<2>().dot(points.normals[h].tail<2>());
-    const double third1 = e1 * e1 * e1, third2 = e2 * e2 * e2;
-    const auto row = static_cast<Eigen::Index>(h);
-    c(row, 0) = cos1 * third1 * third1 * third1 + cos2 * third2 * third2 * third2;
-    c(row, 1) = cos1 * third1 + cos2 * third2;
-    c(row, 2) = cos1 * e1 + cos2 * e2;
-  }
-  return c;
 }
 
 // Sums over pairs of different key points.
@@ -107,23 +95,64 @@ struct PairSums {
   std::array<Rows, kNumLengths> sums, means;           // row g: of c_gh times the sum, the mean of rows of h
 };
 
+// The places of the key points, those of several matches first.
+std::vector<Eigen::Index> OrderByRepetition(const KeyPoints& points) {
+  std::vector<Eigen::Index> order(points.at.size());
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_partition(order.begin(), order.end(),
+                        [&](Eigen::Index g) { return points.num_matches(g) > 1.0; });
+  return order;
+}
+
+std::vector<CorrelatedBlock> PackKeyPoints(const KeyPoints& points, const std::vector<Eigen::Index>& order) {
+  std::vector<CorrelatedBlock> blocks((order.size() + kBlockSize - 1) / kBlockSize);
+  for (size_t place = 0; place < order.size(); ++place) {
+    CorrelatedBlock& block = blocks[place / kBlockSize];
+    const size_t lane = place % kBlockSize;
+    const Eigen::Index g = order[place];
+    const Correspondence& at = points.at[static_cast<size_t>(g)];
+    const double x_px[4] = {at.x1_px.x(), at.x1_px.y(), at.x2_px.x(), at.x2_px.y()};
+    for (Eigen::Index i = 0; i < 4; ++i) {
+      block.at[i][lane] = x_px[i] / (kDistanceUnit * kLongestPx);
+      block.normal[i][lane] = points.normals[static_cast<size_t>(g)](i);
+    }
+    block.residual[lane] = points.residuals(g);
+    block.weight[lane] = 1.0 / points.num_matches(g);
+    for (Eigen::Index j = 0; j < 5; ++j) {
+      block.row[j][lane] = points.sums(g, j);
+      block.excess[j][lane] = (block.weight[lane] - 1.0) * points.sums(g, j);
+    }
+  }
+  return blocks;
+}
+
+Eigen::Matrix3d TwiceTheSymmetric(const double* triangle) {
+  Eigen::Matrix3d matrix;
+  for (int row = 0, i = 0; row < 3; ++row) {
+    for (int column = 0; column <= row; ++column, ++i)
+      matrix(row, column) = matrix(column, row) = 2.0 * triangle[i];
+  }
+  return matrix;
+}
+
 PairSums VisitPairs(const KeyPoints& points) {
-  PairSums pairs;
-  pairs.sums.fill(Rows::Zero(points.size(), 5));
-  pairs.means.fill(Rows::Zero(points.size(), 5));
-  const Eigen::VectorXd weights = points.num_matches.cwiseInverse();
-  for (Eigen::Index g = 1; g < points.size(); ++g) {
-    const ByLength c = ComputeCorrelations(points, static_cast<size_t>(g));
-    pairs.squares += 2.0 * c.transpose() * c;
-    pairs.weighted += 2.0 * weights(g) * c.transpose() * weights.head(g).asDiagonal() * c;
-    pairs.products += 2.0 * points.residuals(g) * c.transpose() * points.residuals.head(g);
-    for (Eigen::Index k = 0; k < kNumLengths; ++k) {
-      Rows& sums = pairs.sums[static_cast<size_t>(k)];
-      Rows& means = pairs.means[static_cast<size_t>(k)];
-      sums.row(g) += c.col(k).transpose() * points.sums.topRows(g);
-      means.row(g) += c.col(k).transpose() * points.means.topRows(g);
-      sums.topRows(g) += c.col(k) * points.sums.row(g);
-      means.topRows(g) += c.col(k) * points.means.row(g);
+  const std::vector<Eigen::Index> order = OrderByRepetition(points);
+  const auto num_repeated = static_cast<size_t>((points.num_matches.array() > 1.0).count());
+  const CorrelatedPairSums visited = SumCorrelatedPairs(PackKeyPoints(points, order), num_repeated);
+  PairSums pairs{TwiceTheSymmetric(visited.squares),
+                 TwiceTheSymmetric(visited.weighted),
+                 2.0 * Eigen::Vector3d::Map(visited.products),
+                 {},
+                 {}};
+  for (size_t k = 0; k < kNumLengths; ++k) {
+    pairs.sums[k].resize(points.size(), 5);
+    pairs.means[k].resize(points.size(), 5);
+    for (size_t place = 0; place < order.size(); ++place) {
+      const SmoothedBlock& block = visited.smoothed[place / kBlockSize];
+      for (Eigen::Index j = 0; j < 5; ++j) {
+        pairs.sums[k](order[place], j) = block.row[k][j][place % kBlockSize];
+        pairs.means[k](order[place], j) = block.mean[k][j][place % kBlockSize];
+      }
     }
   }
   return pairs;

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "estimator/noise_scale.h"
-#include "estimator/refinement/fit_set.h"
+#include "estimator/kernels/block_matches.h"
+#include "estimator/kernels/mixture_sums.h"
+#include "estimator/kernels/sampson_equations.h"
 #include "estimator/refinement/sampson_equations.h"
-#include "estimator/refinement/sampson_mle.h"
 #include "estimator/robust_covariance/clustered_covariance.h"
 #include "estimator/uncertainty/motion_covariance.h"
 #include "stats/order_statistic.h"
@@ -20,6 +20,7 @@ constexpr double kLeastEffect =
     1.25;  // of blocks; where there is none, the sandwich of blocks is 1.13 too large
 constexpr int kMostRefits = 10;
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
+constexpr double kLeastPivot = 1e-4;                    // of an information's root, of the greatest
 constexpr size_t kLeastFitted = 6;                      // five matches determine a motion exactly
 
 std::vector<Correspondence> SelectMatches(const MotionProblem& problem, std::span<const int> indices) {
@@ -28,27 +29,60 @@ std::vector<Correspondence> SelectMatches(const MotionProblem& problem, std::spa
   return matches;
 }
 
-// From the median of the residuals' sizes, px.
-double SigmaOfResiduals(const MotionProblem& problem, std::span<const int> inliers,
-                        const RelativePose& pose) {
-  const SampsonLinearization model(problem, pose);
-  std::vector<double> sizes;
-  for (const int index : inliers) {
-    const auto i = static_cast<size_t>(index);
-    sizes.push_back(std::abs(model.Evaluate(problem.matches[i], NoiseScaleAt(problem, i)).r));
+// The matches of a problem, and the same with the noise of their own residuals.
+class AgreeingSearch {
+ public:
+  explicit AgreeingSearch(const MotionProblem& problem) : with_own_noise_(problem), matches_(problem) {}
+
+  // The matches that agree with a motion that was fitted to `fitted`; nothing where these determine none.
+  std::vector<int> FindAgreeing(const RelativePose& pose, const std::vector<int>& fitted,
+                                double assumed_sigma_px);
+  RefinedMotion Refine(const std::vector<int>& fitted, const RelativePose& start) const {
+    return RefineBySampson(matches_, MakeMask(fitted, matches_), start, Loss::kSquared);
   }
-  return problem.sigma_px * ValueOfRank(sizes.size() / 2, &sizes) / kNormalQuartile;
+
+ private:
+  double EstimateSigma(const std::vector<int>& fitted, const RelativePose& pose, double assumed_sigma_px);
+
+  MotionProblem with_own_noise_;
+  MatchBlocks matches_;
+  MatchTermLists terms_;
+};
+
+// From the median of the residuals' sizes, px.
+double AgreeingSearch::EstimateSigma(const std::vector<int>& fitted, const RelativePose& pose,
+                                     double assumed_sigma_px) {
+  EvaluateTerms(matches_, pose, &terms_);
+  std::vector<double> sizes;
+  sizes.reserve(fitted.size());
+  for (const int i : fitted) sizes.push_back(std::abs(terms_.residual[static_cast<size_t>(i)]));
+  return assumed_sigma_px * ValueOfRank(sizes.size() / 2, &sizes) / kNormalQuartile;
 }
 
-// The matches that agree with a motion that was fitted to `fitted`; nothing where these determine none.
-std::vector<int> AgreeingWith(const MotionProblem& problem, const RelativePose& pose,
-                              const std::vector<int>& fitted) {
-  MotionProblem with_own_noise = problem;
-  with_own_noise.sigma_px = SigmaOfResiduals(problem, fitted, pose);
-  const std::optional<Matrix5d> pose_cov = FirstOrderMotionCovariance(
-      pose, problem.camera1, problem.camera2, SelectMatches(problem, fitted), with_own_noise.sigma_px);
+// First-order covariance of a motion that was fitted to matches that are taken to be all alike. By the normal
+// equations where their inverse keeps eight digits.
+std::optional<Matrix5d> ComputeFitCovariance(const MotionProblem& problem, const MatchBlocks& matches,
+                                             const RelativePose& pose, const std::vector<int>& fitted) {
+  if (problem.noise_scale.empty()) {
+    const Eigen::LLT<Matrix5d> llt(SampsonInformation(matches, MakeMask(fitted, matches), pose));
+    const Vector5d pivots = llt.matrixLLT().diagonal();
+    if (llt.info() == Eigen::Success && pivots.minCoeff() > kLeastPivot * pivots.maxCoeff()) {
+      const Matrix5d covariance = llt.solve(Matrix5d::Identity());
+      if (covariance.allFinite()) return covariance;
+    }
+  }
+  return FirstOrderMotionCovariance(pose, problem.camera1, problem.camera2, SelectMatches(problem, fitted),
+                                    problem.sigma_px);
+}
+
+std::vector<int> AgreeingSearch::FindAgreeing(const RelativePose& pose, const std::vector<int>& fitted,
+                                              double assumed_sigma_px) {
+  with_own_noise_.sigma_px = EstimateSigma(fitted, pose, assumed_sigma_px);
+  const MatchBlocks matches(with_own_noise_);
+  const std::optional<Matrix5d> pose_cov = ComputeFitCovariance(with_own_noise_, matches, pose, fitted);
   if (!pose_cov) return {};
-  return SelectFitSet(with_own_noise, {true, pose, *pose_cov, 0}, fitted);
+  const BlockMatches with_motion(with_own_noise_, matches, RefinementError::kSampson);
+  return ListIndices(with_motion.SelectFitSet({true, pose, *pose_cov, 0}, MakeMask(fitted, matches)));
 }
 
 // How much greater the sandwich of blocks is than a covariance, on average over the directions; 1 where it is
@@ -83,11 +117,12 @@ AgreeingFit FitAgreeing(const MotionProblem& problem, const RelativePose& pose,
                         std::span<const int> inliers) {
   const AgreeingFit as_given{pose, std::vector<int>(inliers.begin(), inliers.end())};
   AgreeingFit fit = as_given;
+  AgreeingSearch search(problem);
   for (int refit = 0; refit < kMostRefits; ++refit) {
-    std::vector<int> agreeing = AgreeingWith(problem, fit.cam2_from_cam1, fit.fitted);
+    std::vector<int> agreeing = search.FindAgreeing(fit.cam2_from_cam1, fit.fitted, problem.sigma_px);
     if (agreeing.size() < kLeastFitted) return as_given;
     if (refit > 0 && agreeing == fit.fitted) break;
-    const RefinedMotion refined = RefineBySampson(problem, agreeing, fit.cam2_from_cam1, Loss::kSquared);
+    const RefinedMotion refined = search.Refine(agreeing, fit.cam2_from_cam1);
     if (!refined.converged) return as_given;
     fit = {refined.cam2_from_cam1, std::move(agreeing)};
   }
