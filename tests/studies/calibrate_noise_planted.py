@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What `rcme calibrate-noise` learns from ten pairs of a camera, on ten others of it: noise and faults that are planted.
 
-    calibrate_noise_planted.py OUT [--cameras 12] [--alarms 120] [--only NAME]
+    calibrate_noise_planted.py OUT [--cameras 30] [--alarms 120] [--only NAME]
 
 Scenes, cameras, noise and faults are those of this script, not of the simulator. Writes OUT/planted.csv (a row per kind of noise: motions
 within their 95 % regions without and with the noise file, how much wider regions are, cameras whose fault is found) and
@@ -94,6 +94,9 @@ KINDS = {
 }
 
 
+FAULTS = ("distortion", "focal_length", "principal_point_x")
+
+
 def draw_motion(rng):
     """Camera 2 from camera 1: turned by up to 10 degrees about any axis, moved by 1 in any direction."""
     return rotation(draw_direction(rng) * np.radians(10) * rng.random()), draw_direction(rng)
@@ -180,43 +183,59 @@ def cluster_interval(shares, sizes):
     return p, (0.0 if k <= 0 else beta.ppf(0.025, k, worth - k + 1)), (1.0 if k >= worth else beta.ppf(0.975, k + 1, worth - k))
 
 
+def width_interval(logs):
+    """Of the geometric mean over cameras, Student's, 95 %; logs are those of each camera's motions."""
+    means = [np.mean(each) for each in logs]
+    half = t.ppf(0.975, len(means) - 1) * np.std(means, ddof=1) / np.sqrt(len(means)) if len(means) > 1 else np.inf
+    return [float(np.exp(np.mean(means) + sign * half)) for sign in (0, -1, 1)]
+
+
 def binomial_interval(k, n):
     """Clopper and Pearson's, 95 %."""
     return (0.0 if k == 0 else beta.ppf(0.025, k, n - k + 1)), (1.0 if k == n else beta.ppf(0.975, k + 1, n - k))
 
 
 def is_found(verdicts, quantity):
-    return quantity is not None and verdicts.get(quantity, "").startswith(("found", "named"))
+    """Its test says so at 5 %."""
+    return verdicts.get(quantity, "").startswith(("found", "named"))
 
 
-def names_something(verdicts):
-    """Quantities of which independent noise has nothing."""
-    faults = [verdict for verdict in verdicts.values() if verdict.startswith("named")]
-    return {"camera fault named": bool(faults),
+def is_removed(verdicts, quantity):
+    return "is removed" in verdicts.get(quantity, "")
+
+
+def list_alarms(verdicts):
+    """What independent noise has nothing of."""
+    return {"camera fault named": any(verdict.startswith("named") for verdict in verdicts.values()),
+            "camera fault removed": any(is_removed(verdicts, quantity) for quantity in verdicts),
             "displacement field found": is_found(verdicts, "displacement_px"),
-            "displacement of all images removed": is_found(verdicts, "systematic_px")}
+            "displacement of all images found": is_found(verdicts, "systematic_px")}
 
 
 def planted_row(out, kind, number, cameras):
     quantity = KINDS[kind][2]
-    found, before, after, ratios = 0, [], [], []
+    found, removed, before, after, logs = 0, 0, [], [], []
     for camera in range(cameras):
         rng = np.random.default_rng([31, number, camera])
         folder = out / "pairs" / f"{number}_{camera}"
         draw_pairs(folder / "learnt", kind, rng)
         motions = draw_pairs(folder / "checked", kind, rng)
-        found += is_found(calibrate(folder / "learnt", folder / "noise.yaml"), quantity)
+        verdicts = calibrate(folder / "learnt", folder / "noise.yaml")
+        found += is_found(verdicts, quantity)
+        removed += is_removed(verdicts, quantity)
         both = [pair for pair in zip(check_answers(folder / "checked", motions, "--sigma", SIGMA),
                                      check_answers(folder / "checked", motions, "--noise", folder / "noise.yaml")) if all(pair)]
         before.append([without[0] for without, _ in both])
         after.append([with_file[0] for _, with_file in both])
-        ratios += [np.log(with_file[1] / without[1]) for without, with_file in both]
+        logs.append([np.log(with_file[1] / without[1]) for without, with_file in both])
     row = {"planted": kind, "cameras": cameras, "motions": sum(map(len, after))}
     for name, within in (("before", before), ("after", after)):
         share, lower, upper = cluster_interval([np.mean(each) for each in within], [len(each) for each in within])
         row |= {name: f"{share:.3f}", f"{name}_lower": f"{lower:.3f}", f"{name}_upper": f"{upper:.3f}"}
-    row |= {"width_ratio": f"{np.exp(np.mean(ratios)):.2f}", "found": "" if quantity is None else found}
-    return row
+    width, lower, upper = width_interval(logs)
+    return row | {"width": f"{width:.2f}", "width_lower": f"{lower:.2f}", "width_upper": f"{upper:.2f}",
+                  "found": "-" if quantity is None else found,
+                  "removed": removed if quantity in FAULTS else "-"}
 
 
 def alarm_rows(out, cameras):
@@ -224,7 +243,7 @@ def alarm_rows(out, cameras):
     for camera in range(cameras):
         folder = out / "pairs" / f"alarm_{camera}"
         draw_pairs(folder, "nothing", np.random.default_rng([32, camera]))
-        for name, is_alarm in names_something(calibrate(folder, folder / "noise.yaml")).items():
+        for name, is_alarm in list_alarms(calibrate(folder, folder / "noise.yaml")).items():
             counts[name] = counts.get(name, 0) + is_alarm
     for name, alarms in counts.items():
         lower, upper = binomial_interval(alarms, cameras)
@@ -242,7 +261,7 @@ def write(path, rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--cameras", type=int, default=12, help="of each kind of noise")
+    parser.add_argument("--cameras", type=int, default=30, help="of each kind of noise")
     parser.add_argument("--alarms", type=int, default=120, help="cameras of independent noise")
     parser.add_argument("--only", choices=list(KINDS), help="one kind of noise")
     arguments = parser.parse_args()

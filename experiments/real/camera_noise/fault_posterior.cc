@@ -40,7 +40,7 @@ Eigen::VectorXd FindSizes(const FaultEvidence& evidence, unsigned set, int size)
   return sizes;
 }
 
-// Log of the share that the sizes of a set have, in proportion to 1 / t: t as a multiple of the least, a
+// Log of the share that the sizes of a set have, in proportion to 1 / t^2: t as a multiple of the least, a
 // geometric mean over its faults.
 std::vector<double> ComputeLogShares(const FaultEvidence& evidence, unsigned set, int num_faults) {
   std::vector<double> shares;
@@ -50,7 +50,7 @@ std::vector<double> ComputeLogShares(const FaultEvidence& evidence, unsigned set
     double log_multiple = 0.0;
     for (Eigen::Index j = 0; j < sizes.size(); ++j)
       if (sizes(j) > 0.0) log_multiple += std::log(sizes(j) / (kLeastOfNominal * evidence.nominal(j)));
-    shares.push_back(-log_multiple / num_faults);
+    shares.push_back(-2.0 * log_multiple / num_faults);
     sum += std::exp(shares.back());
   }
   for (double& share : shares) share -= std::log(sum);

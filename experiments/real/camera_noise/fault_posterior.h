@@ -29,10 +29,11 @@ struct FaultPosterior {
 //
 // The prior probability is 1/2 of no fault at all; the other half is shared evenly by the numbers |S| = 1 ...
 // k, each of these by its sets (Scott and Berger 2010: searching among more faults makes none more probable),
-// and each of these by its sizes in proportion to 1 / t, a law as heavy in its tails as Cauchy's: large
-// faults are rare and, where the pairs show one, not drawn towards zero. Where the evidence is strong nothing
-// else matters: the posterior is then that of the estimates, the other faults taken to be zero. Where it is
-// weak the stated camera is believed, but for the prior.
+// and each of these by its sizes in proportion to 1 / t^2, the tails of Student's law of two degrees of
+// freedom: large faults are rare and, where the pairs show one, not drawn towards zero. Where the evidence is
+// strong nothing else matters: the posterior is then that of the estimates, the faults that are not there
+// taken to be zero. Where there is none the stated camera is believed but for the prior, whose root mean
+// square is some four times the nominal.
 FaultPosterior InferFaults(const FaultEvidence& evidence);
 
 // What to take out, k x 1: of faults that are more probable than not (the median probability model, Barbieri
