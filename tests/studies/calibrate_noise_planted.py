@@ -14,6 +14,7 @@ import json
 import os
 import pathlib
 import subprocess
+import tempfile
 
 import numpy as np
 from scipy.stats import beta, chi2, t
@@ -83,11 +84,11 @@ def pinhole(rays, focal=FOCAL, centre=CENTRE, k1=0.0):
 # Name: errors of key points, what the camera is in truth, and what is found if it is found.
 KINDS = {
     "nothing": (independent, {}, None),
-    "field of 30 %, 30 px": (field(0.3, 30), {}, "displacement_px"),
-    "field of 30 %, 80 px": (field(0.3, 80), {}, "displacement_px"),
-    "field of 30 %, 150 px": (field(0.3, 150), {}, "displacement_px"),
-    "field of 10 %, 1000 px": (field(0.1, 1000), {}, "displacement_px"),
-    "tiles of 80 px, 30 %": (tiles(0.3), {}, "displacement_px"),
+    "field of 30 % reaching 30 px": (field(0.3, 30), {}, "displacement_px"),
+    "field of 30 % reaching 80 px": (field(0.3, 80), {}, "displacement_px"),
+    "field of 30 % reaching 150 px": (field(0.3, 150), {}, "displacement_px"),
+    "field of 10 % reaching 1000 px": (field(0.1, 1000), {}, "displacement_px"),
+    "tiles of 80 px with 30 %": (tiles(0.3), {}, "displacement_px"),
     "k1 of 0.01": (independent, {"k1": 0.01}, "distortion"),
     "focal length 1 % too long": (independent, {"focal": FOCAL / 1.01}, "focal_length"),
     "principal point 5 px off": (independent, {"centre": CENTRE - [5, 0]}, "principal_point_x"),
@@ -186,7 +187,9 @@ def cluster_interval(shares, sizes):
 def width_interval(logs):
     """Of the geometric mean over cameras, Student's, 95 %; logs are those of each camera's motions."""
     means = [np.mean(each) for each in logs]
-    half = t.ppf(0.975, len(means) - 1) * np.std(means, ddof=1) / np.sqrt(len(means)) if len(means) > 1 else np.inf
+    if len(means) == 1:
+        return [float(np.exp(means[0])), 0.0, np.inf]
+    half = t.ppf(0.975, len(means) - 1) * np.std(means, ddof=1) / np.sqrt(len(means))
     return [float(np.exp(np.mean(means) + sign * half)) for sign in (0, -1, 1)]
 
 
@@ -212,12 +215,12 @@ def list_alarms(verdicts):
             "displacement of all images found": is_found(verdicts, "systematic_px")}
 
 
-def planted_row(out, kind, number, cameras):
+def planted_row(scratch, kind, number, cameras):
     quantity = KINDS[kind][2]
     found, removed, before, after, logs = 0, 0, [], [], []
     for camera in range(cameras):
         rng = np.random.default_rng([31, number, camera])
-        folder = out / "pairs" / f"{number}_{camera}"
+        folder = scratch / f"{number}_{camera}"
         draw_pairs(folder / "learnt", kind, rng)
         motions = draw_pairs(folder / "checked", kind, rng)
         verdicts = calibrate(folder / "learnt", folder / "noise.yaml")
@@ -238,10 +241,10 @@ def planted_row(out, kind, number, cameras):
                   "removed": removed if quantity in FAULTS else "-"}
 
 
-def alarm_rows(out, cameras):
+def alarm_rows(scratch, cameras):
     counts = {}
     for camera in range(cameras):
-        folder = out / "pairs" / f"alarm_{camera}"
+        folder = scratch / f"alarm_{camera}"
         draw_pairs(folder, "nothing", np.random.default_rng([32, camera]))
         for name, is_alarm in list_alarms(calibrate(folder, folder / "noise.yaml")).items():
             counts[name] = counts.get(name, 0) + is_alarm
@@ -267,11 +270,11 @@ def main():
     arguments = parser.parse_args()
     out = arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
-    rows = [planted_row(out, kind, number, arguments.cameras) for number, kind in enumerate(KINDS)
-            if arguments.only in (None, kind)]
-    write(out / "planted.csv", rows)
-    if arguments.alarms:
-        write(out / "false_alarms.csv", list(alarm_rows(out, arguments.alarms)))
+    with tempfile.TemporaryDirectory() as name:
+        scratch = pathlib.Path(name)
+        kinds = [(number, kind) for number, kind in enumerate(KINDS) if arguments.only in (None, kind)]
+        write(out / "planted.csv", [planted_row(scratch, kind, number, arguments.cameras) for number, kind in kinds])
+        write(out / "false_alarms.csv", list(alarm_rows(scratch, arguments.alarms)))
 
 
 if __name__ == "__main__":
