@@ -57,6 +57,8 @@ void WriteSigma(const CameraNoise& noise, YAML::Emitter* out) {
                    {"reach_factor", noise.reach_factor}},
                   out);
   }
+  if (noise.unseen_px > 0.0)
+    WriteNoiseMap("unseen_field", {{"sd_px", noise.unseen_px}, {"reach_px", noise.unseen_reach_px}}, out);
 }
 
 void WriteFaults(const CameraNoise& noise, YAML::Emitter* out) {
@@ -65,16 +67,13 @@ void WriteFaults(const CameraNoise& noise, YAML::Emitter* out) {
   for (const CameraCorrection& each : noise.corrections) {
     std::vector<std::pair<const char*, double>> values = {{"value", each.estimate.value},
                                                           {"standard_error", each.estimate.standard_error}};
-    if (each.removed.value != 0.0) {
-      values.emplace_back("removed", each.removed.value);
-      values.emplace_back("removed_standard_error", each.removed.standard_error);
-    }
+    if (each.removed != 0.0) values.emplace_back("removed", each.removed);
+    values.emplace_back("uncertainty", each.uncertainty);
     WriteNoiseMap(kCorrectableFaults[each.fault], values, out);
   }
   *out << YAML::EndMap;
   WriteNoiseList("correlations", noise.correlations, out);
-  if (!noise.removed_correlations.empty())
-    WriteNoiseList("removed_correlations", noise.removed_correlations, out);
+  WriteNoiseList("uncertainty_correlations", noise.uncertainty_correlations, out);
   if (std::isfinite(noise.seconds_between))
     *out << YAML::Key << "seconds_between" << YAML::Value << fmt::format("{:.6g}", noise.seconds_between);
 }

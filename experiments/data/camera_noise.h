@@ -25,9 +25,11 @@ inline constexpr std::array kCorrectableFaults = {"focal_length",  "principal_po
                                                   "image2_shift_y"};
 
 struct CameraCorrection {
-  size_t fault = 0;            // of kCorrectableFaults
-  Measured estimate;           // of the fault, beside the others
-  Measured removed{0.0, 0.0};  // what is taken out, beside the others taken out; 0: its test did not name it
+  size_t fault = 0;      // of kCorrectableFaults
+  Measured estimate;     // of the fault, beside the others
+  double removed = 0.0;  // what is taken out
+  double uncertainty =
+      0.0;  // root mean square of what may be left of it, whether something is taken out or not
 };
 
 // A displacement of what is observed that all images of a camera share, px: bilinear between the centres of
@@ -53,8 +55,12 @@ struct CameraNoise {
   double key_point_px = 0.0;
   Measured displacement_px{0.0, 0.0};
   double reach_px = 0.0, reach_factor = 1.0;  // factor: one standard error, upwards and downwards
+  // Where no field was found: root of the variance that is to be expected of one that reaches as far as the
+  // image, which pairs show badly and motions feel most. Part of sigma_px. 0: a field was found.
+  double unseen_px = 0.0, unseen_reach_px = 0.0;
   std::vector<CameraCorrection> corrections;
-  std::vector<double> correlations, removed_correlations;  // of the estimates, of what is removed; row by row
+  std::vector<double> correlations,
+      uncertainty_correlations;  // of the estimates, of what is left; row by row
   double seconds_between = std::numeric_limits<double>::quiet_NaN();  // that the readout time is a share of
   DisplacementCells systematic;
 

@@ -115,19 +115,22 @@ void ReadDisplacement(const Place& place, const YAML::Node& node, CameraNoise* n
                 {"reach_factor", RealReader(place, "reach_factor", {1.0, 1e12}, &noise->reach_factor)}});
 }
 
+void ReadUnseen(const Place& place, const YAML::Node& node, CameraNoise* noise) {
+  ReadNoiseMap(place, node, "unseen_field",
+               {{"sd_px", RealReader(place, "sd_px", {1e-9, kMostPx}, &noise->unseen_px)},
+                {"reach_px", RealReader(place, "reach_px", {0.1, 1e5}, &noise->unseen_reach_px)}});
+}
+
 CameraCorrection ReadCorrection(const Place& place, const YAML::Node& node, size_t fault) {
-  CameraCorrection correction{fault, {}, {0.0, 0.0}};
+  CameraCorrection correction;
+  correction.fault = fault;
   const std::string name = kCorrectableFaults[fault];
-  ReadNoiseMap(
-      place, node, name,
-      {{"value", RealReader(place, name, kAnyReal, &correction.estimate.value)},
-       {"standard_error", RealReader(place, name, kAnySize, &correction.estimate.standard_error)},
-       {"removed", RealReader(place, name, {-1e4, 1e4}, &correction.removed.value)},
-       {"removed_standard_error", RealReader(place, name, kAnySize, &correction.removed.standard_error)}},
-      {"removed", "removed_standard_error"});
-  if (static_cast<bool>(node["removed"]) != static_cast<bool>(node["removed_standard_error"]))
-    place.Fail(node,
-               fmt::format("{}: removed and removed_standard_error stand together or not at all", name));
+  ReadNoiseMap(place, node, name,
+               {{"value", RealReader(place, name, kAnyReal, &correction.estimate.value)},
+                {"standard_error", RealReader(place, name, kAnySize, &correction.estimate.standard_error)},
+                {"removed", RealReader(place, name, {-1e4, 1e4}, &correction.removed)},
+                {"uncertainty", RealReader(place, name, kAnySize, &correction.uncertainty)}},
+               {"removed"});
   return correction;
 }
 
@@ -204,13 +207,14 @@ void ReadNoiseKeys(const Place& place, const YAML::Node& root, CameraNoise* nois
        {"size_exponent", measured("size_exponent", {-10.0, 10.0}, &noise->size_exponent)},
        {"key_point_px", RealReader(place, "key_point_px", {0.0, kMostPx}, &noise->key_point_px)},
        {"displacement_field", [&](Node node) { ReadDisplacement(place, node, noise); }},
+       {"unseen_field", [&](Node node) { ReadUnseen(place, node, noise); }},
        {"camera_faults", [&](Node node) { ReadCorrections(place, node, noise); }},
        {"correlations", later},
-       {"removed_correlations", later},
+       {"uncertainty_correlations", later},
        {"seconds_between", RealReader(place, "seconds_between", {1e-9, 1e9}, &noise->seconds_between)},
        {"systematic_displacement", [&](Node node) { ReadSystematic(place, node, &noise->systematic); }}},
-      {"size_exponent", "displacement_field", "camera_faults", "correlations", "removed_correlations",
-       "seconds_between", "systematic_displacement"});
+      {"size_exponent", "displacement_field", "unseen_field", "camera_faults", "correlations",
+       "uncertainty_correlations", "seconds_between", "systematic_displacement"});
 }
 
 }  // namespace
@@ -229,14 +233,14 @@ CameraNoise ParseCameraNoise(const std::string& yaml, const std::string& path) {
                     path, kNoiseVersionKey));
   CameraNoise noise;
   ReadNoiseKeys(place, root, &noise);
-  const auto num_removed = std::ranges::count_if(
-      noise.corrections, [](const CameraCorrection& each) { return each.removed.value != 0.0; });
   noise.correlations = ReadCorrelations(place, root, "correlations", noise.corrections.size());
-  noise.removed_correlations =
-      ReadCorrelations(place, root, "removed_correlations", static_cast<size_t>(num_removed));
-  if (std::hypot(noise.key_point_px, noise.displacement_px.value) > 1.0001 * noise.sigma_px.value)
-    place.Fail(root["sigma_px"],
-               "sigma_px: key_point_px and displacement_field have more variance than all of it");
+  noise.uncertainty_correlations =
+      ReadCorrelations(place, root, "uncertainty_correlations", noise.corrections.size());
+  if (std::hypot(noise.key_point_px, noise.displacement_px.value, noise.unseen_px) >
+      1.0001 * noise.sigma_px.value)
+    place.Fail(
+        root["sigma_px"],
+        "sigma_px: key_point_px, displacement_field and unseen_field have more variance than all of it");
   return noise;
 }
 

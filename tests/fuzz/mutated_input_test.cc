@@ -139,11 +139,12 @@ TEST(MutatedInput, NoiseFiles) {
       "size_exponent: {value: 0.5, standard_error: 0.125}\n"
       "key_point_px: 0.03\n"
       "displacement_field: {sd_px: 0.125, standard_error: 0.02, reach_px: 80, reach_factor: 1.25}\n"
+      "unseen_field: {sd_px: 0.02, reach_px: 800}\n"
       "camera_faults:\n"
-      "  focal_length: {value: 0.01, standard_error: 0.001, removed: 0.0098, removed_standard_error: 9e-4}\n"
-      "  distortion: {value: 0.02, standard_error: 0.004}\n"
+      "  focal_length: {value: 0.01, standard_error: 0.001, removed: 0.0098, uncertainty: 9e-4}\n"
+      "  distortion: {value: 0.02, standard_error: 0.004, uncertainty: 0.003}\n"
       "correlations: [1, -0.5, -0.5, 1]\n"
-      "removed_correlations: [1]\n"
+      "uncertainty_correlations: [1, 0.25, 0.25, 1]\n"
       "systematic_displacement: {columns: 2, rows: 1, rms_px: 0.25, p_value: 0.002, dx_px: [0.1, -0.2], "
       "dy_px: [0.3, 0.4]}\n";
   const Outcomes outcomes = ReadDamaged({noise_file}, YamlWords(), 3000, [](const std::string& input) {

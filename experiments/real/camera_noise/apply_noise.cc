@@ -22,8 +22,7 @@ constexpr auto kReadoutFault = static_cast<size_t>(CameraFault::kReadoutTime);
 
 bool RemovesAnything(const CameraNoise& noise) {
   return noise.systematic.columns > 0 ||
-         std::ranges::any_of(noise.corrections,
-                             [](const CameraCorrection& c) { return c.removed.value != 0.0; });
+         std::ranges::any_of(noise.corrections, [](const CameraCorrection& c) { return c.removed != 0.0; });
 }
 
 void CheckCamera(const Camera& camera, const CameraNoise& noise, const std::string& origin) {
@@ -42,7 +41,7 @@ FaultVector ListRemoved(const CameraNoise& noise, bool is_readout) {
   FaultVector faults = FaultVector::Zero();
   for (const CameraCorrection& each : noise.corrections) {
     if ((each.fault == kReadoutFault) == is_readout)
-      faults(static_cast<Eigen::Index>(each.fault)) = each.removed.value;
+      faults(static_cast<Eigen::Index>(each.fault)) = each.removed;
   }
   return faults;
 }
@@ -52,19 +51,28 @@ KnownVariances FindKnownVariances(const CameraNoise& noise) {
   const double key_point = noise.key_point_px / noise.sigma_px.value;
   KnownVariances known;
   known.of_key_point = key_point * key_point;
-  known.of_neighbours = noise.DisplacementShare();
+  const bool is_found = noise.displacement_px.value > 0.0;
+  const double field = (is_found ? noise.displacement_px.value : noise.unseen_px) / noise.sigma_px.value,
+               reach_px = is_found ? noise.reach_px : noise.unseen_reach_px;
+  known.of_neighbours = std::min(1.0, field * field);
   known.own = std::max(0.0, 1.0 - known.of_key_point - known.of_neighbours);
-  if (noise.reach_px > 0.0) known.length_px = noise.reach_px;
+  if (reach_px > 0.0) known.length_px = reach_px;
   return known;
 }
 
-// G Sigma G'.
-Matrix5d ComputeCovarianceOfRemoved(const MotionProblem& problem, const CameraNoise& noise,
-                                    const MotionEstimate& estimate) {
-  std::vector<CameraCorrection> removed;
-  std::ranges::copy_if(noise.corrections, std::back_inserter(removed),
-                       [](const CameraCorrection& each) { return each.removed.value != 0.0; });
-  if (removed.empty()) return Matrix5d::Zero();
+bool IsOfCamera(const MotionProblem& problem, const CameraNoise& noise) {
+  // Cameras without what is removed differ from that of the file; ApplyNoise has compared them before.
+  return RemovesAnything(noise) ||
+         (IsSameCamera(problem.camera1, noise.camera) && IsSameCamera(problem.camera2, noise.camera));
+}
+
+// G U G'.
+Matrix5d ComputeCovarianceOfFaults(const MotionProblem& problem, const CameraNoise& noise,
+                                   const MotionEstimate& estimate) {
+  const std::vector<CameraCorrection>& faults = noise.corrections;
+  const bool is_sure =
+      std::ranges::all_of(faults, [](const CameraCorrection& each) { return each.uncertainty == 0.0; });
+  if (is_sure || !IsOfCamera(problem, noise)) return Matrix5d::Zero();
   const MatchScores scores = ScoreFitted(problem, estimate.inliers, estimate.cam2_from_cam1);
   const Eigen::Matrix3d F = ComputeFundamental(problem, estimate.cam2_from_cam1);
   Eigen::Matrix<double, 5, kNumCameraFaults> mixed = Eigen::Matrix<double, 5, kNumCameraFaults>::Zero();
@@ -78,12 +86,12 @@ Matrix5d ComputeCovarianceOfRemoved(const MotionProblem& problem, const CameraNo
   }
   const Eigen::Matrix<double, 5, kNumCameraFaults> moved = scores.information.ldlt().solve(mixed);
   Matrix5d covariance = Matrix5d::Zero();
-  for (size_t a = 0; a < removed.size(); ++a) {
-    for (size_t b = 0; b < removed.size(); ++b) {
-      const double shared = noise.removed_correlations[a * removed.size() + b] *
-                            removed[a].removed.standard_error * removed[b].removed.standard_error;
-      covariance += shared * moved.col(static_cast<Eigen::Index>(removed[a].fault)) *
-                    moved.col(static_cast<Eigen::Index>(removed[b].fault)).transpose();
+  for (size_t a = 0; a < faults.size(); ++a) {
+    for (size_t b = 0; b < faults.size(); ++b) {
+      const double shared = noise.uncertainty_correlations[a * faults.size() + b] * faults[a].uncertainty *
+                            faults[b].uncertainty;
+      covariance += shared * moved.col(static_cast<Eigen::Index>(faults[a].fault)) *
+                    moved.col(static_cast<Eigen::Index>(faults[b].fault)).transpose();
     }
   }
   return covariance.allFinite() ? covariance : Matrix5d::Zero();
@@ -118,10 +126,10 @@ CameraNoise ReadNoiseToApply(const std::string& path) {
   CameraNoise noise = ReadCameraNoise(path);
   for (const CameraCorrection& each : noise.corrections) {
     const double greatest = GreatestFault(kCameraFaults[each.fault], noise.camera);
-    if (std::abs(each.removed.value) > greatest)
+    if (std::abs(each.removed) > greatest)
       throw InputError(
           fmt::format("{}: camera_faults: {}: removed {:g} is not allowed; at most {:g} either way", path,
-                      kCorrectableFaults[each.fault], each.removed.value, greatest));
+                      kCorrectableFaults[each.fault], each.removed, greatest));
   }
   return noise;
 }
@@ -166,7 +174,7 @@ void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, boo
   if (!is_robust || ComputeWidth(problem, by_file) > ComputeWidth(problem, *estimate))
     *estimate = std::move(by_file);
   if (estimate->status == MotionStatus::kOk)
-    estimate->pose_cov += ComputeCovarianceOfRemoved(problem, noise, *estimate);
+    estimate->pose_cov += ComputeCovarianceOfFaults(problem, noise, *estimate);
 }
 
 std::unique_ptr<MotionEstimator> WithSharedNoise(std::unique_ptr<MotionEstimator> estimator,

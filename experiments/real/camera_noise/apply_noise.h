@@ -30,12 +30,13 @@ bool RemovesReadout(const CameraNoise& noise);
 MotionProblem CorrectReadout(MotionProblem problem, const RelativePose& cam2_from_cam1,
                              const CameraNoise& noise, double seconds_between);
 
-//   C = d (s_0 C_0 + C_shared) + G Sigma G'
+//   C = d (s_0 C_0 + C_shared) + G U G'
 //
 // d the design effect of blocks and C_shared as in robust_covariance.h, with the file's variances and reach
-// in place of those that the pair's own residuals tell; C_0 the estimator's own covariance, or with
-// `is_robust` that of the residuals; Sigma the covariance of the faults that are removed and G = -A^-1 sum
-// J_i' D_i how they move the motion, D_i the residual's derivative along them
+// in place of those that the pair's own residuals tell, and those of the unseen field where none was found;
+// C_0 the estimator's own covariance, or with `is_robust` that of the residuals; U the uncertainty of the
+// camera's faults (fault_posterior.h), removed or not, and G = -A^-1 sum J_i' D_i how they move the motion,
+// D_i the residual's derivative along them. A pair of another camera than the file's is without G U G'
 // (truth_free/calibration_score.h), A = sum J_i' J_i. A robust covariance stays
 // where that of the pair's own residuals is wider in tr(A C): what neighbours of this pair share can be more
 // than the file knows. As it is where nothing is shared or removed, or there is no motion.

@@ -6,12 +6,14 @@
 #include <cmath>
 
 #include "experiments/real/camera_noise/apply_noise.h"
+#include "experiments/real/camera_noise/fault_posterior.h"
 #include "experiments/real/camera_noise/fitted_pairs.h"
 #include "experiments/real/camera_noise/systematic_displacement.h"
 #include "experiments/real/truth_free/self_calibration.h"
 #include "experiments/real/truth_free/twin_source.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
+#include "stats/distributions.h"
 #include "stats/fnv1a.h"
 #include "stats/median_ratio.h"
 
@@ -19,6 +21,8 @@ namespace rcme {
 namespace {
 
 constexpr size_t kLeastPairsOfCamera = 5;
+// Of the intervals of PoolFaults, each.
+constexpr double kIntervalConfidence = 1.0 - (1.0 - kFaultConfidence) / kNumNamedFaults;
 constexpr double kSizeEdges[] = {0.0, 0.7, 1.0, 1.4, 2.0, 4.0, kInfinity};
 
 std::vector<PairAnswers> AnswerAll(const PairSet& set, const MotionEstimator& estimator, std::uint64_t seed) {
@@ -48,35 +52,85 @@ Measured RootOf(const PooledParameter& variance) {
   return {root, root > 0.0 ? variance.standard_error / (2.0 * root) : 0.0};
 }
 
-// How well those that are removed are known, the others taken to be zero.
-void TakeErrorsOfRemoved(const FaultEstimates& estimates, CameraNoise* noise) {
-  std::vector<CameraFault> removed;
-  for (const CameraCorrection& each : noise->corrections) {
-    if (each.removed.value != 0.0) removed.push_back(kCameraFaults[each.fault]);
-  }
-  if (removed.empty()) return;
-  const PooledScores pooled = PoolFaults(estimates.units, removed);
-  size_t next = 0;
-  for (CameraCorrection& each : noise->corrections) {
-    if (each.removed.value != 0.0) each.removed.standard_error = pooled.parameters[next++].standard_error;
-  }
-  noise->removed_correlations.assign(pooled.correlations.data(),
-                                     pooled.correlations.data() + pooled.correlations.size());
+double FindCorrection(const CalibrationReport& report, CameraFault fault) {
+  const auto found = std::ranges::find(report.faults, fault, &FaultReport::fault);
+  return found == report.faults.end() ? 0.0 : found->correction;
 }
 
-// What all faults are beside each other once those that are removed are, as they are written.
+// What may be wrong with the intrinsics or the readout; key points of one image are shifted where the test
+// names that, and by nothing that a camera does.
+std::vector<CameraFault> ListUncertain(const CalibrationReport& report, const FaultEstimates& estimates) {
+  std::vector<CameraFault> uncertain;
+  for (const CameraFault fault : estimates.asked) {
+    const bool is_shift = fault == CameraFault::kImage2ShiftX || fault == CameraFault::kImage2ShiftY;
+    if (!is_shift || FindCorrection(report, fault) != 0.0) uncertain.push_back(fault);
+  }
+  return uncertain;
+}
+
+// The others taken to be zero. Standard deviations are those of the normal law that has the estimates'
+// intervals, which are of few degrees of freedom.
+std::optional<FaultEvidence> GatherEvidence(const CalibrationReport& report, const FaultEstimates& estimates,
+                                            const std::vector<CameraFault>& faults) {
+  const PooledScores pooled = PoolFaults(estimates.units, faults);
+  const auto k = std::ssize(faults);
+  if (std::ssize(pooled.parameters) != k || pooled.correlations.size() == 0) return std::nullopt;
+  FaultEvidence evidence{Eigen::VectorXd(k), Eigen::MatrixXd(k, k), Eigen::VectorXd(k), Eigen::VectorXd(k)};
+  Eigen::VectorXd sds(k);
+  for (Eigen::Index j = 0; j < k; ++j) {
+    const CameraFault fault = faults[static_cast<size_t>(j)];
+    const PooledParameter& left = pooled.parameters[static_cast<size_t>(j)];
+    evidence.estimates(j) = FindCorrection(report, fault) + left.value;
+    sds(j) =
+        0.5 * (left.interval.upper - left.interval.lower) / NormalQuantile(0.5 + 0.5 * kIntervalConfidence);
+    evidence.nominal(j) = FindFaultText(fault).nominal;
+    evidence.greatest(j) = GreatestFault(fault, estimates.camera);
+  }
+  evidence.covariance = sds.asDiagonal() * pooled.correlations * sds.asDiagonal();
+  if (!evidence.estimates.allFinite() || !evidence.covariance.allFinite()) return std::nullopt;
+  return evidence;
+}
+
+// What to take out, and what stays uncertain. Nothing is taken out where what is left is of another kind: a
+// fault that only looks like one of these.
+void TakeUncertainty(const CalibrationReport& report, const FaultEstimates& estimates, CameraNoise* noise) {
+  const std::vector<CameraFault> faults = ListUncertain(report, estimates);
+  const std::optional<FaultEvidence> evidence = GatherEvidence(report, estimates, faults);
+  const size_t n = noise->corrections.size();
+  noise->uncertainty_correlations.assign(n * n, 0.0);
+  for (size_t i = 0; i < n; ++i) noise->uncertainty_correlations[i * n + i] = 1.0;
+  if (!evidence) return;
+  const FaultPosterior posterior = InferFaults(*evidence);
+  Eigen::VectorXd removed = ChooseRemoved(posterior);
+  if (report.is_of_other_kind) removed.setZero();
+  const Eigen::MatrixXd uncertainty = ComputeUncertainty(posterior, removed);
+  const Eigen::VectorXd roots = uncertainty.diagonal().cwiseSqrt();
+  const auto place = [&](CameraFault fault) {
+    const auto found =
+        std::ranges::find(noise->corrections, static_cast<size_t>(fault), &CameraCorrection::fault);
+    return static_cast<size_t>(found - noise->corrections.begin());
+  };
+  for (Eigen::Index a = 0; a < roots.size(); ++a) {
+    const size_t at = place(faults[static_cast<size_t>(a)]);
+    noise->corrections[at].removed = removed(a);
+    noise->corrections[at].uncertainty = roots(a);
+    for (Eigen::Index b = 0; b < roots.size(); ++b)
+      noise->uncertainty_correlations[at * n + place(faults[static_cast<size_t>(b)])] =
+          uncertainty(a, b) / (roots(a) * roots(b));
+  }
+}
+
+// What all faults are beside each other once those that are named are corrected.
 void TakeFaults(const CalibrationReport& report, const std::vector<PairAnswers>& corrected,
                 CameraNoise* noise) {
   const FaultEstimates estimates = EstimateFaults(corrected);
   const PooledScores pooled = PoolFaults(estimates.units, estimates.asked);
   if (pooled.parameters.empty() || pooled.correlations.size() == 0) return;
   for (size_t j = 0; j < estimates.asked.size(); ++j) {
-    const auto found = std::ranges::find(report.faults, estimates.asked[j], &FaultReport::fault);
-    const double removed = found == report.faults.end() ? 0.0 : found->correction;
     const PooledParameter& left = pooled.parameters[j];
-    noise->corrections.push_back({static_cast<size_t>(estimates.asked[j]),
-                                  {removed + left.value, left.standard_error},
-                                  {removed, 0.0}});
+    noise->corrections.push_back(
+        {static_cast<size_t>(estimates.asked[j]),
+         {FindCorrection(report, estimates.asked[j]) + left.value, left.standard_error}});
   }
   const bool are_known = std::ranges::all_of(noise->corrections, [](const CameraCorrection& each) {
     return std::isfinite(each.estimate.value) && std::isfinite(each.estimate.standard_error);
@@ -84,7 +138,17 @@ void TakeFaults(const CalibrationReport& report, const std::vector<PairAnswers>&
   if (!are_known) return noise->corrections.clear();
   noise->correlations.assign(pooled.correlations.data(),
                              pooled.correlations.data() + pooled.correlations.size());
-  TakeErrorsOfRemoved(estimates, noise);
+  TakeUncertainty(report, estimates, noise);
+}
+
+// The report with what a noise file removes in place of what is named.
+CalibrationReport TakeRemoved(CalibrationReport report, const CameraNoise& noise) {
+  for (FaultReport& each : report.faults) {
+    const auto found =
+        std::ranges::find(noise.corrections, static_cast<size_t>(each.fault), &CameraCorrection::fault);
+    each.correction = found == noise.corrections.end() ? 0.0 : found->removed;
+  }
+  return report;
 }
 
 // Of residuals that are not divided by a power of the size; the cut is that of those that are.
@@ -147,6 +211,8 @@ void TakeNoise(const std::vector<PairAnswers>& answers, NoiseCalibration* calibr
     calibration->variance = AddVariances(calibration->variance, shared.field.variance);
   }
   noise.sigma_px = RootOf(calibration->variance);
+  noise.unseen_px = std::min(noise.sigma_px.value, std::sqrt(shared.unseen.variance.value));
+  noise.unseen_reach_px = shared.unseen.reach_px;
   noise.size_exponent = {exponent, calibration->size_exponent.standard_error};
   noise.effective_pairs = shared.own.effective_n;
 }
@@ -200,6 +266,11 @@ NoiseCalibration CalibrateNoise(const PairSet& set, const MotionEstimator& estim
     answers = AnswerAll(corrected, estimator, seed);
   }
   TakeFaults(calibration.faults, answers, &noise);
+  const auto removes = [](const CameraCorrection& each) { return each.removed != 0.0; };
+  if (NamesFault(calibration.faults) || std::ranges::any_of(noise.corrections, removes)) {
+    corrected = CorrectPairs(of_camera, TakeRemoved(calibration.faults, noise), estimator, seed);
+    answers = AnswerAll(corrected, estimator, seed);
+  }
   TakeSystematic(corrected, estimator, seed, &answers, &calibration);
   TakeNoise(answers, &calibration);
   return calibration;

@@ -56,9 +56,14 @@ void AddSharedRows(const NoiseCalibration& calibration, std::vector<NoiseRow>* r
   }
 }
 
-std::string FaultState(const CameraCorrection& correction) {
-  return correction.removed.value == 0.0 ? "not named"
-                                         : fmt::format("named: {:.3g} is removed", correction.removed.value);
+// What is more probable than not is taken out, whether the test names it or not.
+std::string FaultState(const CameraCorrection& correction, const CalibrationReport& report) {
+  const auto found = std::ranges::find(report.faults, kCameraFaults[correction.fault], &FaultReport::fault);
+  const bool is_named = found != report.faults.end() && IsFault(found->verdict);
+  std::string state = is_named ? "named" : "not named";
+  if (correction.removed != 0.0) state += fmt::format(": {:.3g} is removed", correction.removed);
+  if (correction.uncertainty > 0.0) state += fmt::format(", +-{:.2g} is left", correction.uncertainty);
+  return state;
 }
 
 void AddFaultRows(const NoiseCalibration& calibration, std::vector<NoiseRow>* rows) {
@@ -75,8 +80,8 @@ void AddFaultRows(const NoiseCalibration& calibration, std::vector<NoiseRow>* ro
     PooledParameter as_pooled;
     as_pooled.value = each.estimate.value;
     as_pooled.interval = {each.estimate.value - half, each.estimate.value + half};
-    rows->push_back(
-        {text.name, text.words, text.unit, EstimateFrom(as_pooled, text.per_unit), FaultState(each), pairs});
+    rows->push_back({text.name, text.words, text.unit, EstimateFrom(as_pooled, text.per_unit),
+                     FaultState(each, calibration.faults), pairs});
   }
 }
 

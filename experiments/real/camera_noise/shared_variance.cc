@@ -8,6 +8,7 @@
 
 #include "estimator/robust_covariance/residual_variances.h"
 #include "stats/constants.h"
+#include "stats/distributions.h"
 
 namespace rcme {
 namespace {
@@ -201,7 +202,44 @@ void FitOwn(const std::vector<PairMoments>& all, SharedVariance* shared) {
   shared->own = PoolScoreAlone(units, 0, 0.95);
 }
 
+PooledParameter FitFieldAt(const std::vector<FittedPair>& pairs, double reach_px) {
+  std::vector<UnitScore> units;
+  for (const PairMoments& each : ComputeAllMoments(pairs, reach_px, Repeats::kFirstOnly))
+    units.push_back(TakeField(*each.pair, each.moments, kLongest));
+  return PoolScoreAlone(units, 0, 0.95);
+}
+
+// Where none is found; what it expects of a field is part of the residuals' variance.
+void ExpectUnseen(const std::vector<FittedPair>& pairs, SharedVariance* shared) {
+  if (shared->is_found) return;
+  shared->unseen.reach_px = FindDiagonal(pairs);
+  shared->unseen.variance = FitFieldAt(pairs, shared->unseen.reach_px);
+  shared->unseen.variance.value = ExpectVariance(shared->unseen.variance, shared->own.value);
+}
+
 }  // namespace
+
+double ExpectVariance(const PooledParameter& estimate, double total) {
+  constexpr int kNumSteps = 400;
+  constexpr double kLeastShare = 0.01;
+  const double sd = 0.5 * (estimate.interval.upper - estimate.interval.lower) / NormalQuantile(0.975);
+  if (!std::isfinite(estimate.value) || !std::isfinite(sd) || !(sd > 0.0) || !(total > 0.0)) return 0.0;
+  // Likelihoods over that of v = 0, in logarithms until the greatest is known.
+  std::vector<double> variances = {0.0}, logs = {0.0};
+  for (int i = 0; i < kNumSteps; ++i) {
+    const double v = total * std::pow(kLeastShare, 1.0 - (i + 0.5) / kNumSteps);
+    variances.push_back(v);
+    logs.push_back((v * estimate.value - 0.5 * v * v) / (sd * sd) - std::log(kNumSteps));
+  }
+  const double greatest = *std::ranges::max_element(logs);
+  double sum = 0.0, weighted = 0.0;
+  for (size_t i = 0; i < logs.size(); ++i) {
+    const double weight = std::exp(logs[i] - greatest);
+    sum += weight;
+    weighted += weight * variances[i];
+  }
+  return weighted / sum;
+}
 
 SharedVariance FitSharedVariance(const std::vector<FittedPair>& pairs) {
   UnitsByReach units;
@@ -230,6 +268,7 @@ SharedVariance FitSharedVariance(const std::vector<FittedPair>& pairs) {
   const std::vector<PairMoments> at_reach = ComputeAllMoments(pairs, reach_px, Repeats::kAll);
   FitKeyPoints(at_reach, shared.is_found ? shared.field.variance.value : 0.0, &shared);
   FitOwn(at_reach, &shared);
+  ExpectUnseen(pairs, &shared);
   return shared;
 }
 

@@ -24,7 +24,13 @@ struct SharedVariance {
   PooledParameter key_point;              // variance that matches of one key point share, px^2; NaN: none do
   bool is_key_point_found = false;        // at 1 %, one-sided
   PooledParameter own;                    // each match's own, beside what is found, px^2
+  VarianceByReach unseen;  // at the diagonal of the image, expected where no field is found, px^2
 };
+
+// E[v | estimate] of a variance within `total`, which is nil with probability 1/2 and else, its logarithm
+// uniform, from a hundredth of the total to all of it: what a test may miss. The estimate is normal about v,
+// with a standard deviation that gives its interval of 95 %. NaN estimates say nothing: 0.
+double ExpectVariance(const PooledParameter& estimate, double total);
 
 // In each pair the first match of each key point stands for all. Its moments (ResidualMoments in
 // estimator/robust_covariance/residual_variances.h), of weights W_0 = I and W_f = K_f - I between the

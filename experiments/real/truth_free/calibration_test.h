@@ -40,7 +40,8 @@ struct CalibrationReport {
   // Of all together: too large if p < 0.05 (there is some fault), holds if every one does.
   TruthFreeVerdict verdict = TruthFreeVerdict::kNoData;
   std::string why_unnamed;  // why no fault is named though an interval does not hold zero; empty: none is
-  int num_steps = 1;        // of the self-calibration
+  bool is_of_other_kind = false;  // what is left where they are corrected is of a kind that is never named
+  int num_steps = 1;              // of the self-calibration
   double p_corrected = std::numeric_limits<double>::quiet_NaN();  // p_value where what is named is corrected
 };
 

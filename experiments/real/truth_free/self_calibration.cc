@@ -143,9 +143,11 @@ void CorrectNamed(const Steps& steps, CalibrationReport* report) {
       return NameNothing(fmt::format("what they look like, corrected, leaves p = {:.2g}", p_left), report);
     taken.push_back(*further);
   }
-  if (const std::optional<CameraFault> other = FindOtherFault(fit->estimates.units))
+  if (const std::optional<CameraFault> other = FindOtherFault(fit->estimates.units)) {
+    report->is_of_other_kind = true;
     return NameNothing(
         fmt::format("something of another kind is left, such as {}", FindFaultText(*other).words), report);
+  }
   for (size_t j = 0; j < taken.size(); ++j) {
     FaultReport& each = *std::ranges::find(report->faults, taken[j], &FaultReport::fault);
     if (!IsFault(each.verdict)) each.joint = fit->pooled.parameters[j];

@@ -28,9 +28,9 @@ CameraNoise MakeNoise() {
   noise.displacement_px = {0.125, 0.02};
   noise.reach_px = 80.0;
   noise.reach_factor = 1.25;
-  noise.corrections = {{0, {0.01, 0.001}, {0.0098, 0.0009}}, {3, {0.02, 0.004}, {0.0, 0.0}}};
+  noise.corrections = {{0, {0.01, 0.001}, 0.0098, 0.0009}, {3, {0.02, 0.004}, 0.0, 0.003}};
   noise.correlations = {1.0, -0.5, -0.5, 1.0};
-  noise.removed_correlations = {1.0};
+  noise.uncertainty_correlations = {1.0, 0.25, 0.25, 1.0};
   noise.seconds_between = 0.125;
   noise.systematic = {2, 1, {0.1, -0.2}, {0.3, 0.4}, 0.25, 0.002};
   return noise;
@@ -47,7 +47,10 @@ TEST(CameraNoiseFile, GivesBackWhatWasWritten) {
   EXPECT_EQ(noise.size_exponent.value, 0.5);
   EXPECT_EQ(noise.DisplacementShare(), 0.25);
   ASSERT_EQ(noise.corrections.size(), 2u);
-  EXPECT_EQ(noise.corrections[0].removed.value, 0.0098);
+  EXPECT_EQ(noise.corrections[0].removed, 0.0098);
+  EXPECT_EQ(noise.corrections[0].uncertainty, 0.0009);
+  EXPECT_EQ(noise.corrections[1].removed, 0.0);
+  EXPECT_EQ(noise.uncertainty_correlations, std::vector<double>({1.0, 0.25, 0.25, 1.0}));
   EXPECT_EQ(noise.corrections[1].fault, 3u);
   EXPECT_EQ(noise.systematic.dy_px, std::vector<double>({0.3, 0.4}));
 }
@@ -56,11 +59,17 @@ TEST(CameraNoiseFile, WithoutWhatWasNotFoundIsShort) {
   CameraNoise noise = MakeNoise();
   noise.size_exponent = {};
   noise.displacement_px = {0.0, 0.0};
+  noise.unseen_px = 0.03;
+  noise.unseen_reach_px = 800.0;
   noise.corrections.clear();
+  noise.correlations.clear();
+  noise.uncertainty_correlations.clear();
   noise.systematic = {};
   const CameraNoise read = ParseCameraNoise(CameraNoiseAsYaml(noise), "noise.yaml");
   EXPECT_TRUE(std::isnan(read.size_exponent.value));
   EXPECT_EQ(read.DisplacementShare(), 0.0);
+  EXPECT_EQ(read.unseen_px, 0.03);
+  EXPECT_EQ(read.unseen_reach_px, 800.0);
   EXPECT_TRUE(read.corrections.empty());
   EXPECT_EQ(read.systematic.columns, 0);
 }
@@ -84,14 +93,16 @@ TEST(CameraNoiseFile, WhatIsNoneIsRefused) {
   EXPECT_TRUE(refuses("sd_px: 0.125", "sd_px: 0.3", {"sigma_px", "more variance"}));
   EXPECT_TRUE(refuses("dx_px: [0.1, -0.2]", "dx_px: [0.1]", {"dx_px", "2 numbers"}));
   EXPECT_TRUE(refuses("focal_length:", "focal:", {"focal"}));
-  EXPECT_TRUE(refuses("removed_correlations: [1]\n", "", {"removed_correlations"}));
+  EXPECT_TRUE(refuses("uncertainty_correlations: [1, 0.25, 0.25, 1]\n", "", {"uncertainty_correlations"}));
+  EXPECT_TRUE(refuses("[1, 0.25, 0.25, 1]", "[1, 0.25, 0.2, 1]", {"uncertainty_correlations", "symmetric"}));
+  EXPECT_TRUE(refuses("uncertainty: 0.003", "uncertainty: -0.003", {"distortion", "-0.003"}));
+  EXPECT_TRUE(refuses(", uncertainty: 0.003", "", {"distortion", "'uncertainty' is missing"}));
   EXPECT_TRUE(refuses("value: 0.25", "value: [1]", {"sigma_px"}));
   EXPECT_TRUE(refuses("value: 0.25", "value: .inf", {"sigma_px", "inf"}));
   EXPECT_TRUE(refuses("width: 640", "width: 640.5", {"width", "whole number"}));
   EXPECT_TRUE(refuses("columns: 2", "columns: 1.5", {"columns", "whole number"}));
   EXPECT_TRUE(refuses("columns: 2", "columns: 1000000", {"columns", "[1, 100]"}));
   EXPECT_TRUE(refuses("key_point_px: 0.03", "key_point_px: 0.03\nkey_point_px: 0.03", {"key_point_px"}));
-  EXPECT_TRUE(refuses(", removed_standard_error: 0.0009", "", {"focal_length", "together or not at all"}));
   EXPECT_TRUE(ThrowsInputError([] { ParseCameraNoise("a: [", "noise.yaml"); }, {"noise.yaml"}));
   EXPECT_TRUE(ThrowsInputError([] { ParseCameraNoise("7", "noise.yaml"); }, {"no noise file"}));
   EXPECT_TRUE(ThrowsInputError([] { ReadCameraNoise("nowhere.yaml"); }, {"nowhere.yaml"}));
@@ -112,7 +123,7 @@ TEST(CameraNoiseFile, RefusesCorrelationsThatAreNone) {
   EXPECT_TRUE(refuses("[1, 1.5, 1.5, 1]", {"correlations", "[-1.0001, 1.0001]"}));
   EXPECT_TRUE(refuses("[1]", {"correlations", "4 numbers"}));
   CameraNoise noise = MakeNoise();
-  noise.corrections.push_back({1, {0.0, 1.0}, {0.0, 0.0}});
+  noise.corrections.push_back({1, {0.0, 1.0}});
   noise.correlations = {1.0, -0.9, -0.9, -0.9, 1.0, -0.9, -0.9, -0.9, 1.0};
   EXPECT_TRUE(ThrowsInputError([&] { ParseCameraNoise(CameraNoiseAsYaml(noise), "noise.yaml"); },
                                {"correlations", "eigenvalue"}));

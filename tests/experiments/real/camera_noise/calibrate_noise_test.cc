@@ -19,6 +19,8 @@
 #include "experiments/real/truth_free/planted_fault.h"
 #include "experiments/real/truth_free/validate.h"
 #include "experiments/study/study_file.h"
+#include "stats/constants.h"
+#include "stats/random.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -138,35 +140,84 @@ TEST(CalibrateNoise, FindsADisplacementFieldAndCoverageComesBack) {
   }
 }
 
-// Named within four of its standard errors by three cameras of four at least; the regions hold again, since
-// they know how well the fault is known. Of ten pairs 12, 7 and 7 of 12 other cameras name these, and motions
-// of ten further pairs are within their regions in 41 %, 3 % and 6 % without the file, 97 %, 59 % and 61 %
-// with it.
+// Removed, within four times what is uncertain of it, of three cameras of four at least; the regions hold
+// again, since they know what is uncertain. Coverage of ten further pairs: results/calibrate_noise.
 TEST(CalibrateNoise, RemovesFaultsOfTheCameraAndCoverageComesBack) {
   const auto estimator = MakeEstimator("rcme_calibrated");
   for (const auto& [fault, planted] : {std::pair{CameraFault::kDistortion, 0.01},
                                        {CameraFault::kFocalLength, 0.01},
                                        {CameraFault::kPrincipalPointX, 5.0}}) {
     Covered before, after;
-    int num_named = 0;
+    int num_removed = 0;
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       const auto index = static_cast<Eigen::Index>(fault);
       const TakenPairs taken = TakePairs(seed, {}, planted * FaultVector::Unit(index));
       const NoiseCalibration found = CalibrateTaken(taken, seed);
       for (const CameraCorrection& each : found.noise.corrections) {
-        if (each.fault != static_cast<size_t>(index) || each.removed.value == 0.0) continue;
-        ++num_named;
-        EXPECT_NEAR(each.removed.value, planted, 4.0 * each.removed.standard_error) << seed;
+        if (each.fault != static_cast<size_t>(index) || each.removed == 0.0) continue;
+        ++num_removed;
+        EXPECT_NEAR(each.removed, planted, 4.0 * each.uncertainty) << seed;
       }
       CountCovered(taken.set, taken.motions_true, *estimator, &before);
       CountCovered(ApplyNoiseTo(taken.set, found.noise, *estimator, seed), taken.motions_true,
                    *WithSharedNoise(MakeEstimator("rcme_calibrated"), found.noise, false), &after);
     }
-    EXPECT_GE(num_named, 3) << FindFaultText(fault).name;
+    EXPECT_GE(num_removed, 3) << FindFaultText(fault).name;
     EXPECT_LT(before.motions / before.num_motions, 0.7) << FindFaultText(fault).name;
-    EXPECT_GT(after.motions / after.num_motions, num_named == 4 ? 0.85 : 0.6) << FindFaultText(fault).name;
+    EXPECT_GT(after.motions / after.num_motions, 0.85) << FindFaultText(fault).name;
     EXPECT_GT(after.halves / after.num_halves, 0.9) << FindFaultText(fault).name;
   }
+}
+
+// A focal length that is 1 % off, learnt from ten pairs: of eight cameras some have it named and some do not,
+// and motions of ten further pairs are within their regions in either case.
+TEST(CalibrateNoise, RegionsHoldWhereAFaultIsNotNamed) {
+  const auto estimator = MakeEstimator("rcme_calibrated");
+  Covered before, after;
+  int num_named = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    TakenPairs learnt = TakePairs(seed, {}, 0.01 * FaultVector::Unit(0)), checked = learnt;
+    learnt.set.pairs.resize(10);
+    checked.set.pairs.erase(checked.set.pairs.begin(), checked.set.pairs.begin() + 10);
+    checked.motions_true.erase(checked.motions_true.begin(), checked.motions_true.begin() + 10);
+    const NoiseCalibration found = CalibrateTaken(learnt, seed);
+    if (NamesFault(found.faults)) {
+      ++num_named;
+      continue;
+    }
+    CountCovered(checked.set, checked.motions_true, *estimator, &before);
+    CountCovered(ApplyNoiseTo(checked.set, found.noise, *estimator, seed), checked.motions_true,
+                 *WithSharedNoise(MakeEstimator("rcme_calibrated"), found.noise, false), &after);
+  }
+  ASSERT_LE(num_named, 6);
+  EXPECT_LT(before.motions / before.num_motions, 0.3);
+  EXPECT_GT(after.motions / after.num_motions, 0.8);
+}
+
+// What pairs of 10 % of the variance in a field of 1,000 px do not show is to be expected all the same.
+TEST(ExpectVariance, IsRightOnAverage) {
+  RandomStream rng({.seed = 6, .purpose = 131});
+  constexpr int kNumCameras = 20000;
+  constexpr double kTotal = 0.04, kSd = 0.0016;
+  double sum = 0.0, squares = 0.0, among_high = 0.0, squares_high = 0.0;
+  for (int camera = 0; camera < kNumCameras; ++camera) {
+    const double v = rng.Uniform() < 0.5 ? 0.0 : kTotal * std::pow(0.01, rng.Uniform());
+    PooledParameter estimate;
+    estimate.value = v + kSd * rng.Normal();
+    estimate.interval = {estimate.value - 1.959964 * kSd, estimate.value + 1.959964 * kSd};
+    const double off = ExpectVariance(estimate, kTotal) - v;
+    sum += off;
+    squares += off * off;
+    if (estimate.value < kSd) continue;  // about half of the cameras
+    among_high += off;
+    squares_high += off * off;
+  }
+  EXPECT_LT(std::abs(sum), 4.0 * std::sqrt(squares));
+  EXPECT_LT(std::abs(among_high), 4.0 * std::sqrt(squares_high));
+  PooledParameter nothing;
+  nothing.value = kNaN;
+  nothing.interval = {-kInfinity, kInfinity};
+  EXPECT_EQ(ExpectVariance(nothing, kTotal), 0.0);
 }
 
 // A swirl of 0.3 px that no fault of the list explains: found, and where matches are most of it removed.
@@ -234,13 +285,53 @@ TEST(WidenCovariance, AddsHowFarAnErrorOfWhatIsRemovedMovesTheMotion) {
     const Vector5d moved = LocalCoordinates(refit(-error), refit(error)) / 2.0;
     CameraNoise noise;
     noise.sigma_px = {problem.sigma_px, 0.0};
-    noise.corrections = {{static_cast<size_t>(fault), {}, {1e-9, error}}};
-    noise.removed_correlations = {1.0};
+    noise.camera = problem.camera1;
+    noise.corrections = {{static_cast<size_t>(fault), {}, 0.0, error}};
+    noise.uncertainty_correlations = {1.0};
     estimate.pose_cov.setZero();
     WidenCovariance(problem, noise, false, &estimate);
     const Matrix5d expected = moved * moved.transpose();
     EXPECT_LT((estimate.pose_cov - expected).norm(), 0.02 * expected.norm()) << FindFaultText(fault).name;
   }
+}
+
+// Of another camera than the file's nothing is known: not widened by what is uncertain of that one.
+TEST(WidenCovariance, LeavesOtherCamerasTheirCovariance) {
+  const MotionProblem problem = TakePairs(1).set.pairs[4].problem;
+  RandomStream rng({.seed = 1, .purpose = 124});
+  const MotionEstimate given = MakeEstimator("rcme_calibrated")->Estimate(problem, rng);
+  CameraNoise noise;
+  noise.sigma_px = {problem.sigma_px, 0.01};
+  noise.corrections = {{0, {}, 0.0, 0.01}};
+  noise.uncertainty_correlations = {1.0};
+  const auto widen = [&](double fx) {
+    noise.camera = problem.camera1;
+    noise.camera.fx = fx;
+    MotionEstimate widened = given;
+    WidenCovariance(problem, noise, false, &widened);
+    return widened.pose_cov;
+  };
+  EXPECT_EQ(widen(1.01 * problem.camera1.fx), given.pose_cov);
+  EXPECT_GT(widen(problem.camera1.fx).trace(), 1.1 * given.pose_cov.trace());
+}
+
+// A field that was not found and is to be expected counts as one of its variance that was.
+TEST(WidenCovariance, ExpectsAFieldThatIsNotSeen) {
+  const MotionProblem problem = TakePairs(1).set.pairs[4].problem;
+  RandomStream rng({.seed = 1, .purpose = 124});
+  const MotionEstimate given = MakeEstimator("rcme_calibrated")->Estimate(problem, rng);
+  const auto widen = [&](const CameraNoise& noise) {
+    MotionEstimate widened = given;
+    WidenCovariance(problem, noise, false, &widened);
+    return widened.pose_cov;
+  };
+  CameraNoise unseen, found;
+  unseen.sigma_px = found.sigma_px = {problem.sigma_px, 0.01};
+  unseen.unseen_px = found.displacement_px.value = 0.2 * problem.sigma_px;
+  unseen.unseen_reach_px = found.reach_px = 800.0;
+  EXPECT_EQ(widen(unseen), widen(found));
+  EXPECT_GT(widen(unseen).trace(), 1.1 * given.pose_cov.trace());
+  EXPECT_EQ(unseen.DisplacementShare(), 0.0);  // not drawn
 }
 
 // What neighbours of the pair share can be more than the file knows: a robust covariance becomes that of the
@@ -271,7 +362,7 @@ TEST(ApplyNoise, RefusesAnotherCameraWhereItRemovesSomething) {
   CameraNoise noise;
   noise.sigma_px = {0.3, 0.01};
   noise.camera = problem.camera1;
-  noise.corrections = {{0, {0.01, 0.001}, {0.01, 0.001}}};
+  noise.corrections = {{0, {0.01, 0.001}, 0.01, 0.001}};
   EXPECT_NEAR(ApplyNoise(problem, noise, "a.csv").camera2.fx, problem.camera2.fx / 1.01, 1e-9);
   problem.camera2.fx *= 1.01;
   EXPECT_TRUE(
@@ -288,12 +379,12 @@ TEST(ReadNoiseToApply, RefusesMoreThanACameraMayHave) {
   noise.estimator = "rcme";
   noise.camera = {700.0, 700.0, 319.5, 239.5, 640, 480};
   noise.sigma_px = {0.3, 0.01};
-  noise.correlations = noise.removed_correlations = {1.0};
+  noise.correlations = noise.uncertainty_correlations = {1.0};
   const auto write = [&](CameraFault fault, double removed) {
-    noise.corrections = {{static_cast<size_t>(fault), {removed, 0.1}, {removed, 0.1}}};
+    noise.corrections = {{static_cast<size_t>(fault), {removed, 0.1}, removed, 0.1}};
     return folder.Write("noise.yaml", CameraNoiseAsYaml(noise));
   };
-  EXPECT_EQ(ReadNoiseToApply(write(CameraFault::kFocalLength, -0.5)).corrections[0].removed.value, -0.5);
+  EXPECT_EQ(ReadNoiseToApply(write(CameraFault::kFocalLength, -0.5)).corrections[0].removed, -0.5);
   EXPECT_TRUE(ThrowsInputError([&] { ReadNoiseToApply(write(CameraFault::kFocalLength, -1.0)); },
                                {"noise.yaml", "focal_length", "removed -1", "at most 0.5"}));
   EXPECT_TRUE(ThrowsInputError([&] { ReadNoiseToApply(write(CameraFault::kPrincipalPointX, 161.0)); },
