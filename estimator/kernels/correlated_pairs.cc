@@ -151,15 +151,19 @@ template <double (CorrelatedBlock::*x)[5][kBlockSize]>
 HWY_INLINE void AddToRows(const CorrelatedBlock* others, const Tile& tile, int num_blocks, int lane,
                           RowSums* row_sums) {
   for (int g = 0; g < kBlockSize; ++g) {
+    double(&of_g)[kLengths][5][kBlockSize] = row_sums->lanes[g];
+    Vec sums[kLengths][5];
     for (int k = 0; k < kLengths; ++k) {
-      double(&of_g)[5][kBlockSize] = row_sums->lanes[g][k];
-      Vec sums[5];
-      for (int j = 0; j < 5; ++j) sums[j] = Load(of_g[j] + lane);
-      for (int b = 0; b < num_blocks; ++b) {
+      for (int j = 0; j < 5; ++j) sums[k][j] = Load(of_g[k][j] + lane);
+    }
+    for (int b = 0; b < num_blocks; ++b) {
+      for (int k = 0; k < kLengths; ++k) {
         const Vec c = Load(tile.c[b][g][k] + lane);
-        for (int j = 0; j < 5; ++j) sums[j] = FusedMulAdd(c, Load((others[b].*x)[j] + lane), sums[j]);
+        for (int j = 0; j < 5; ++j) sums[k][j] = FusedMulAdd(c, Load((others[b].*x)[j] + lane), sums[k][j]);
       }
-      for (int j = 0; j < 5; ++j) Store(sums[j], of_g[j] + lane);
+    }
+    for (int k = 0; k < kLengths; ++k) {
+      for (int j = 0; j < 5; ++j) Store(sums[k][j], of_g[k][j] + lane);
     }
   }
 }
@@ -176,8 +180,10 @@ HWY_INLINE void AddRowSums(const RowSums& row_sums, double (&smoothed)[kLengths]
 void SumPairs(const CorrelatedBlock* points, int num_blocks, int num_repeated, CorrelatedPairSums* sums) {
   WholeSums whole;
   Tile tile;
+  RowSums of_rows, of_excess;
   for (int rows = 0; rows < num_blocks; ++rows) {
-    RowSums of_rows, of_excess;
+    of_rows = {};
+    if (num_repeated > 0) of_excess = {};
     for (int first = 0; first <= rows; first += kTileBlocks) {
       const int last = std::min(first + kTileBlocks, rows + 1), last_repeated = std::min(last, num_repeated);
       for (int lane = 0; lane < kBlockSize; lane += kLanes) {

@@ -60,6 +60,9 @@ Vector5d MoveWithout(std::span<const size_t> group, const std::vector<Vector5d>&
     score += residuals[i] * rows[i];
     information += rows[i] * rows[i].transpose();
   }
+  // No eigenvalue exceeds the trace.
+  if (information.trace() < 1.0 - kLeastKept)
+    return Matrix5d(Matrix5d::Identity() - information).llt().solve(score);
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(information);
   const Vector5d kept = (1.0 - eigen.eigenvalues().array()).max(kLeastKept);
   return eigen.eigenvectors() * (eigen.eigenvectors().transpose() * score).cwiseQuotient(kept);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/calibrated/calibrated_options.h"
 #include "estimator/ransac_options.h"
 #include "tests/benchmarks/benchmark_trial.h"
 
@@ -27,8 +28,8 @@ BenchmarkCase EstimatorCase(const std::string& name, const std::string& estimato
                             const RansacOptions& options);
 
 // rcme_calibrated by its own stopping rule.
-BenchmarkCase CalibratedCase(const std::string& name);
-// The same, with half the matches wrong too, and its stages.
+BenchmarkCase CalibratedCase(const std::string& name, const CalibratedOptions& options = {});
+// The same, with half the matches wrong and with the robust covariance too, and its stages.
 std::vector<BenchmarkCase> CalibratedCases();
 
 // PoseLib's estimator where the library is installed, and nothing where it is not.

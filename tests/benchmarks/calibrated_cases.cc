@@ -75,10 +75,23 @@ void MixtureSums200(const BenchmarkTrial& trial) {
     DoNotOptimize(SumMixture(trial.blocks, mode.used, mode.pose, mode.mixture));
 }
 
+BenchmarkCase HalfWrongCase(const std::string& name, const CalibratedOptions& options) {
+  const std::shared_ptr<const MotionEstimator> made = MakeRcmeCalibrated(options);
+  return {"estimator", name, [made](const BenchmarkTrial& trial) {
+            static std::map<std::uint32_t, TrialData> known;  // by trial
+            const auto found = known.find(trial.name.trial);
+            const TrialData& data = found != known.end() ? found->second
+                                                         : known[trial.name.trial] = MakeBenchmarkData(
+                                                               kNumMatches, trial.name.trial, "0.5");
+            RandomStream rng = StreamFor(trial.name, StreamPurpose::kSampling);
+            DoNotOptimize(made->Estimate(data.problem, rng));
+          }};
+}
+
 }  // namespace
 
-BenchmarkCase CalibratedCase(const std::string& name) {
-  const std::shared_ptr<const MotionEstimator> made = MakeRcmeCalibrated({});
+BenchmarkCase CalibratedCase(const std::string& name, const CalibratedOptions& options) {
+  const std::shared_ptr<const MotionEstimator> made = MakeRcmeCalibrated(options);
   return {"estimator", name, [made](const BenchmarkTrial& trial) {
             RandomStream rng = StreamFor(trial.name, StreamPurpose::kSampling);
             DoNotOptimize(made->Estimate(trial.data.problem, rng));
@@ -86,19 +99,13 @@ BenchmarkCase CalibratedCase(const std::string& name) {
 }
 
 std::vector<BenchmarkCase> CalibratedCases() {
-  const std::shared_ptr<const MotionEstimator> made = MakeRcmeCalibrated({});
-  const auto half_wrong = [made](const BenchmarkTrial& trial) {
-    static std::map<std::uint32_t, TrialData> known;  // by trial
-    const auto found = known.find(trial.name.trial);
-    const TrialData& data = found != known.end() ? found->second
-                                                 : known[trial.name.trial] = MakeBenchmarkData(
-                                                       kNumMatches, trial.name.trial, "0.5");
-    RandomStream rng = StreamFor(trial.name, StreamPurpose::kSampling);
-    DoNotOptimize(made->Estimate(data.problem, rng));
-  };
+  CalibratedOptions robust;
+  robust.covariance = CovarianceKind::kRobust;
   const std::string stage = "stage";
   return {CalibratedCase("rcme_calibrated"),
-          {"estimator", "rcme_calibrated_half_wrong", half_wrong},
+          CalibratedCase("rcme_calibrated_robust", robust),
+          HalfWrongCase("rcme_calibrated_half_wrong", {}),
+          HalfWrongCase("rcme_calibrated_half_wrong_robust", robust),
           {stage, "calibrated_search", Search},
           {stage, "calibrated_modes", Modes},
           {stage, "calibrated_explanations", Explanations},

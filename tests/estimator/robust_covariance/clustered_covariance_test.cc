@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
+#include "stats/random.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -77,6 +79,41 @@ TEST(KeyPointGroups, OfNeighbouringCellsAreThoseWithinTheRadius) {
   EXPECT_EQ(KeyPointGroups({at(0.0, 0.1), at(50.0, 1.15)}, 1.0), (std::vector<int>{0, 1}));
   EXPECT_EQ(KeyPointGroups({at(0.0, 0.1), at(50.0, 1.05)}, 1.0), (std::vector<int>{0, 0}));
   EXPECT_EQ(KeyPointGroups({at(0.0, 0.1), at(50.0, 1.05)}, 0.5), (std::vector<int>{0, 1}));
+}
+
+// Sets of points by labels that are written anew wherever two points are within the radius.
+std::vector<int> GroupByHand(const std::vector<Correspondence>& matches, double radius_px) {
+  std::vector<int> label = Separate(matches.size());
+  for (size_t i = 0; i < matches.size(); ++i) {
+    for (size_t k = 0; k < i; ++k) {
+      if ((matches[i].x1_px - matches[k].x1_px).norm() > radius_px &&
+          (matches[i].x2_px - matches[k].x2_px).norm() > radius_px)
+        continue;
+      const int from = std::max(label[i], label[k]), to = std::min(label[i], label[k]);
+      std::ranges::replace(label, from, to);
+    }
+  }
+  std::vector<int> numbers, firsts;
+  for (const int first : label) {
+    const auto found = std::ranges::find(firsts, first);
+    numbers.push_back(static_cast<int>(found - firsts.begin()));
+    if (found == firsts.end()) firsts.push_back(first);
+  }
+  return numbers;
+}
+
+// Sparse and dense images, on both sides of zero.
+TEST(KeyPointGroups, AreThoseOfAllPairs) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 75});
+    const double width_px = 6.0 + 2.0 * trial, radius_px = rng.Uniform(0.3, 1.5);
+    std::vector<Correspondence> matches(100);
+    for (Correspondence& match : matches) {
+      for (double* x : {&match.x1_px.x(), &match.x1_px.y(), &match.x2_px.x(), &match.x2_px.y()})
+        *x = width_px * (rng.Uniform() - 0.5);
+    }
+    EXPECT_EQ(KeyPointGroups(matches, radius_px), GroupByHand(matches, radius_px)) << trial;
+  }
 }
 
 }  // namespace
