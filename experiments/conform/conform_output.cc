@@ -160,10 +160,6 @@ Table MakeProbabilityTable(const ConformReport& report) {
   return MakeTable(columns, kinds);
 }
 
-Table MakeConformStrataTable(const ConformReport& report) {
-  return MakeStrataTable("region", {"size_deg"}, MeasureConformStrata(report));
-}
-
 std::string Counted(std::int64_t n, const std::string& one, const std::string& many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);
 }
@@ -289,8 +285,8 @@ std::string ConformAsText(const ConformReport& report, bool by_strata) {
         "much.");
   if (report.shift) text += FormatParagraph(DescribeShift(*report.shift, rule));
   if (by_strata)
-    text +=
-        "\n" + RenderText(MakeConformStrataTable(report)) + "\n" + DescribeStrata(StrataIntervals::kClusters);
+    text += "\n" + StrataAsText({"size_deg"}, MeasureConformStrata(report)) +
+            DescribeStrata(StrataIntervals::kClusters);
   return text;
 }
 
@@ -317,7 +313,10 @@ std::string ConformAsJson(const ConformReport& report, bool by_strata) {
                      {"feature", shift.feature},
                      {"strange_share", shift.strange_share}};
   }
-  if (by_strata) json["by_strata"] = RenderJson(WithIntervalColumns(MakeConformStrataTable(report)));
+  if (by_strata) {
+    const Table strata = MakeStrataTable("region", {"size_deg"}, MeasureConformStrata(report));
+    json["by_strata"] = RenderJson(WithIntervalColumns(strata));
+  }
   return JsonText(kConformReportFormat, json);
 }
 

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
@@ -46,12 +48,26 @@ Table MakeStrataTable(const std::string& label_column, const std::vector<std::st
   return MakeTable(columns, strata);
 }
 
+std::string StrataAsText(const std::vector<std::string>& sharpness_names,
+                         const std::vector<CoverageStratum>& strata) {
+  std::string text;
+  for (auto first = strata.begin(); first != strata.end();) {
+    const auto last =
+        std::find_if(first, strata.end(), [&](const CoverageStratum& s) { return s.label != first->label; });
+    Table table = MakeStrataTable("", sharpness_names, {first, last});
+    table.columns.erase(table.columns.begin());
+    for (std::vector<Value>& row : table.rows) row.erase(row.begin());
+    text += first->label + "\n\n" + RenderText(table) + "\n";
+    first = last;
+  }
+  return text;
+}
+
 std::string DescribeStrata(StrataIntervals intervals) {
   return FormatParagraph(fmt::format(
       "Quarters of the answers by what is visible at run time, the least values first; equal values are in "
-      "one quarter. coverage: truth within the region, with its 95 % interval ({}); each holds by itself, not "
-      "all together. covers: the whole interval is within 95 +- 1 %. Behind it medians: how sharp the regions "
-      "are there.",
+      "one quarter. coverage: truth within the region, with its 95 % interval ({}), each by itself. covers: "
+      "the whole interval is within 95 +- 1 %. Beside it medians: how sharp the regions are there.",
       NameIntervals(intervals)));
 }
 
@@ -59,7 +75,7 @@ CommandResult MakeStrataResult(const std::string& study, const CoverageStrata& s
   const Table table = MakeStrataTable("estimator", strata.sharpness_names, strata.rows);
   const std::string text =
       FormatParagraph(fmt::format("Study {}: coverage by strata that are visible at run time", study)) +
-      "\n" + RenderText(table) + "\n" + DescribeStrata(strata.intervals);
+      "\n" + StrataAsText(strata.sharpness_names, strata.rows) + DescribeStrata(strata.intervals);
   return MakeResult(text, kStrataFormat,
                     {{"study", study}, {"intervals", std::string(NameIntervals(strata.intervals))}},
                     WithIntervalColumns(table));

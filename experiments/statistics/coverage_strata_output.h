@@ -13,6 +13,11 @@ namespace rcme {
 Table MakeStrataTable(const std::string& label_column, const std::vector<std::string>& sharpness_names,
                       const std::vector<CoverageStratum>& strata);
 
+// For people: a table for each label, below its name, so that a coverage and its sharpness stand side by
+// side.
+std::string StrataAsText(const std::vector<std::string>& sharpness_names,
+                         const std::vector<CoverageStratum>& strata);
+
 // What the columns are and how the intervals are made.
 std::string DescribeStrata(StrataIntervals intervals);
 
