@@ -61,8 +61,12 @@ std::string FaultState(const CameraCorrection& correction, const CalibrationRepo
   const auto found = std::ranges::find(report.faults, kCameraFaults[correction.fault], &FaultReport::fault);
   const bool is_named = found != report.faults.end() && IsFault(found->verdict);
   std::string state = is_named ? "named" : "not named";
-  if (correction.removed != 0.0) state += fmt::format(": {:.3g} is removed", correction.removed);
-  if (correction.uncertainty > 0.0) state += fmt::format(", +-{:.2g} is left", correction.uncertainty);
+  const CameraFaultText& text = FindFaultText(kCameraFaults[correction.fault]);
+  const std::string unit = *text.unit ? std::string(" ") + text.unit : "";
+  if (correction.removed != 0.0)
+    state += fmt::format(": {:.3g}{} is removed", text.per_unit * correction.removed, unit);
+  if (correction.uncertainty > 0.0)
+    state += fmt::format(", +-{:.2g}{} is left", text.per_unit * correction.uncertainty, unit);
   return state;
 }
 

@@ -327,8 +327,8 @@ TEST(WidenCovariance, ExpectsAFieldThatIsNotSeen) {
   };
   CameraNoise unseen, found;
   unseen.sigma_px = found.sigma_px = {problem.sigma_px, 0.01};
-  unseen.unseen_px = found.displacement_px.value = 0.2 * problem.sigma_px;
-  unseen.unseen_reach_px = found.reach_px = 800.0;
+  unseen.unseen_px = found.displacement_px.value = 0.7 * problem.sigma_px;
+  unseen.unseen_reach_px = found.reach_px = 150.0;
   EXPECT_EQ(widen(unseen), widen(found));
   EXPECT_GT(widen(unseen).trace(), 1.1 * given.pose_cov.trace());
   EXPECT_EQ(unseen.DisplacementShare(), 0.0);  // not drawn
