@@ -87,7 +87,7 @@ KeyPoints SelectKeyPoints(const MatchScores& scores, std::span<const int> groups
   return points;
 }
 
-// Sums over pairs of different key points.
+// Sums over pairs of different key points: nearly all of the time (kernels/correlated_pairs.h).
 struct PairSums {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();   // of c_k c_l
   Eigen::Matrix3d weighted = Eigen::Matrix3d::Zero();  // over both numbers of matches

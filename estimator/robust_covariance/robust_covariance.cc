@@ -20,8 +20,8 @@ constexpr double kLeastEffect =
     1.25;  // of blocks; where there is none, the sandwich of blocks is 1.13 too large
 constexpr int kMostRefits = 10;
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
-constexpr double kLeastPivot = 1e-4;                    // of an information's root, of the greatest
-constexpr size_t kLeastFitted = 6;                      // five matches determine a motion exactly
+constexpr double kLeastPivot = 1e-4;  // of the triangle of an information, over the greatest
+constexpr size_t kLeastFitted = 6;    // five matches determine a motion exactly
 
 std::vector<Correspondence> SelectMatches(const MotionProblem& problem, std::span<const int> indices) {
   std::vector<Correspondence> matches;
@@ -32,31 +32,31 @@ std::vector<Correspondence> SelectMatches(const MotionProblem& problem, std::spa
 // The matches of a problem, and the same with the noise of their own residuals.
 class AgreeingSearch {
  public:
-  explicit AgreeingSearch(const MotionProblem& problem) : with_own_noise_(problem), matches_(problem) {}
+  explicit AgreeingSearch(const MotionProblem& problem)
+      : assumed_sigma_px_(problem.sigma_px), with_own_noise_(problem), matches_(problem) {}
 
   // The matches that agree with a motion that was fitted to `fitted`; nothing where these determine none.
-  std::vector<int> FindAgreeing(const RelativePose& pose, const std::vector<int>& fitted,
-                                double assumed_sigma_px);
+  std::vector<int> FindAgreeing(const RelativePose& pose, const std::vector<int>& fitted);
   RefinedMotion Refine(const std::vector<int>& fitted, const RelativePose& start) const {
     return RefineBySampson(matches_, MakeMask(fitted, matches_), start, Loss::kSquared);
   }
 
  private:
-  double EstimateSigma(const std::vector<int>& fitted, const RelativePose& pose, double assumed_sigma_px);
+  double EstimateSigma(const std::vector<int>& fitted, const RelativePose& pose);
 
+  double assumed_sigma_px_;
   MotionProblem with_own_noise_;
   MatchBlocks matches_;
   MatchTermLists terms_;
 };
 
 // From the median of the residuals' sizes, px.
-double AgreeingSearch::EstimateSigma(const std::vector<int>& fitted, const RelativePose& pose,
-                                     double assumed_sigma_px) {
+double AgreeingSearch::EstimateSigma(const std::vector<int>& fitted, const RelativePose& pose) {
   EvaluateTerms(matches_, pose, &terms_);
   std::vector<double> sizes;
   sizes.reserve(fitted.size());
   for (const int i : fitted) sizes.push_back(std::abs(terms_.residual[static_cast<size_t>(i)]));
-  return assumed_sigma_px * ValueOfRank(sizes.size() / 2, &sizes) / kNormalQuartile;
+  return assumed_sigma_px_ * ValueOfRank(sizes.size() / 2, &sizes) / kNormalQuartile;
 }
 
 // First-order covariance of a motion that was fitted to matches that are taken to be all alike. By the normal
@@ -75,9 +75,8 @@ std::optional<Matrix5d> ComputeFitCovariance(const MotionProblem& problem, const
                                     problem.sigma_px);
 }
 
-std::vector<int> AgreeingSearch::FindAgreeing(const RelativePose& pose, const std::vector<int>& fitted,
-                                              double assumed_sigma_px) {
-  with_own_noise_.sigma_px = EstimateSigma(fitted, pose, assumed_sigma_px);
+std::vector<int> AgreeingSearch::FindAgreeing(const RelativePose& pose, const std::vector<int>& fitted) {
+  with_own_noise_.sigma_px = EstimateSigma(fitted, pose);
   const MatchBlocks matches(with_own_noise_);
   const std::optional<Matrix5d> pose_cov = ComputeFitCovariance(with_own_noise_, matches, pose, fitted);
   if (!pose_cov) return {};
@@ -119,7 +118,7 @@ AgreeingFit FitAgreeing(const MotionProblem& problem, const RelativePose& pose,
   AgreeingFit fit = as_given;
   AgreeingSearch search(problem);
   for (int refit = 0; refit < kMostRefits; ++refit) {
-    std::vector<int> agreeing = search.FindAgreeing(fit.cam2_from_cam1, fit.fitted, problem.sigma_px);
+    std::vector<int> agreeing = search.FindAgreeing(fit.cam2_from_cam1, fit.fitted);
     if (agreeing.size() < kLeastFitted) return as_given;
     if (refit > 0 && agreeing == fit.fitted) break;
     const RefinedMotion refined = search.Refine(agreeing, fit.cam2_from_cam1);
