@@ -62,7 +62,7 @@ void WarnOfRefusals(const Summary& summary) {
   }
 }
 
-std::string RenderSummary(Summary summary, const Arguments& arguments) {
+std::string RenderSummary(const Summary& summary, const Arguments& arguments) {
   const std::vector<std::string>& quantities = arguments.quantities;
   if (arguments.format == "latex") {
     return SummaryAsLatex(summary, quantities.empty() ? DefaultLatexQuantities() : quantities,
@@ -72,10 +72,17 @@ std::string RenderSummary(Summary summary, const Arguments& arguments) {
     return RenderMarkdown(
         MakeQuantityTable(summary, quantities.empty() ? DefaultLatexQuantities() : quantities));
   }
-  if (arguments.format == "table")
-    return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
-  if (!quantities.empty()) KeepQuantities(quantities, &summary);
-  return arguments.format == "csv" ? SummaryAsCsv(summary) : SummaryAsJson(summary);
+  return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
+}
+
+void WriteSummary(Summary summary, const Arguments& arguments) {
+  const bool is_csv = arguments.format == "csv";
+  if (!is_csv && arguments.format != "json")
+    return PrintOrWrite(arguments.out, RenderSummary(summary, arguments));
+  if (!arguments.quantities.empty()) KeepQuantities(arguments.quantities, &summary);
+  FileInPieces file(arguments.out);
+  (is_csv ? WriteSummaryCsv : WriteSummaryJson)(summary, [&](const std::string& text) { file.Write(text); });
+  file.Finish();
 }
 
 }  // namespace
@@ -147,7 +154,7 @@ Examples:
       Summary summary = SummarizeCounts(counts, arguments->with_times, pooling);
       summary.preregistration = DescribePreregistered(counts.run, arguments->run);
       WarnOfRefusals(summary);
-      return PrintOrWrite(arguments->out, RenderSummary(std::move(summary), *arguments));
+      return WriteSummary(std::move(summary), *arguments);
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
@@ -156,9 +163,9 @@ Examples:
                                                                GroupByFifth(store, arguments->fifths_of));
     summary.preregistration = DecidePreregistered(store, arguments->run);
     WarnOfRefusals(summary);
-    PrintOrWrite(arguments->out, arguments->format == "table" && arguments->quantities.empty()
-                                     ? Tables(store, summary)
-                                     : RenderSummary(std::move(summary), *arguments));
+    if (arguments->format == "table" && arguments->quantities.empty())
+      return PrintOrWrite(arguments->out, Tables(store, summary));
+    WriteSummary(std::move(summary), *arguments);
   });
 }
 

@@ -89,8 +89,8 @@ TEST_F(SummaryOutputTest, JsonHoldsTheSameRows) {
     const nlohmann::json& entry = json["rows"][i];
     EXPECT_EQ(entry["condition"], row.condition);
     EXPECT_EQ(entry["levels"]["outlier_ratio"], summary.levels[row.condition][0]);
-    EXPECT_EQ(entry["estimator"], row.estimator);
-    EXPECT_EQ(entry["quantity"], row.quantity);
+    EXPECT_EQ(entry["estimator"], row.estimator.text());
+    EXPECT_EQ(entry["quantity"], row.quantity.text());
     EXPECT_EQ(entry["n"], row.n);
     EXPECT_EQ(entry["value"].is_null(), row.n == 0);
     if (row.n > 0) {
