@@ -71,18 +71,26 @@ void WarnOfRefusals(const Summary& summary) {
   }
 }
 
-std::string RenderSummary(Summary summary, const Arguments& arguments) {
+std::string RenderSummary(const Summary& summary, const std::vector<std::string>& quantities,
+                          const Arguments& arguments) {
+  if (arguments.format == "latex") return SummaryAsLatex(summary, quantities, ParseLabels(arguments.labels));
+  if (arguments.format == "markdown") return RenderMarkdown(MakeQuantityTable(summary, quantities));
+  return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
+}
+
+void WriteSummary(Summary summary, const Arguments& arguments) {
   CheckAreQuantities(summary, arguments.quantities);
   const bool is_of_paper = arguments.format == "latex" || arguments.format == "markdown";
   const bool are_usual = is_of_paper && arguments.quantities.empty();
   const std::vector<std::string> quantities =
       AddSharpness(summary, are_usual ? DefaultLatexQuantities() : arguments.quantities);
-  if (arguments.format == "latex") return SummaryAsLatex(summary, quantities, ParseLabels(arguments.labels));
-  if (arguments.format == "markdown") return RenderMarkdown(MakeQuantityTable(summary, quantities));
-  if (arguments.format == "table")
-    return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
+  const bool is_csv = arguments.format == "csv";
+  if (!is_csv && arguments.format != "json")
+    return PrintOrWrite(arguments.out, RenderSummary(summary, quantities, arguments));
   if (!quantities.empty()) KeepQuantities(quantities, &summary);
-  return arguments.format == "csv" ? SummaryAsCsv(summary) : SummaryAsJson(summary);
+  FileInPieces file(arguments.out);
+  (is_csv ? WriteSummaryCsv : WriteSummaryJson)(summary, [&](const std::string& text) { file.Write(text); });
+  file.Finish();
 }
 
 }  // namespace
@@ -168,7 +176,7 @@ Examples:
       Summary summary = SummarizeCounts(counts, arguments->with_times, pooling);
       summary.preregistration = DescribePreregistered(counts.run, arguments->run);
       WarnOfRefusals(summary);
-      return PrintOrWrite(arguments->out, RenderSummary(std::move(summary), *arguments));
+      return WriteSummary(std::move(summary), *arguments);
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
@@ -177,9 +185,9 @@ Examples:
                                                                GroupByFifth(store, arguments->fifths_of));
     summary.preregistration = DecidePreregistered(store, arguments->run);
     WarnOfRefusals(summary);
-    PrintOrWrite(arguments->out, arguments->format == "table" && arguments->quantities.empty()
-                                     ? Tables(store, summary)
-                                     : RenderSummary(std::move(summary), *arguments));
+    if (arguments->format == "table" && arguments->quantities.empty())
+      return PrintOrWrite(arguments->out, Tables(store, summary));
+    WriteSummary(std::move(summary), *arguments);
   });
 }
 

@@ -124,7 +124,7 @@ TEST_F(TrialTable, TheWordsCountAsTheSummaryDoes) {
     if (row.quantity != "success" && row.quantity != "failure" && row.quantity != "no_candidate") continue;
     EXPECT_EQ(count[fmt::format("{}{}{}", row.condition, row.estimator, row.quantity)],
               std::llround(row.value * static_cast<double>(row.n)))
-        << row.quantity;
+        << row.quantity.text();
   }
 }
 
