@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple, Optional
 
@@ -12,6 +13,7 @@ from rcme._function import Functions, named_function
 
 
 MAX_PAIRS = 1_000_000
+OPTIONS_OF_CALLS = ("estimator", "estimator_file", "allow_process", "sigma_px", "noise_scale", "integrity_risk", "seed")
 
 
 class Pose(NamedTuple):
@@ -107,7 +109,7 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
                                 chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"], pairs,
                                 chosen["integrity_risk"], known, functions)
     except ValueError as error:
-        raise ValueError(f"options: {error}") from None
+        raise ValueError(_in_words(error, chosen["options"])) from None
     return _pose_and_info(answer, len(x1))
 
 
@@ -155,7 +157,7 @@ def estimate_relative_poses(pairs: Iterable[tuple[Any, ...]], options: Optional[
                                      chosen["options"], chosen["seed"], chosen["allow_process"], limits, threads,
                                      functions)
     except ValueError as error:
-        raise ValueError(f"options: {error}") from None
+        raise ValueError(_in_words(error, chosen["options"])) from None
     inliers = [np.zeros(len(problem[0]), dtype=bool) for problem in problems]
     for mask, numbers in zip(inliers, answer["inliers"]):
         mask[numbers] = True
@@ -181,6 +183,13 @@ def intrinsics(camera: Any) -> np.ndarray:
         return K / K[2, 2]
     fx, fy, cx, cy = (float(camera["params"][place]) for place in _check.CAMERA_MODELS[camera["model"]][1])
     return np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+
+
+def _in_words(error: ValueError, options: list[tuple[str, str]]) -> str:
+    """What is wrong with the options; one that no estimator has may be misspelt of the call itself."""
+    text = str(error)
+    near = [match for key, _ in options if key in text for match in difflib.get_close_matches(key, OPTIONS_OF_CALLS, 1, 0.7)]
+    return f"options: {text}" + (f"; did you mean {near[0]}?" if near else "")
 
 
 def _functions(estimators: Any) -> Functions:
