@@ -150,8 +150,8 @@ def _refuse_unknown(what: str, given: Mapping[str, Any], allowed: tuple[str, ...
     unknown = [key for key in given if key not in allowed and key not in passed_on]
     if unknown:
         near = difflib.get_close_matches(str(unknown[0]), allowed, 1)
-        raise Unreadable(f"{what}[{str(unknown[0])[:40]!r}] is not known{f'; did you mean {near[0]!r}?' if near else ''}; expected keys among: "
-                         f"{', '.join(allowed)}")
+        hint = f" (did you mean {near[0]!r}?)" if near else ""
+        raise Unreadable(f"{what}[{str(unknown[0])[:40]!r}] is not known{hint}; expected keys among: {', '.join(allowed)}")
 
 
 def _split(result: Any) -> tuple[Any, Mapping[str, Any]]:

@@ -120,7 +120,7 @@ class Run(unittest.TestCase):
         by_label = {text.split("'")[1]: text for text in said}
         self.assertIn(f"raised an exception in 4 of 4 calls (library_error); first: KeyError: 'of the function' in run_test.py:{line}",
                       by_label["raises"])
-        self.assertIn("info['inlier_mask'] is not known; expected keys among: inliers", by_label["key"])
+        self.assertIn("info['inlier_mask'] is not known (did you mean 'inliers'?); expected keys among: inliers, pose_cov", by_label["key"])
         self.assertIn("convert with .astype(bool)", by_label["mask"])
 
     def test_a_function_of_other_parameters_is_refused(self):
