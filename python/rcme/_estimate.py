@@ -84,8 +84,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         pose_cov (6, 6) of [w, dt], or None: the true motion is Exp([w]x) R, t + dt, with w in rad and dt without unit (|t| = 1),
         both along the axes of camera 2; rank 5 (nothing along t);
         p_failure, the probability that the motion is wrong by more than the estimator's bounds (its options max_rotation_error_deg
-        and max_direction_error_deg, 3 and 15 degrees unless given; None if it states none); p_failure_domain, "verified" or "extrapolated": whether the matches are like those that it was
-        verified on ("not_stated"); p_failure_for_bounds, for each of `bounds` {rotation_deg, direction_deg, p_failure, domain}
+        and max_direction_error_deg, 3 and 15 degrees unless given; None if it states none); p_failure_domain, "verified" or
+        "extrapolated": whether the matches are like those that it was verified on ("not_stated"); p_failure_for_bounds, for each of `bounds` {rotation_deg, direction_deg, p_failure, domain}
         (empty where there is no motion); protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and
         that of t exceed with a probability of at most integrity_risk each, by pose_cov and p_failure (pi: every angle; None
         without a motion); sigma and sigma_sd (px), the noise level that it found (None likewise);

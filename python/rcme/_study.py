@@ -82,7 +82,8 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
           left out; or None where it finds no motion. Without pose_cov it is given the first-order covariance of its inliers;
           without inliers, those are the matches that agree with its motion. Nothing that it does ends the run: an exception
           is the status library_error, an answer of a wrong type or shape or with an unknown key unreadable_answer, a matrix that
-          is no rotation invalid_motion; the summary counts them, and a RuntimeWarning at the end says what the first one was. It should depend on its arguments alone: the seed is the trial's.
+          is no rotation invalid_motion; the summary counts them, and a RuntimeWarning at the end says what the first one was. It
+          should depend on its arguments alone: the seed is the trial's.
         - a dict {"name": ..., "options": {...}} of a registered estimator, or the path of an estimator file.
     out : path of the result file; a run that was cut off is resumed, a file of another study (or of a function whose source
         has changed) is refused. Default: a file that is gone when the interpreter ends.

@@ -177,7 +177,8 @@ class WrongInputs(unittest.TestCase):
     def test_what_to_do_is_said(self):
         with self.assertRaisesRegex(ValueError, "camera: None is not allowed"):
             rcme.intrinsics(None)
-        for words, changed in ((r"convert with .reshape\(-1, 2\)", dict(x1=X[:, None])), ("did you mean 'sigma_px'", dict(options={"sigma": 2})),
+        for words, changed in ((r"convert with .reshape\(-1, 2\)", dict(x1=X[:, None])),
+                               ("did you mean 'sigma_px'", dict(options={"sigma": 2})),
                                ("camera1: None is not allowed; expected a dict", dict(camera1=None)),
                                ("gravity_sd_deg is missing", dict(prior={"gravity1": [0, 1, 0], "gravity2": [0, 1, 0]}))):
             with self.assertRaisesRegex(ValueError, words):
