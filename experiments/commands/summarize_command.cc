@@ -110,9 +110,9 @@ A refusal or an invalid answer counts as infinitely wrong. Quantities called _an
 leave out refusals. A direction opposite to the true one is wrong.
 
 --raw writes a row per trial and estimator: the study, the condition, the level of each
-factor, the outcome (success, failure, not_scored, or the status of a refused or invalid
-answer), every number of the result file, and the severity of the problem. Its memory
-does not grow with the number of trials.
+factor, the outcome (success, failure, refusal, not_scored), the status (ok, or the reason),
+every number of the result file, and the severity of the problem. Its memory does not grow
+with the number of trials.
 
 Examples:
   rcme summarize run.sqlite
