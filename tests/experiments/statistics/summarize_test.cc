@@ -571,7 +571,7 @@ TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
       EXPECT_LT(row.interval.lower, 0.1875);
       EXPECT_EQ(row.interval.upper, 1.0);  // four trials bound nothing
     } else if (row.kind == SummaryRow::Kind::kArea) {
-      ADD_FAILURE() << row.quantity << " of weighted trials";
+      ADD_FAILURE() << row.quantity.text() << " of weighted trials";
     } else if (row.kind != SummaryRow::Kind::kRate || row.quantity == "kappa_flag") {
       EXPECT_EQ(row.n, 0) << row.quantity.text();  // a mean, or of a part of the trials
     }

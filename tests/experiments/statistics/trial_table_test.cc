@@ -132,7 +132,7 @@ TEST_F(TrialTable, TheWordsCountAsTheSummaryDoes) {
   }
   for (const SummaryRow& row : Summarize(ResultStore::OpenForReading(path_), false).rows) {
     if (row.quantity != "success" && row.quantity != "failure" && row.quantity != "no_candidate") continue;
-    EXPECT_EQ(count[fmt::format("{}{}{}", row.condition, row.estimator, row.quantity)],
+    EXPECT_EQ(count[fmt::format("{}{}{}", row.condition, row.estimator.text(), row.quantity.text())],
               std::llround(row.value * static_cast<double>(row.n)))
         << row.quantity.text();
   }
