@@ -24,6 +24,7 @@
 #include "peers/outside_answer.h"
 #include "python/function_estimator.h"
 #include "python/stoppable.h"
+#include "python/study_source.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -120,10 +121,16 @@ struct ChosenEstimator {
   std::unique_ptr<MotionEstimator> estimator;
 };
 
-// `file`: empty, or a path in place of the name.
+// `file`: empty, or a path in place of the name. `functions`: what a name, or an option of the estimator, may
+// name beside the registered ones.
 ChosenEstimator MakeChosen(const std::string& name, const std::string& file, const Settings& options,
-                           bool allow_process) {
-  std::vector<EstimatorSpec> specs = {file.empty() ? DefaultEstimator(name) : LoadEstimatorFile(file)};
+                           bool allow_process, const Functions& functions) {
+  const FunctionsOfCall of_call(MakeFunctions(functions));
+  const auto function = functions.find(name);
+  std::vector<EstimatorSpec> specs = {!file.empty() ? LoadEstimatorFile(file)
+                                      : function != functions.end()
+                                          ? SpecOfFunction(name, function->second.second)
+                                          : DefaultEstimator(name)};
   SetOwnOptions(&specs.front(), options);
   if (allow_process) AllowCommands(&specs);
   return {specs.front(), Make(specs.front())};
@@ -172,8 +179,8 @@ py::dict EstimatePair(const Array& x1, const Array& x2, const Lens& camera1, con
                       double sigma_px, std::vector<double> noise_scale, const std::string& name,
                       const std::string& file, const Settings& options, std::uint64_t seed,
                       bool allow_process, const AnglePairs& bounds, double integrity_risk,
-                      const std::optional<MotionPrior>& prior) {
-  const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
+                      const std::optional<MotionPrior>& prior, const Functions& functions) {
+  const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process, functions);
   MotionProblem problem = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
   problem.prior = prior;
   const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
@@ -258,8 +265,8 @@ std::vector<EstimateForBounds> AnswerOnThreads(const MotionEstimator& estimator,
 
 py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, const std::string& name,
                       const std::string& file, const Settings& options, std::uint64_t seed,
-                      bool allow_process, const AnglePairs& bounds, int threads) {
-  const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process);
+                      bool allow_process, const AnglePairs& bounds, int threads, const Functions& functions) {
+  const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process, functions);
   const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
   AnswerArrays arrays(pairs.size(), bounds.size());
   constexpr size_t kNumTogether = 2'000;  // of whose answers everything is held

@@ -10,6 +10,7 @@
 #include "experiments/statistics/forecast_output.h"
 #include "experiments/statistics/summarize_counts.h"
 #include "experiments/statistics/summary_output.h"
+#include "experiments/statistics/trial_table.h"
 #include "parameters/input_error.h"
 #include "python/stoppable.h"
 #include "python/study_source.h"
@@ -38,6 +39,15 @@ std::string SummaryCsv(const std::string& run, bool with_times, bool is_pooled) 
                                        : Summarize(ResultStore::OpenForReading(run), with_times, pooling));
 }
 
+std::string TrialsCsv(const std::string& run, bool with_times) {
+  const py::gil_scoped_release unlocked;
+  if (KeepsCounts(run)) throw InputError(run + ": it keeps counts, no trials (rcme run --keep all)");
+  std::string csv;
+  WriteTrialTable(ResultStore::OpenForReading(run), with_times,
+                  [&](const std::string& rows) { csv += rows; });
+  return csv;
+}
+
 std::string ComparisonCsv(const std::string& run, const std::string& against,
                           const std::vector<std::string>& of, bool is_anytime_valid, bool is_pooled) {
   const py::gil_scoped_release unlocked;
@@ -62,6 +72,7 @@ std::string ReliabilityJson(const std::string& run, const std::string& by) {
 void BindRuns(py::module_& module) {
   module.def("run", &Run);
   module.def("summary_csv", &SummaryCsv);
+  module.def("trials_csv", &TrialsCsv);
   module.def("comparison_csv", &ComparisonCsv);
   module.def("reliability_json", &ReliabilityJson);
 }

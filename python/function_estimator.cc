@@ -28,10 +28,35 @@ struct LetGo {
 };
 using SharedFunction = std::shared_ptr<py::function>;
 
+struct NamedFunction {
+  SharedFunction function;
+  std::string code;
+};
+using NamedFunctions = std::map<std::string, NamedFunction>;
+
 // Never destroyed: at the end of a program the interpreter may be gone before.
-std::map<std::string, SharedFunction>& RunningFunctions() {
-  static auto& functions = *new std::map<std::string, SharedFunction>();
+NamedFunctions& RunningFunctions() {
+  static auto& functions = *new NamedFunctions();
   return functions;
+}
+
+// Of FunctionsOfCall.
+NamedFunctions& FunctionsOfThread() {
+  thread_local NamedFunctions functions;
+  return functions;
+}
+
+void AddTo(NamedFunctions* named, const std::map<std::string, PythonFunction>& functions) {
+  for (const auto& [name, function] : functions)
+    (*named)[name] = {SharedFunction(new py::function(function.call), LetGo()), function.code};
+}
+
+// Null: nobody has given it.
+const NamedFunction* FindFunction(const std::string& name) {
+  for (const NamedFunctions* functions : {&FunctionsOfThread(), &RunningFunctions()}) {
+    if (const auto found = functions->find(name); found != functions->end()) return &found->second;
+  }
+  return nullptr;
 }
 
 template <int rows, int cols>
@@ -91,19 +116,23 @@ class FunctionEstimator : public MotionEstimator {
 class FunctionModel : public EstimatorModel {
  public:
   std::vector<Parameter> Parameters() override {
-    return {Parameter::Text("function", &function_, "the name of a function given to rcme.run",
+    return {Parameter::Text("function", &function_, "the name of a function given to the call",
                             "a function of Python"),
             Parameter::Text("code", &code_, "a hash", "of the function's source")};
   }
   std::unique_ptr<MotionEstimator> Make() const override {
-    const auto found = RunningFunctions().find(function_);
-    if (found == RunningFunctions().end()) {
-      throw InputError(
-          fmt::format("estimator python: function {} is not there; functions are given to rcme.run, "
-                      "estimators={{{}: ...}}",
-                      Quoted(function_), Quoted(function_)));
+    const NamedFunction* found = FindFunction(function_);
+    if (found == nullptr) {
+      throw InputError(fmt::format(
+          "estimator python: function {} is not there; give it to the call, estimators={{{}: ...}}",
+          Quoted(function_), Quoted(function_)));
     }
-    return std::make_unique<FunctionEstimator>(found->second);
+    if (code_ != kNone && code_ != found->code) {
+      throw InputError(
+          fmt::format("estimator python: function {} has changed since (its source has the hash {}, not {})",
+                      Quoted(function_), found->code, code_));
+    }
+    return std::make_unique<FunctionEstimator>(found->function);
   }
 
  private:
@@ -118,11 +147,16 @@ void AddPythonEstimator() {
 }
 
 FunctionsOfRun::FunctionsOfRun(const std::map<std::string, PythonFunction>& functions) {
-  for (const auto& [name, function] : functions)
-    RunningFunctions()[name] = SharedFunction(new py::function(function.call), LetGo());
+  AddTo(&RunningFunctions(), functions);
 }
 
 FunctionsOfRun::~FunctionsOfRun() { RunningFunctions().clear(); }
+
+FunctionsOfCall::FunctionsOfCall(const std::map<std::string, PythonFunction>& functions) {
+  AddTo(&FunctionsOfThread(), functions);
+}
+
+FunctionsOfCall::~FunctionsOfCall() { FunctionsOfThread().clear(); }
 
 EstimatorSpec SpecOfFunction(const std::string& name, const std::string& code) {
   EstimatorSpec spec{name, "python", {}, {}};

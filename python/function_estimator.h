@@ -35,6 +35,16 @@ class FunctionsOfRun {
   FunctionsOfRun& operator=(const FunctionsOfRun&) = delete;
 };
 
+// While one lives, this thread alone makes estimators of these functions, also in the midst of a run that has
+// others of the same names. Made and destroyed with the interpreter's lock held.
+class FunctionsOfCall {
+ public:
+  explicit FunctionsOfCall(const std::map<std::string, PythonFunction>& functions);
+  ~FunctionsOfCall();
+  FunctionsOfCall(const FunctionsOfCall&) = delete;
+  FunctionsOfCall& operator=(const FunctionsOfCall&) = delete;
+};
+
 // The estimator of a study that calls the function, labelled by its name.
 EstimatorSpec SpecOfFunction(const std::string& name, const std::string& code);
 

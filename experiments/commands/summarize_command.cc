@@ -71,18 +71,26 @@ void WarnOfRefusals(const Summary& summary) {
   }
 }
 
-std::string RenderSummary(Summary summary, const Arguments& arguments) {
+std::string RenderSummary(const Summary& summary, const std::vector<std::string>& quantities,
+                          const Arguments& arguments) {
+  if (arguments.format == "latex") return SummaryAsLatex(summary, quantities, ParseLabels(arguments.labels));
+  if (arguments.format == "markdown") return RenderMarkdown(MakeQuantityTable(summary, quantities));
+  return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
+}
+
+void WriteSummary(Summary summary, const Arguments& arguments) {
   CheckAreQuantities(summary, arguments.quantities);
   const bool is_of_paper = arguments.format == "latex" || arguments.format == "markdown";
   const bool are_usual = is_of_paper && arguments.quantities.empty();
   const std::vector<std::string> quantities =
       AddSharpness(summary, are_usual ? DefaultLatexQuantities() : arguments.quantities);
-  if (arguments.format == "latex") return SummaryAsLatex(summary, quantities, ParseLabels(arguments.labels));
-  if (arguments.format == "markdown") return RenderMarkdown(MakeQuantityTable(summary, quantities));
-  if (arguments.format == "table")
-    return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);
+  const bool is_csv = arguments.format == "csv";
+  if (!is_csv && arguments.format != "json")
+    return PrintOrWrite(arguments.out, RenderSummary(summary, quantities, arguments));
   if (!quantities.empty()) KeepQuantities(quantities, &summary);
-  return arguments.format == "csv" ? SummaryAsCsv(summary) : SummaryAsJson(summary);
+  FileInPieces file(arguments.out);
+  (is_csv ? WriteSummaryCsv : WriteSummaryJson)(summary, [&](const std::string& text) { file.Write(text); });
+  file.Finish();
 }
 
 }  // namespace
@@ -102,9 +110,9 @@ A refusal or an invalid answer counts as infinitely wrong. Quantities called _an
 leave out refusals. A direction opposite to the true one is wrong.
 
 --raw writes a row per trial and estimator: the study, the condition, the level of each
-factor, the outcome (success, failure, not_scored, or the status of a refused or invalid
-answer), every number of the result file, and the severity of the problem. Its memory
-does not grow with the number of trials.
+factor, the outcome (success, failure, refusal, not_scored), the status (ok, or the reason),
+every number of the result file, and the severity of the problem. Its memory does not grow
+with the number of trials.
 
 Examples:
   rcme summarize run.sqlite
@@ -168,7 +176,7 @@ Examples:
       Summary summary = SummarizeCounts(counts, arguments->with_times, pooling);
       summary.preregistration = DescribePreregistered(counts.run, arguments->run);
       WarnOfRefusals(summary);
-      return PrintOrWrite(arguments->out, RenderSummary(std::move(summary), *arguments));
+      return WriteSummary(std::move(summary), *arguments);
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
@@ -177,9 +185,9 @@ Examples:
                                                                GroupByFifth(store, arguments->fifths_of));
     summary.preregistration = DecidePreregistered(store, arguments->run);
     WarnOfRefusals(summary);
-    PrintOrWrite(arguments->out, arguments->format == "table" && arguments->quantities.empty()
-                                     ? Tables(store, summary)
-                                     : RenderSummary(std::move(summary), *arguments));
+    if (arguments->format == "table" && arguments->quantities.empty())
+      return PrintOrWrite(arguments->out, Tables(store, summary));
+    WriteSummary(std::move(summary), *arguments);
   });
 }
 

@@ -8,7 +8,7 @@ namespace rcme {
 
 void OutcomeWatch::Add(const TrialResult& result) {
   const std::lock_guard lock(mutex_);
-  refusals_.resize(result.records.size());
+  no_answers_.resize(result.records.size());
   if (!result.why_not_simulated.empty()) {
     ++num_not_simulated_;
     NotSimulatedTrials& of_condition = not_simulated_[result.problem.condition];
@@ -21,31 +21,35 @@ void OutcomeWatch::Add(const TrialResult& result) {
   if (!IsCounted(result.records.front())) return;
   ++num_simulated_;
   for (size_t e = 0; e < result.records.size(); ++e) {
-    if (HasRefused(result.records[e])) ++refusals_[e][result.records[e].status];
+    if (const MotionStatus status = result.records[e].status; status != MotionStatus::kOk)
+      ++no_answers_[e][status];
   }
 }
 
 void OutcomeWatch::Warn(const StudyPlan& plan) const {
   const std::lock_guard lock(mutex_);
-  WarnOfRefusals(plan);
+  WarnOfNoAnswers(plan);
   WarnOfNotSimulated(plan);
 }
 
-void OutcomeWatch::WarnOfRefusals(const StudyPlan& plan) const {
+void OutcomeWatch::WarnOfNoAnswers(const StudyPlan& plan) const {
   if (num_simulated_ == 0) return;
-  for (size_t e = 0; e < refusals_.size(); ++e) {
-    std::int64_t num_refused = 0;
+  for (size_t e = 0; e < no_answers_.size(); ++e) {
+    std::int64_t num_unanswered = 0;
+    bool is_invalid_somewhere = false;
     std::vector<std::string> counts;
-    for (const auto& [status, count] : refusals_[e]) {
-      num_refused += count;
+    for (const auto& [status, count] : no_answers_[e]) {
+      num_unanswered += count;
+      is_invalid_somewhere |=
+          status == MotionStatus::kInvalidMotion || status == MotionStatus::kInvalidCovariance;
       counts.push_back(fmt::format("{} {}", StatusName(status), count));
     }
-    if (num_refused < num_simulated_) continue;
+    if (num_unanswered < num_simulated_) continue;
     PrintMessage(
-        "warning: {} refused every one of the {} trials run now ({}); rcme replay FILE --condition 0 --trial "
-        "0 "
-        "shows why\n",
-        plan.study.estimators.at(e).label, num_simulated_, fmt::join(counts, ", "));
+        "warning: {} {} of the {} trials run now ({}); rcme replay FILE --condition 0 --trial 0 shows why\n",
+        plan.study.estimators.at(e).label,
+        is_invalid_somewhere ? "gave no valid answer in any" : "refused every one", num_simulated_,
+        fmt::join(counts, ", "));
   }
 }
 

@@ -51,9 +51,9 @@ std::int64_t HypothesisEvidence::CountConditions() const { return std::ranges::c
 
 void HypothesisEvidence::Add(std::uint32_t condition, const std::vector<TrialRecord>& records) {
   if (!has_[condition]) return;
-  const std::optional<double> first = quantity_.contribution(records[*estimator_], bounds_);
+  const std::optional<double> first = quantity_.Measure(records[*estimator_], bounds_);
   const std::optional<double> second =
-      is_paired_ ? quantity_.contribution(records[*against_], bounds_) : std::optional(0.0);
+      is_paired_ ? quantity_.Measure(records[*against_], bounds_) : std::optional(0.0);
   if (!first || !second) return;
   if (is_of_means_) return scene_.Add(*first - *second);
   const bool is_first = *first != 0.0, is_second = *second != 0.0;

@@ -30,23 +30,25 @@ void TakeRate(const std::vector<const QuantityCounts*>& draws, SummaryRow* row) 
   }
   const PopulationRate rate = MeasureRate(counts);
   row->interval = rate.interval;
-  row->of_these_conditions = rate.of_these_conditions;
-  row->effective_n = rate.effective_n;
+  row->of_population = PopulationPart{rate.of_these_conditions, rate.effective_n};
   if (!row->coverage_verdict) return;
-  row->coverage_verdict = JudgeCoverage(row->value, row->interval, row->n, row->n, true);
-  row->coverage_verdict->trials_to_decide = kNaN;  // more conditions, not more trials
+  CoverageVerdict verdict = JudgeCoverage(row->value, row->interval, row->n, row->n, true);
+  verdict.trials_to_decide = kNaN;  // more conditions, not more trials
+  row->coverage_verdict = verdict;
 }
 
 void TakeMean(const std::vector<Moments>& draws, SummaryRow* row) {
   const PopulationMean mean = MeasurePopulationMean(draws, ConditionWeights::kByTrials);
-  row->effective_n = mean.effective_n;
+  PopulationPart part{.effective_n = mean.effective_n};
   if (row->kind == SummaryRow::Kind::kMean) {
     row->standard_error = mean.standard_error;
+    row->of_population = part;
     return;
   }
   row->interval = {std::max(mean.interval.lower, 0.0), std::min(mean.interval.upper, 1.0)};
-  row->of_these_conditions = {std::max(mean.of_these_conditions.lower, 0.0),
+  part.of_these_conditions = {std::max(mean.of_these_conditions.lower, 0.0),
                               std::min(mean.of_these_conditions.upper, 1.0)};
+  row->of_population = part;
 }
 
 void TakeMedian(const std::vector<const QuantityCounts*>& draws, SummaryRow* row) {
@@ -54,8 +56,7 @@ void TakeMedian(const std::vector<const QuantityCounts*>& draws, SummaryRow* row
   for (const QuantityCounts* draw : draws) medians.push_back(&std::get<StreamMedian>(*draw));
   const PopulationMedian median = MeasurePopulationMedian(medians);
   row->interval = median.interval;
-  row->of_these_conditions = median.of_these_conditions;
-  row->effective_n = median.effective_n;
+  row->of_population = PopulationPart{median.of_these_conditions, median.effective_n};
 }
 
 // Of one estimator, or of the problems, and quantity: the counts of every draw.
@@ -70,7 +71,8 @@ std::vector<const QuantityCounts*> ListDrawCounts(const RunDescription& run,
   const bool is_of_problems = row.estimator == kSceneLabel;
   const size_t quantity = is_of_problems ? place(ProblemQuantities()) : place(TrialQuantities());
   const auto estimator = static_cast<size_t>(
-      std::ranges::find(run.estimators, row.estimator, &DescribedEstimator::label) - run.estimators.begin());
+      std::ranges::find(run.estimators, row.estimator.text(), &DescribedEstimator::label) -
+      run.estimators.begin());
   std::vector<const QuantityCounts*> counts;
   for (const SummaryCell& draw : draws) {
     const QuantitySums& sums = is_of_problems ? draw.of_problems() : draw.of_estimator(estimator);

@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
+#include <span>
 
+#include "experiments/core/table/render_table.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
@@ -15,24 +16,38 @@ namespace {
 
 // The numbers of one estimator in one condition.
 struct EstimatorRow {
-  std::vector<std::string> levels;
-  std::string estimator;
+  const std::vector<std::string>& levels;
   std::int64_t num_trials = 0;  // the greatest n: some quantities are of all trials
-  std::map<std::string, const SummaryRow*> quantities;
+  std::span<const SummaryRow> rows = {};
+
+  // Null: it has none. `place`, where the quantity was found last, is tried first: all groups have their rows
+  // in one order.
+  const SummaryRow* FindRow(const SharedText& quantity, size_t* place) const {
+    if (*place >= rows.size() || rows[*place].quantity != quantity) {
+      *place = 0;
+      while (*place < rows.size() && rows[*place].quantity != quantity) ++*place;
+    }
+    return *place < rows.size() ? &rows[*place] : nullptr;
+  }
 };
 
-bool IsOfProblems(const SummaryRow& row) { return row.estimator == kSceneLabel; }
+bool IsOfProblems(const SummaryRow& row) {
+  static const SharedText scene = kSceneLabel;
+  return row.estimator == scene;
+}
 
 std::vector<EstimatorRow> GroupRows(const Summary& summary, bool is_of_problems) {
   std::vector<EstimatorRow> groups;
-  const SummaryRow* last = nullptr;
-  for (const SummaryRow& row : summary.rows) {
-    if (IsOfProblems(row) != is_of_problems) continue;
-    if (!last || row.condition != last->condition || row.estimator != last->estimator)
-      groups.push_back({summary.levels.at(row.condition), row.estimator, 0, {}});
-    groups.back().num_trials = std::max(groups.back().num_trials, row.n);
-    groups.back().quantities[row.quantity] = &row;
-    last = &row;
+  const std::span<const SummaryRow> rows = summary.rows;
+  for (size_t begin = 0, end = 0; begin < rows.size(); begin = end) {
+    std::int64_t num_trials = 0;
+    for (; end < rows.size() && rows[end].condition == rows[begin].condition &&
+           rows[end].estimator == rows[begin].estimator;
+         ++end)
+      num_trials = std::max(num_trials, rows[end].n);
+    if (IsOfProblems(rows[begin]) == is_of_problems)
+      groups.push_back(
+          {summary.levels.at(rows[begin].condition), num_trials, rows.subspan(begin, end - begin)});
   }
   return groups;
 }
@@ -43,11 +58,13 @@ NumberFormat ChooseNumberFormat(SummaryRow::Kind kind) {
   return is_share ? kPercent : kSignificant;
 }
 
-// Behind these columns.
-Table MakeSummaryRowTable(const Summary& summary, bool is_of_problems,
-                          std::vector<ColumnOf<EstimatorRow>> columns,
-                          const std::vector<std::string>& quantities) {
+std::vector<ColumnOf<EstimatorRow>> MakeColumns(const Summary& summary, bool is_of_problems,
+                                                const std::vector<std::string>& quantities) {
   using R = const EstimatorRow&;
+  std::vector<ColumnOf<EstimatorRow>> columns = LevelColumns<EstimatorRow>(summary.factor_names);
+  if (!is_of_problems)
+    columns.push_back(
+        {{.name = "estimator", .is_key = true}, [](R r) { return r.rows.front().estimator.text(); }});
   columns.push_back({{.name = summary.repeats_per_scene > 1 ? "scenes" : "n",
                       .type = ColumnType::kCount,
                       .is_key = true,
@@ -58,13 +75,13 @@ Table MakeSummaryRowTable(const Summary& summary, bool is_of_problems,
       return r.quantity == quantity && IsOfProblems(r) == is_of_problems;
     });
     if (row == summary.rows.end()) continue;
-    columns.push_back({{quantity, ColumnType::kEstimate, ChooseNumberFormat(row->kind)}, [quantity](R r) {
-                         const auto found = r.quantities.find(quantity);
-                         return found == r.quantities.end() ? Value(Estimate())
-                                                            : MakeEstimate(*found->second, r.num_trials);
+    columns.push_back({{quantity, ColumnType::kEstimate, ChooseNumberFormat(row->kind)},
+                       [name = row->quantity, place = size_t{0}](R r) mutable {
+                         const SummaryRow* found = r.FindRow(name, &place);
+                         return found ? MakeEstimate(*found, r.num_trials) : Estimate();
                        }});
   }
-  return MakeTable(columns, GroupRows(summary, is_of_problems));
+  return columns;
 }
 
 }  // namespace
@@ -114,21 +131,25 @@ std::vector<std::string> AddSharpness(const Summary& summary, std::vector<std::s
 
 void KeepQuantities(const std::vector<std::string>& quantities, Summary* summary) {
   CheckAreQuantities(*summary, quantities);
+  const std::vector<SharedText> kept(quantities.begin(), quantities.end());
   std::erase_if(summary->rows, [&](const SummaryRow& row) {
-    return IsOfProblems(row) || std::ranges::count(quantities, row.quantity) == 0;
+    return IsOfProblems(row) || std::ranges::count(kept, row.quantity) == 0;
   });
 }
 
 Table MakeQuantityTable(const Summary& summary, const std::vector<std::string>& quantities) {
-  std::vector<ColumnOf<EstimatorRow>> columns = LevelColumns<EstimatorRow>(summary.factor_names);
-  columns.push_back(
-      {{.name = "estimator", .is_key = true}, [](const EstimatorRow& row) { return row.estimator; }});
-  return MakeSummaryRowTable(summary, /*is_of_problems=*/false, std::move(columns), quantities);
+  return MakeTable(MakeColumns(summary, /*is_of_problems=*/false, quantities),
+                   GroupRows(summary, /*is_of_problems=*/false));
 }
 
-Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& quantities) {
-  return MakeSummaryRowTable(summary, /*is_of_problems=*/true,
-                             LevelColumns<EstimatorRow>(summary.factor_names), quantities);
+std::string RenderQuantityTable(const Summary& summary, const std::vector<std::string>& quantities) {
+  return RenderText(MakeColumns(summary, /*is_of_problems=*/false, quantities),
+                    GroupRows(summary, /*is_of_problems=*/false));
+}
+
+std::string RenderProblemTable(const Summary& summary, const std::vector<std::string>& quantities) {
+  return RenderText(MakeColumns(summary, /*is_of_problems=*/true, quantities),
+                    GroupRows(summary, /*is_of_problems=*/true));
 }
 
 }  // namespace rcme

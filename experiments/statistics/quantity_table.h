@@ -15,8 +15,10 @@ Estimate MakeEstimate(const SummaryRow& row, std::int64_t num_trials);
 // Those of the quantities of estimators that the summary has, in their order. Key columns: a column per
 // factor, the estimator, n (the trials of the condition).
 Table MakeQuantityTable(const Summary& summary, const std::vector<std::string>& quantities);
+// RenderText of it.
+std::string RenderQuantityTable(const Summary& summary, const std::vector<std::string>& quantities);
 // The same of the problems, without a column of estimators.
-Table MakeProblemTable(const Summary& summary, const std::vector<std::string>& quantities);
+std::string RenderProblemTable(const Summary& summary, const std::vector<std::string>& quantities);
 
 // Throws InputError for a quantity of --quantities that the summary does not have of its estimators.
 void CheckAreQuantities(const Summary& summary, const std::vector<std::string>& quantities);

@@ -135,7 +135,9 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   if (const auto preregistration = DecidePreregistered(store, run))
     json["preregistration"] = PreregistrationAsJson(*preregistration);
   WriteFileWhole(folder + "/run.json", JsonText(kReportFormat, json));
-  WriteFileWhole(folder + "/summary.csv", SummaryAsCsv(summary));
+  FileInPieces table(folder + "/summary.csv");
+  WriteSummaryCsv(summary, [&](const std::string& text) { table.Write(text); });
+  table.Finish();
   if (!forecasts.empty())
     WriteFileWhole(folder + "/reliability.json", ForecastsAsJson(summary.study, "", forecasts));
   if (comparison.caution.empty() && HasMarginals(store.Description())) {

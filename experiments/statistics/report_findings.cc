@@ -142,7 +142,7 @@ void AddRefusals(const Summary& summary, std::vector<std::string>* sentences) {
     if (!most || most->interval.lower < kManyRefusals) continue;
     findings.push_back({most->value, fmt::format("Refusals: {} refuses {}{} ({}).", label,
                                                  summary.is_of_population ? "" : "up to ",
-                                                 RateAt(summary, *most), most->quantity)});
+                                                 RateAt(summary, *most), most->quantity.text())});
   }
   AddByWeight(std::move(findings), sentences);
 }

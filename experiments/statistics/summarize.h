@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/text/shared_text.h"
 #include "experiments/run/store/result_store.h"
+#include "experiments/statistics/boxed_optional.h"
 #include "experiments/statistics/coverage_verdict.h"
 #include "experiments/statistics/preregistration.h"
 #include "experiments/statistics/trial_groups.h"
@@ -15,7 +17,7 @@
 namespace rcme {
 
 // Which intervals rates and scores have.
-enum class IntervalKind {
+enum class IntervalKind : std::uint8_t {
   kExact,         // Clopper-Pearson
   kAnytimeValid,  // confidence sequence: the number of trials depended on their outcomes
   kWeighted,      // of weighted trials, with the cautious upper end (stats/weighted_rate.h)
@@ -24,9 +26,17 @@ enum class IntervalKind {
   kPopulation     // of the population that the conditions are a sample of (population_summary.h)
 };
 
-// One number of one estimator in one condition, never without what says how far to trust it.
+// Of pooled draws of a population: the interval for these very conditions, each tried for ever, and how
+// many independent trials would tell as much of the population (Kish's effective n).
+struct PopulationPart {
+  Interval of_these_conditions = {kNaN, kNaN};
+  double effective_n = kNaN;
+};
+
+// One number of one estimator in one condition, never without what says how far to trust it. A summary may
+// have millions of them.
 struct SummaryRow {
-  enum class Kind {
+  enum class Kind : std::uint8_t {
     kRate,
     kMean,
     kMedian,
@@ -35,21 +45,18 @@ struct SummaryRow {
     kArea            // between two curves (error_ranking.h)
   };
 
+  SharedText estimator;  // label; kSceneLabel: of the problem, whoever solves it
+  SharedText quantity;
   std::uint32_t condition = 0;
-  std::string estimator;  // label; kSceneLabel: of the problem, whoever solves it
-  std::string quantity;
   Kind kind = Kind::kRate;
-  double value = 0.0;  // NaN where n is 0
   IntervalKind interval_kind = IntervalKind::kExact;
+  bool is_of_split = false;     // what the scene and what the sampler decides (scene_split.h)
+  double value = 0.0;           // NaN where n is 0
   Interval interval;            // all but means: 95 %; NaN where a median's or an area's would not hold
   double standard_error = 0.0;  // means, areas and rates of weighted trials: Monte-Carlo standard error
   std::int64_t n = 0;           // trials that the number is of; of repeated scenes: scenes
-  // Of pooled draws of a population: the interval for these very conditions, each tried for ever, and how
-  // many independent trials would tell as much of the population (Kish's effective n).
-  Interval of_these_conditions = {kNaN, kNaN};
-  double effective_n = kNaN;
-  bool is_of_split = false;  // what the scene and what the sampler decides (scene_split.h)
-  std::optional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
+  BoxedOptional<CoverageVerdict> coverage_verdict;  // of a coverage with trials and an interval
+  BoxedOptional<PopulationPart> of_population;      // of pooled draws of one
 };
 
 std::string KindName(SummaryRow::Kind kind);  // "rate", "mean", "median", "score", "share", "area"

@@ -83,7 +83,7 @@ void AddRecord(const Record& record, double weight, bool is_first_of_scene, cons
   sums->is_weighted = sums->is_weighted || weight != 1.0;
   sums->num_scenes += !has_repeats;
   for (size_t q = 0; q < quantities.size(); ++q) {
-    const std::optional<double> value = quantities[q].contribution(record, bounds);
+    const std::optional<double> value = quantities[q].Measure(record, bounds);
     if (!value) continue;
     if (is_first_of_scene && IsOfFirst(quantities[q].kind))
       std::visit(AddNumber{*value, weight}, sums->counts[q]);
@@ -144,12 +144,24 @@ void FillWeighted(const QuantityCounts& counts, std::int64_t num_trials, Summary
   row->interval = {std::min(rate.interval.lower, 1.0), std::min(rate.cautious_upper, 1.0)};
 }
 
+// The names of TrialQuantities() or ProblemQuantities().
+template <typename Record>
+const std::vector<SharedText>& ListNames(const std::vector<Quantity<Record>>& quantities) {
+  static const std::vector<SharedText> names = [&] {
+    std::vector<SharedText> texts;
+    for (const Quantity<Record>& quantity : quantities) texts.emplace_back(quantity.name);
+    return texts;
+  }();
+  return names;
+}
+
 template <typename Record>
 void AppendQuantityRows(const std::vector<Quantity<Record>>& quantities, const QuantitySums& sums,
                         const SummaryRow& cell, std::vector<SummaryRow>* rows) {
+  const std::vector<SharedText>& names = ListNames(quantities);
   for (size_t q = 0; q < quantities.size(); ++q) {
     SummaryRow row = cell;
-    row.quantity = quantities[q].name;
+    row.quantity = names[q];
     row.kind = quantities[q].kind;
     const FillFrom fill{sums.num_scenes, &row};
     if (sums.is_weighted) {

@@ -34,12 +34,14 @@ std::string DescribeIntervalKind(IntervalKind kind) {
 }
 
 std::string IntervalKindsIn(const Summary& summary) {
-  std::set<std::string> kinds;
+  std::set<IntervalKind> kinds;
   for (const SummaryRow& row : summary.rows) {
     if (row.kind == SummaryRow::Kind::kRate && row.estimator != kSceneLabel && !row.is_of_split)
-      kinds.insert(DescribeIntervalKind(row.interval_kind));
+      kinds.insert(row.interval_kind);
   }
-  return fmt::format("{}", fmt::join(kinds, " and "));
+  std::set<std::string> texts;
+  for (const IntervalKind kind : kinds) texts.insert(DescribeIntervalKind(kind));
+  return fmt::format("{}", fmt::join(texts, " and "));
 }
 
 namespace {
@@ -82,6 +84,10 @@ double TrialsToDecide(const CoverageVerdict& verdict) {
   return is_known ? verdict.trials_to_decide : std::nan("");
 }
 
+PopulationPart PartOfPopulation(const SummaryRow& row) {
+  return row.of_population ? *row.of_population : PopulationPart();
+}
+
 // Of a table with a row for every quantity. `summary` must outlive the columns.
 std::vector<ColumnOf<SummaryRow>> MakeRowColumns(const Summary& summary) {
   using R = const SummaryRow&;
@@ -92,8 +98,8 @@ std::vector<ColumnOf<SummaryRow>> MakeRowColumns(const Summary& summary) {
   for (const ColumnOf<SummaryRow>& level : LevelColumns<SummaryRow>(summary.factor_names, levels_of))
     columns.push_back(level);
   const std::vector<ColumnOf<SummaryRow>> others = {
-      {{"estimator"}, [](R r) { return r.estimator; }},
-      {{"quantity"}, [](R r) { return r.quantity; }},
+      {{"estimator"}, [](R r) { return r.estimator.text(); }},
+      {{"quantity"}, [](R r) { return r.quantity.text(); }},
       {{"kind"}, [](R r) { return KindName(r.kind); }},
       {{"value", ColumnType::kNumber}, [](R r) { return r.value; }},
       {{"lower,upper", ColumnType::kInterval},
@@ -111,12 +117,16 @@ std::vector<ColumnOf<SummaryRow>> MakeRowColumns(const Summary& summary) {
        [](R r) { return r.coverage_verdict ? Value(TrialsToDecide(*r.coverage_verdict)) : Value(); }}};
   columns.insert(columns.end(), others.begin(), others.end());
   if (summary.is_of_population) {
-    columns.push_back({{"effective_n", ColumnType::kNumber}, [](R r) { return r.effective_n; }});
     columns.push_back(
-        {{.name = "these_lower,these_upper",
-          .type = ColumnType::kInterval,
-          .json_name = "interval_of_these_conditions"},
-         [](R r) { return r.kind == SummaryRow::Kind::kMean ? Value() : Value(r.of_these_conditions); }});
+        {{"effective_n", ColumnType::kNumber}, [](R r) { return PartOfPopulation(r).effective_n; }});
+    columns.push_back({{.name = "these_lower,these_upper",
+                        .type = ColumnType::kInterval,
+                        .json_name = "interval_of_these_conditions"},
+                       [](R r) {
+                         return r.kind == SummaryRow::Kind::kMean
+                                    ? Value()
+                                    : Value(PartOfPopulation(r).of_these_conditions);
+                       }});
   }
   return columns;
 }
@@ -134,9 +144,9 @@ std::string DescribeEfforts(const Summary& summary) {
 std::string FormatAccuracy(const Summary& summary) {
   return fmt::format(
       "Accuracy (error: the greater of rotation and direction; a refusal has the\ngreatest)\n\n{}\n",
-      RenderText(MakeQuantityTable(
-          summary, {"auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg", "rotation_error_median_deg",
-                    "direction_error_median_deg", "max_error_median_deg"})));
+      RenderQuantityTable(summary,
+                          {"auc_5_deg", "auc_10_deg", "auc_20_deg", "maa_10_deg", "rotation_error_median_deg",
+                           "direction_error_median_deg", "max_error_median_deg"}));
 }
 
 bool HasErrorRanking(const Summary& summary) {
@@ -161,7 +171,8 @@ std::string DescribeFlips(const Summary& summary) {
   std::vector<const SummaryRow*> most;  // one per estimator
   for (const SummaryRow& row : summary.rows) {
     if (row.quantity != "failure_flips" || row.n == 0) continue;
-    const auto known = std::ranges::find(most, row.estimator, &SummaryRow::estimator);
+    const auto known =
+        std::ranges::find_if(most, [&](const SummaryRow* of) { return of->estimator == row.estimator; });
     if (known == most.end()) {
       most.push_back(&row);
     } else if (row.value > (*known)->value) {
@@ -174,7 +185,7 @@ std::string DescribeFlips(const Summary& summary) {
     for (size_t f = 0; f < summary.factor_names.size(); ++f)
       place.push_back(summary.factor_names[f] + " " + summary.levels.at(row->condition).at(f));
     text += fmt::format(
-        "  {}: {}{}\n", row->estimator,
+        "  {}: {}{}\n", row->estimator.text(),
         row->value == 0.0 ? "no scene"
                           : FormatEstimate(MakeEstimate(*row, row->n), kPercent) + " of the scenes",
         row->value == 0.0 || place.empty() ? "" : fmt::format(" at {}", fmt::join(place, ", ")));
@@ -187,11 +198,10 @@ std::string FormatSeverity(const Summary& summary) {
   const bool is_measured = std::ranges::any_of(
       summary.rows, [](const SummaryRow& row) { return row.estimator == kSceneLabel && row.n > 0; });
   if (!is_measured) return "";
-  const Table table =
-      MakeProblemTable(summary, {"impossible", "image_coverage", "inlier_clark_evans", "parallax_median_deg",
-                                 "homography_share", "crb_rotation_deg", "crb_direction_deg"});
   return fmt::format("The problems themselves (impossible: Cramer-Rao bound beyond a failure bound)\n\n{}\n",
-                     RenderText(table));
+                     RenderProblemTable(summary, {"impossible", "image_coverage", "inlier_clark_evans",
+                                                  "parallax_median_deg", "homography_share",
+                                                  "crb_rotation_deg", "crb_direction_deg"}));
 }
 
 // What the scene and what the sampler decides; empty without repeats.
@@ -201,8 +211,7 @@ std::string FormatSplit(const Summary& summary) {
       "Scene and sampler: shares of the variance of a failure, and scenes with both\n"
       "outcomes ({} trials per scene)\n\n{}\n{}\n",
       summary.repeats_per_scene,
-      RenderText(
-          MakeQuantityTable(summary, {"failure_between_scenes", "failure_within_scenes", "failure_flips"})),
+      RenderQuantityTable(summary, {"failure_between_scenes", "failure_within_scenes", "failure_flips"}),
       DescribeFlips(summary));
 }
 
@@ -210,7 +219,8 @@ std::string FormatSplit(const Summary& summary) {
 std::string FormatPopulation(const Summary& summary) {
   std::vector<double> effective;
   for (const SummaryRow& row : summary.rows)
-    if (row.quantity == "failure" && std::isfinite(row.effective_n)) effective.push_back(row.effective_n);
+    if (row.quantity == "failure" && std::isfinite(PartOfPopulation(row).effective_n))
+      effective.push_back(row.of_population->effective_n);
   std::string text =
       "All intervals are 95 % of the population that the conditions are a sample of, so\n"
       "are the standard errors of means. Trials of one condition are alike";
@@ -225,7 +235,7 @@ std::string FormatPopulation(const Summary& summary) {
 // The study, how much of it is done, and these quantities.
 std::string FormatQuantities(const Summary& summary, const std::vector<std::string>& quantities) {
   return fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
-                     summary.num_trials_planned, RenderText(MakeQuantityTable(summary, quantities)));
+                     summary.num_trials_planned, RenderQuantityTable(summary, quantities));
 }
 
 // How the intervals of the tables are made.
@@ -297,9 +307,23 @@ std::string SummaryAsTable(const Summary& summary) {
   return text + DescribeEfforts(summary);
 }
 
-std::string SummaryAsCsv(const Summary& summary) { return RenderCsv(MakeRowColumns(summary), summary.rows); }
+std::string SummaryAsCsv(const Summary& summary) {
+  std::string text;
+  WriteSummaryCsv(summary, [&](const std::string& piece) { text += piece; });
+  return text;
+}
 
 std::string SummaryAsJson(const Summary& summary) {
+  std::string text;
+  WriteSummaryJson(summary, [&](const std::string& piece) { text += piece; });
+  return text;
+}
+
+void WriteSummaryCsv(const Summary& summary, const WriteText& write) {
+  WriteCsv(MakeRowColumns(summary), summary.rows, write);
+}
+
+void WriteSummaryJson(const Summary& summary, const WriteText& write) {
   nlohmann::ordered_json json = {{"study", summary.study},
                                  {"trials_done", summary.num_trials_done},
                                  {"trials_planned", summary.num_trials_planned},
@@ -314,11 +338,12 @@ std::string SummaryAsJson(const Summary& summary) {
   constexpr size_t kRowsAtOnce = 1000;
   const std::vector<ColumnOf<SummaryRow>> columns = MakeRowColumns(summary);
   std::span<const SummaryRow> left = summary.rows;
-  return JsonText(kSummaryFormat, json, "rows", [&] {
+  const auto next_rows = [&] {
     const std::span<const SummaryRow> some = left.first(std::min(kRowsAtOnce, left.size()));
     left = left.subspan(some.size());
     return RenderJson(MakeTable(columns, some));
-  });
+  };
+  WriteJson(kSummaryFormat, json, "rows", next_rows, write);
 }
 
 }  // namespace rcme

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "experiments/core/text/write_text.h"
 #include "experiments/statistics/summarize.h"
 
 namespace rcme {
@@ -20,6 +21,10 @@ std::string SummaryAsCsv(const Summary& summary);
 // The same rows as an object {study, trials_done, trials_planned, rows: [...]}; unknown and infinite
 // numbers are null.
 std::string SummaryAsJson(const Summary& summary);
+
+// The same texts piece by piece: those of ten thousand conditions have hundreds of megabytes.
+void WriteSummaryCsv(const Summary& summary, const WriteText& write);
+void WriteSummaryJson(const Summary& summary, const WriteText& write);
 
 // "exact 95 % (Clopper-Pearson)", for people.
 std::string DescribeIntervalKind(IntervalKind kind);

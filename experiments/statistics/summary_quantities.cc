@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "experiments/statistics/error_ranking.h"
 #include "experiments/statistics/failure_forecasts.h"
@@ -192,12 +193,17 @@ bool IsOfOutside(const std::string& quantity) {
 // What does not count is named by two quantities and is in no other.
 void LeaveOutUncounted(TrialQuantity* quantity) {
   if (quantity->name == StatusName(MotionStatus::kNotSimulated)) return;
-  const auto is_of_quantity = quantity->name == "not_scored" ? WasSimulated : IsCounted;
-  quantity->contribution = [is_of_quantity, of_counted = std::move(quantity->contribution)](
-                               const TrialRecord& r, const FailureBounds& b) -> std::optional<double> {
-    return is_of_quantity(r) ? of_counted(r, b) : std::nullopt;
-  };
+  quantity->is_of = quantity->name == "not_scored" ? WasSimulated : IsCounted;
 }
+
+// Whether any row of a quantity has trials, and any a value above 0.
+struct Presence {
+  bool has_numbers = false, has_events = false;
+  void Add(const SummaryRow& row) {
+    has_numbers = has_numbers || row.n > 0;
+    has_events = has_events || row.value > 0.0;
+  }
+};
 
 // No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
 // problem and not the estimator is to blame.
@@ -246,26 +252,24 @@ const std::vector<ProblemQuantity>& ProblemQuantities() {
 bool IsOfTimes(const std::string& quantity) { return quantity == "time_ms" || quantity == "mean_time_ms"; }
 
 void LeaveOutRows(bool with_times, Summary* summary) {
-  std::vector<SummaryRow>& rows = summary->rows;
-  const bool has_probabilities = std::ranges::any_of(
-      rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity) && row.n > 0; });
-  if (!has_probabilities)
-    std::erase_if(rows, [](const SummaryRow& row) { return IsOfProbabilities(row.quantity); });
-  std::set<std::string> known;
-  for (const SummaryRow& row : rows)
-    if (row.n > 0) known.insert(row.quantity);
-  std::erase_if(rows, [&](const SummaryRow& row) {
-    return IsOfDensity(row.quantity) && !known.contains(row.quantity);
-  });
-  const bool has_silence = std::ranges::any_of(
-      rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity) && row.value > 0.0; });
-  if (!has_silence) std::erase_if(rows, [](const SummaryRow& row) { return IsOfOutside(row.quantity); });
-  const std::string& not_simulated = StatusName(MotionStatus::kNotSimulated);
-  const bool has_not_simulated = std::ranges::any_of(
-      rows, [&](const SummaryRow& row) { return row.quantity == not_simulated && row.value > 0.0; });
-  if (!has_not_simulated)
-    std::erase_if(rows, [&](const SummaryRow& row) { return row.quantity == not_simulated; });
-  if (!with_times) std::erase_if(rows, [](const SummaryRow& row) { return IsOfTimes(row.quantity); });
+  std::unordered_map<const std::string*, Presence> presence;
+  for (const SummaryRow& row : summary->rows) presence[&row.quantity.text()].Add(row);
+  const auto has_any = [&](bool (*is_of)(const std::string&), bool Presence::*what) {
+    return std::ranges::any_of(presence, [&](const auto& of) { return is_of(*of.first) && of.second.*what; });
+  };
+  const bool has_probabilities = has_any(IsOfProbabilities, &Presence::has_numbers);
+  const bool has_silence = has_any(IsOfOutside, &Presence::has_events);
+  std::unordered_set<const std::string*> left_out;
+  for (const auto& [name, of_quantity] : presence) {
+    const bool is_kept = (has_probabilities || !IsOfProbabilities(*name)) &&
+                         (of_quantity.has_numbers || !IsOfDensity(*name)) &&
+                         (has_silence || !IsOfOutside(*name)) &&
+                         (of_quantity.has_events || *name != StatusName(MotionStatus::kNotSimulated)) &&
+                         (with_times || !IsOfTimes(*name));
+    if (!is_kept) left_out.insert(name);
+  }
+  std::erase_if(summary->rows,
+                [&](const SummaryRow& row) { return left_out.contains(&row.quantity.text()); });
 }
 
 }  // namespace rcme

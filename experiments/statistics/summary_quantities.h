@@ -19,6 +19,11 @@ struct Quantity {
   SummaryRow::Kind kind;
   std::string doc;
   std::function<std::optional<double>(const Record&, const FailureBounds&)> contribution;
+  bool (*is_of)(const Record&) = nullptr;  // the records that may contribute; null: all
+
+  std::optional<double> Measure(const Record& record, const FailureBounds& bounds) const {
+    return is_of && !is_of(record) ? std::nullopt : contribution(record, bounds);
+  }
 };
 using TrialQuantity = Quantity<TrialRecord>;
 using ProblemQuantity = Quantity<ProblemRecord>;

@@ -21,7 +21,7 @@ std::string FieldAsStored(Integer number) {
   return FormatField(static_cast<std::int64_t>(number));
 }
 
-// Visits the columns of a row after the outcome and their fields: those of the record, then those of the
+// Visits the columns of a row after the status and their fields: those of the record, then those of the
 // problem.
 template <typename Visit>
 void VisitNumbers(const TrialRecord& record, const ProblemRecord& problem, bool with_times, Visit visit) {
@@ -36,7 +36,8 @@ void VisitNumbers(const TrialRecord& record, const ProblemRecord& problem, bool 
 }
 
 std::string Header(const std::vector<std::string>& factors, bool with_times) {
-  std::vector<std::string> before = {"study", "condition"}, after = {"trial", "estimator", "outcome"};
+  std::vector<std::string> before = {"study", "condition"},
+                           after = {"trial", "estimator", "outcome", "status"};
   VisitNumbers({}, {}, with_times,
                [&](const StoredColumn& column, const auto&) { after.emplace_back(column.name); });
   const auto is_taken = [&](const std::string& name) {
@@ -69,8 +70,9 @@ void WriteTrialTable(const ResultStore& store, bool with_times,
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
     std::string rows;
     for (const TrialRecord& record : records) {
-      rows += fmt::format("{},{},{},{}", beginnings[record.condition], record.trial, labels[record.estimator],
-                          OutcomeInFull(record, run.failure));
+      rows +=
+          fmt::format("{},{},{},{},{}", beginnings[record.condition], record.trial, labels[record.estimator],
+                      Name(ClassifyOutcome(record, run.failure)), StatusName(record.status));
       VisitNumbers(record, problem, with_times, [&](const StoredColumn&, const auto& field) {
         rows += ',';
         rows += FieldAsStored(field);

@@ -10,7 +10,7 @@ namespace rcme {
 
 // Hands the table to `write` as CSV, a line or more at a time, in constant memory: study, condition, one
 // column per factor (its level), trial, estimator (its label), outcome (trial_outcome.h), then every column
-// of the records and the problems (docs/result_file.md) but the status, which the outcome tells. What is not
+// of the records, the status first, and of the problems (docs/result_file.md). What is not
 // known is an empty field. A factor that is called as one of the other columns is written as "level_NAME".
 // Wall times, which no two runs share, only if asked for. Numbers have all their digits. Throws InputError
 // before the first line if a trial is not sound.

@@ -13,9 +13,19 @@ PIXELS_PER_INCH = 115
 WIDE, NARROW, NARROW_SCREEN = 6.8, 3.4, "(max-width: 40rem)"  # inches of the figures, the second for such a screen
 
 
+def settle(figure):
+    """Leaves the panels where the layout puts them, to a millionth of the figure: the last bits of its solver are not the same
+    each time, and names within the file are hashes of them."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
+    for axes in figure.axes:
+        axes.set_position([round(number, 6) for number in axes.get_position().bounds])
+
+
 def data_uri(figure):
     """The figure as SVG; the same figure gives the same bytes."""
     picture = io.BytesIO()
+    settle(figure)
     with matplotlib.rc_context({"svg.hashsalt": "rcme", "svg.fonttype": "path"}):
         figure.savefig(picture, format="svg", metadata={"Date": None, "Creator": None})
     return "data:image/svg+xml;base64," + base64.b64encode(picture.getvalue()).decode()

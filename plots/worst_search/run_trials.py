@@ -151,7 +151,7 @@ def narrowed_conditions(conditions, space, box, number, design):
 def event_of(quantity, row):
     """1, 0 or NOT_THERE, of one answer as `rcme summarize --raw csv` gives it."""
     outcome, nees, stated = row["outcome"], row["nees"], row["failure_probability"]
-    if outcome == "not_simulated":
+    if outcome == "not_scored":
         return NOT_THERE
     if quantity in ("failure", "difference"):
         return int(outcome == "failure")

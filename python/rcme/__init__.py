@@ -3,7 +3,8 @@
     pose, info = rcme.estimate_relative_pose(x1, x2, camera1, camera2, {"sigma_px": 0.7})
 
 estimates one motion, `estimate_relative_poses` those of many pairs; `simulate` gives the matches of a simulated trial with their truth; `run` tries estimators on a study,
-functions of Python among them; `summarize`, `compare`, `reliability` and `audit` say what came of it, as data frames;
+functions of Python among them; `summarize`, `compare`, `reliability` and `audit` say what came of it, as data frames, `trials` gives
+every trial;
 `plot` draws them on axes of yours. docs/python.md begins at the beginning.
 
 Conventions, everywhere:
@@ -12,8 +13,9 @@ Conventions, everywhere:
   cannot be seen: |t| = 1.
 - Points are in pixels, N x 2, without lens distortion; (0, 0) is the centre of the top-left pixel. Only the distance from the
   principal point counts, so points and cameras that share another origin (COLMAP: its corner) may stay as they are.
-- pose_cov is 6 x 6, of [w1, w2, w3, dt1, dt2, dt3]: the true R is Exp([w]x) R, w in rad and in camera 2's frame, and the true t
-  is t + dt. Its rank is 5: nothing along t. For a normalised error square leave that direction out (docs/python.md).
+- pose_cov is 6 x 6, of [w1, w2, w3, dt1, dt2, dt3]: the true R is Exp([w]x) R, w in rad, and the true t
+  is t + dt, both along the axes of camera 2; dt has no unit. Its rank is 5: nothing along t. For a normalised
+  error square leave that direction out (docs/python.md).
 - Numbers that nobody knows are NaN (of a data frame), or None (of a dict).
 - A wrong argument is a ValueError that names it, what it was and what is expected. What goes wrong in an estimate is no
   exception but a status.
@@ -22,13 +24,13 @@ Conventions, everywhere:
 import pathlib
 
 from rcme import _rcme, plot
-from rcme._estimate import Pose, Poses, estimate_relative_pose, estimate_relative_poses, estimators
+from rcme._estimate import Pose, Poses, estimate_relative_pose, estimate_relative_poses, estimators, intrinsics
 from rcme._rcme import __version__
 from rcme._study import conditions, conform, run, simulate, tune
-from rcme._tables import audit, compare, reliability, summarize
+from rcme._tables import audit, compare, reliability, summarize, trials
 
 __all__ = ["Pose", "Poses", "audit", "compare", "conditions", "conform", "estimate_relative_pose", "estimate_relative_poses",
-           "estimators", "plot", "reliability", "run", "simulate", "summarize", "tune", "__version__"]
+           "estimators", "intrinsics", "plot", "reliability", "run", "simulate", "summarize", "trials", "tune", "__version__"]
 
 # The studies and estimator files that come with the package, by name.
 _rcme.use_share(str(pathlib.Path(__file__).resolve().parent / "share"))

@@ -37,6 +37,8 @@ def words(value: Any) -> str:
 def numbers(name: str, value: Any, expected: str) -> np.ndarray:
     """An array of real numbers, of any shape."""
     try:
+        if value is None:  # which NumPy takes for NaN
+            raise TypeError
         array = np.asarray(value)
         if array.dtype.kind not in "fiub" and not (array.dtype.kind == "O" and array.size > 0):
             raise TypeError
@@ -83,7 +85,8 @@ def points(name: str, value: Any) -> np.ndarray:
     expected = "an N x 2 array of pixel coordinates"
     array = numbers(name, value, expected)
     if array.ndim != 2 or array.shape[1] != 2:
-        raise ValueError(f"{name}: its shape is {array.shape}; expected {expected}")
+        hint = "; convert with .reshape(-1, 2)" if array.ndim == 3 and array.shape[2] == 2 and 1 in array.shape[:2] else ""
+        raise ValueError(f"{name}: its shape is {array.shape}; expected {expected}{hint}")
     if len(array) > MAX_MATCHES:
         raise ValueError(f"{name}: its shape is {array.shape}; expected {expected}, N at most {MAX_MATCHES}")
     with np.errstate(invalid="ignore"):

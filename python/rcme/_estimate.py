@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import difflib
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
 from rcme import _check, _rcme
+from rcme._function import Functions, named_function
 
 
 MAX_PAIRS = 1_000_000
+OPTIONS_OF_CALLS = ("estimator", "estimator_file", "allow_process", "sigma_px", "noise_scale", "integrity_risk", "seed")
 
 
 class Pose(NamedTuple):
@@ -39,7 +42,8 @@ class Poses(NamedTuple):
 def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
                            options: Optional[Mapping[str, Any]] = None,
                            bounds: Iterable[tuple[float, float]] = (),
-                           prior: Optional[Mapping[str, Any]] = None) -> tuple[Optional[Pose], dict[str, Any]]:
+                           prior: Optional[Mapping[str, Any]] = None,
+                           estimators: Optional[Mapping[str, Callable[..., Any]]] = None) -> tuple[Optional[Pose], dict[str, Any]]:
     """Estimates the motion between two images, with its uncertainty.
 
     Parameters
@@ -65,6 +69,9 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         rotation (3, 3) with rotation_sd_deg (a number) or rotation_cov (3, 3; rad^2, the true one is Exp([w]x) rotation);
         gravity1 and gravity2 (3), its direction in both cameras, with gravity_sd_deg; direction (3), of t, with
         direction_sd_deg. Lengths of vectors do not matter.
+    estimators : dict {name: function}
+        Functions as `run` takes them, for the option estimator and for a file of `conform` that is of one of them. A file of a
+        function whose source has changed since is refused.
 
     Returns
     -------
@@ -74,10 +81,11 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     info : dict
         status ("ok", or why there is no motion), message (a sentence); estimator (its label);
         inliers (bool, N), num_inliers, inlier_probabilities (N, or None);
-        pose_cov (6, 6) of [w, dt], or None: the true motion is Exp([w]x) R, t + dt, w in rad; rank 5;
-        p_failure, the probability that the motion is wrong by more than the estimator's bounds (max_rotation_error_deg, ...;
-        None if it states none); p_failure_domain, "verified" or "extrapolated": whether the matches are like those that it was
-        verified on ("not_stated"); p_failure_for_bounds, for each of `bounds` {rotation_deg, direction_deg, p_failure, domain}
+        pose_cov (6, 6) of [w, dt], or None: the true motion is Exp([w]x) R, t + dt, with w in rad and dt without unit (|t| = 1),
+        both along the axes of camera 2; rank 5 (nothing along t);
+        p_failure, the probability that the motion is wrong by more than the estimator's bounds (its options max_rotation_error_deg
+        and max_direction_error_deg, 3 and 15 degrees unless given; None if it states none); p_failure_domain, "verified" or
+        "extrapolated": whether the matches are like those that it was verified on ("not_stated"); p_failure_for_bounds, for each of `bounds` {rotation_deg, direction_deg, p_failure, domain}
         (empty where there is no motion); protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and
         that of t exceed with a probability of at most integrity_risk each, by pose_cov and p_failure (pi: every angle; None
         without a motion); sigma and sigma_sd (px), the noise level that it found (None likewise);
@@ -95,24 +103,26 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     chosen = _options(options, len(x1))
     pairs = _bounds(bounds)
     known = _prior(prior)
+    functions = _functions(estimators)
     try:
         answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["noise_scale"], chosen["estimator"],
                                 chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"], pairs,
-                                chosen["integrity_risk"], known)
+                                chosen["integrity_risk"], known, functions)
     except ValueError as error:
-        raise ValueError(f"options: {error}") from None
+        raise ValueError(_in_words(error, chosen["options"])) from None
     return _pose_and_info(answer, len(x1))
 
 
 def estimate_relative_poses(pairs: Iterable[tuple[Any, ...]], options: Optional[Mapping[str, Any]] = None,
-                            bounds: Iterable[tuple[float, float]] = (), threads: int = 0) -> Poses:
+                            bounds: Iterable[tuple[float, float]] = (), threads: int = 0,
+                            estimators: Optional[Mapping[str, Callable[..., Any]]] = None) -> Poses:
     """Estimates the motions of many pairs of images on several threads.
 
     Parameters
     ----------
     pairs : iterable of (x1, x2, camera1, camera2) or (x1, x2, camera1, camera2, noise_scale)
         Each as `estimate_relative_pose` takes them; noise_scale as its option.
-    options, bounds
+    options, bounds, estimators
         As there, but for the options noise_scale and integrity_risk.
     threads : int
         0 (default): one per core. The result does not depend on it: each pair has the answer of a call of its own.
@@ -141,11 +151,13 @@ def estimate_relative_poses(pairs: Iterable[tuple[Any, ...]], options: Optional[
     chosen = _options(options, 0)
     limits = _bounds(bounds)
     threads = _check.whole("threads", threads, 0, 1024)
+    functions = _functions(estimators)
     try:
         answer = _rcme.estimate_many(problems, chosen["sigma_px"], chosen["estimator"], chosen["estimator_file"],
-                                     chosen["options"], chosen["seed"], chosen["allow_process"], limits, threads)
+                                     chosen["options"], chosen["seed"], chosen["allow_process"], limits, threads,
+                                     functions)
     except ValueError as error:
-        raise ValueError(f"options: {error}") from None
+        raise ValueError(_in_words(error, chosen["options"])) from None
     inliers = [np.zeros(len(problem[0]), dtype=bool) for problem in problems]
     for mask, numbers in zip(inliers, answer["inliers"]):
         mask[numbers] = True
@@ -160,6 +172,40 @@ def estimators() -> dict[str, dict[str, Any]]:
     return {name: {"doc": doc, "options": {option: dict(zip(("default", "unit", "allowed", "doc"), parts))
                                            for option, parts in options.items()}}
             for name, doc, options in _rcme.estimators() if name != "python"}
+
+
+def intrinsics(camera: Any) -> np.ndarray:
+    """K (3, 3) = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] (px) of a camera as `estimate_relative_pose` takes it, such as a function
+    of `run` is given. What a lens distorts is not in it. ValueError: no such camera."""
+    _check.camera("camera", camera)
+    if not isinstance(camera, Mapping):
+        K = np.array(camera, dtype=np.float64)
+        return K / K[2, 2]
+    fx, fy, cx, cy = (float(camera["params"][place]) for place in _check.CAMERA_MODELS[camera["model"]][1])
+    return np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
+
+
+def _in_words(error: ValueError, options: list[tuple[str, str]]) -> str:
+    """What is wrong with the options; one that no estimator has may be misspelt of the call itself."""
+    text = str(error)
+    near = [match for key, _ in options if key in text for match in difflib.get_close_matches(key, OPTIONS_OF_CALLS, 1, 0.7)]
+    return f"options: {text}" + (f" (did you mean '{near[0]}'?)" if near else "")
+
+
+def _functions(estimators: Any) -> Functions:
+    expected = "a dict {name: function}"
+    if estimators is None:
+        return {}
+    if not isinstance(estimators, Mapping):
+        raise ValueError(f"estimators: {_check.words(estimators)} is not allowed; expected {expected}")
+    functions: Functions = {}
+    for name, function in estimators.items():
+        place = f"estimators[{_check.plain('estimators: a name', name)!r}]"
+        if not callable(function):
+            raise ValueError(f"{place}: {_check.words(function)} is not allowed; expected {expected} (others are named by the "
+                             "options estimator and estimator_file)")
+        functions[name] = named_function(place, function)
+    return functions
 
 
 def _options(options: Optional[Mapping[str, Any]], num_matches: int) -> dict[str, Any]:
@@ -228,7 +274,9 @@ def _prior(prior: Any) -> Optional[_rcme.MotionPrior]:
         return _check.shaped(f"prior['{key}']", rest.pop(key), shape, key)
 
     def sd(key: str) -> float:
-        return float(np.radians(_check.number(f"prior['{key}']", rest.pop(key, None), 1e-4, 180.0)))
+        if rest.get(key) is None:
+            raise ValueError(f"prior: {key} is missing; expected the standard deviation in degrees, a number in [0.0001, 180]")
+        return float(np.radians(_check.number(f"prior['{key}']", rest.pop(key), 1e-4, 180.0)))
 
     rotation: list[float] = []
     gravity: list[float] = []

@@ -3,40 +3,89 @@ status; nothing of it is an exception of the run."""
 
 from __future__ import annotations
 
+import difflib
 import hashlib
 import inspect
-from collections.abc import Callable, Mapping
+import os
+import traceback
+import warnings
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 ANSWER = "(pose, info), a pose (R, t), or None"
 MAX_MESSAGE = 500
+KEYS = ("inliers", "pose_cov", "p_failure", "sigma", "inlier_probabilities", "status", "message")
+# More of what `estimate_relative_pose` and PoseLib return with a pose; not read, so that a function can pass it on.
+PASSED_ON = ("estimator", "num_inliers", "sigma_sd", "prior", "prior_p_value", "p_failure_domain", "p_failure_for_bounds",
+             "protection_levels", "other_motions", "refinements", "iterations", "inlier_ratio", "model_score")
 
 
 class Unreadable(Exception):
     """What came back is no answer; the message says what it is."""
 
 
-def estimator_of(function: Callable[..., Any]) -> Callable[..., dict[str, Any]]:
-    """The function as the C++ half calls it: never raises, returns the fields of an answer."""
+class FunctionEstimator:
+    """The function as the C++ half calls it: never raises, returns the fields of an answer. It remembers what the function
+    raised, and which answers could not be read."""
 
-    def call(x1: np.ndarray, x2: np.ndarray, camera1: dict[str, Any], camera2: dict[str, Any], sigma_px: float,
-             noise_scale: np.ndarray | None, seed: int) -> dict[str, Any]:
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.function = function
+        self.num_calls = 0
+        self.counts = {"library_error": 0, "unreadable_answer": 0}
+        self.first: dict[str, str] = {}
+
+    def __call__(self, x1: np.ndarray, x2: np.ndarray, camera1: dict[str, Any], camera2: dict[str, Any], sigma_px: float,
+                 noise_scale: np.ndarray | None, seed: int) -> dict[str, Any]:
         num_matches = len(x1)
+        self.num_calls += 1
         options = {"sigma_px": sigma_px, "seed": seed}
         if noise_scale is not None:
             options["noise_scale"] = noise_scale
         try:
-            result = function(x1, x2, camera1, camera2, options)
+            result = self.function(x1, x2, camera1, camera2, options)
         except BaseException as error:  # noqa: BLE001 (also SystemExit: the run is not the function's to end)
-            return {"status": "library_error", "message": _in_words(error)}
+            return self._note("library_error", _in_words(error) + _place_of(error, self.function))
         try:
             return fields_of(result, num_matches)
         except BaseException as error:  # noqa: BLE001 (an object of the user's own may raise anything)
-            return {"status": "unreadable_answer", "message": _in_words(error)}
+            return self._note("unreadable_answer", _in_words(error))
 
-    return call
+    def warn(self, label: str) -> None:
+        """A warning of each kind of thing that went wrong, with the words of the first."""
+        kinds = {"library_error": "raised an exception", "unreadable_answer": "returned what is no answer"}
+        for status, words in kinds.items():
+            if self.counts[status]:
+                warnings.warn(f"estimators[{label!r}] {words} in {self.counts[status]} of {self.num_calls} calls ({status}); "
+                              f"first: {self.first[status]}", RuntimeWarning, stacklevel=4)
+
+    def _note(self, status: str, message: str) -> dict[str, Any]:
+        self.counts[status] += 1
+        self.first.setdefault(status, message)
+        return {"status": status, "message": message}
+
+
+Functions = dict[str, tuple[FunctionEstimator, str]]
+
+
+def named_function(name: str, function: Callable[..., Any]) -> tuple[FunctionEstimator, str]:
+    """The function as an estimator, with the hash of its source; ValueError where it cannot take the arguments."""
+    try:
+        signature = inspect.signature(function)
+    except (TypeError, ValueError):  # some functions of C have none
+        return FunctionEstimator(function), code_of(function)
+    try:
+        signature.bind(*(None,) * 5)
+    except TypeError as error:
+        raise ValueError(f"{name}: its parameters are {signature} ({error}); expected a function of (x1, x2, camera1, camera2, "
+                         "options)") from None
+    return FunctionEstimator(function), code_of(function)
+
+
+def warn_of(functions: Functions) -> None:
+    for label, (function, _) in functions.items():
+        function.warn(label)
 
 
 def code_of(function: Callable[..., Any]) -> str:
@@ -55,6 +104,7 @@ def code_of(function: Callable[..., Any]) -> str:
 def fields_of(result: Any, num_matches: int) -> dict[str, Any]:
     """The fields of an answer; Unreadable where it is none."""
     pose, info = _split(result)
+    _refuse_unknown("info", info, KEYS, PASSED_ON)
     status = info.get("status", "no_candidate" if pose is None else "ok")
     if not isinstance(status, str):
         raise Unreadable(f"info['status'] is a {type(status).__name__}; expected a text")
@@ -85,6 +135,25 @@ def _in_words(error: BaseException) -> str:
     return (name + text.encode("utf-8", "replace").decode())[:MAX_MESSAGE]
 
 
+def _place_of(error: BaseException, function: Callable[..., Any]) -> str:
+    """ in mine.py:12: the last line in the function's own file, or where there is none the last of all."""
+    try:
+        frames = traceback.extract_tb(error.__traceback__)[1:]  # the first is this module's
+        code = getattr(inspect.unwrap(getattr(function, "func", function)), "__code__", None)
+        frame = ([frame for frame in frames if code and frame.filename == code.co_filename] or frames)[-1]
+    except Exception:  # noqa: BLE001 (no frames; attributes of the user's own)
+        return ""
+    return f" in {os.path.basename(frame.filename)}:{frame.lineno}"
+
+
+def _refuse_unknown(what: str, given: Mapping[str, Any], allowed: tuple[str, ...], passed_on: Iterable[str] = ()) -> None:
+    unknown = [key for key in given if key not in allowed and key not in passed_on]
+    if unknown:
+        near = difflib.get_close_matches(str(unknown[0]), allowed, 1)
+        hint = f" (did you mean {near[0]!r}?)" if near else ""
+        raise Unreadable(f"{what}[{str(unknown[0])[:40]!r}] is not known{hint}; expected keys among: {', '.join(allowed)}")
+
+
 def _split(result: Any) -> tuple[Any, Mapping[str, Any]]:
     is_pair = isinstance(result, tuple) and len(result) == 2
     if not is_pair or not (result[1] is None or isinstance(result[1], Mapping)):
@@ -97,6 +166,7 @@ def _motion(pose: Any) -> tuple[np.ndarray, np.ndarray]:
     if isinstance(pose, Mapping):
         if "R" not in pose or "t" not in pose:
             raise Unreadable(f"the pose is a dict without R or t; expected {ANSWER}")
+        _refuse_unknown("pose", pose, ("R", "t"))
         R, t = pose["R"], pose["t"]
     elif hasattr(pose, "R") and hasattr(pose, "t"):
         R, t = pose.R, pose.t
@@ -133,11 +203,15 @@ def _indices(inliers: Any, num_matches: int) -> list[int]:
         return []
     if array.ndim != 1 or array.dtype.kind not in "biu":
         raise Unreadable(f"info['inliers'] is of shape {array.shape} and type {array.dtype}; expected a mask of {num_matches} "
-                         "truth values, or indices")
+                         "truth values (convert with .astype(bool)), or indices")
     if array.dtype in (np.bool_, np.uint8):
         if len(array) != num_matches:
             raise Unreadable(f"info['inliers'] is a mask of {len(array)}; expected one of {num_matches}")
         return np.flatnonzero(array).tolist()
     if (array < 0).any() or (array >= num_matches).any():
         raise Unreadable(f"info['inliers'] has indices outside 0 to {num_matches - 1}")
+    if len(np.unique(array)) < len(array):
+        if len(array) == num_matches and (array <= 1).all():
+            raise Unreadable("info['inliers'] is a mask of integers, which would be read as indices; convert with .astype(bool)")
+        raise Unreadable("info['inliers'] has an index twice; expected a mask (convert with .astype(bool)), or each index once")
     return array.tolist()

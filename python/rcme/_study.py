@@ -15,7 +15,7 @@ import numpy as np
 import pandas
 
 from rcme import _check, _rcme
-from rcme._function import code_of, estimator_of
+from rcme._function import Functions, named_function, warn_of
 
 Study = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 Estimator = Union[Callable[..., Any], Mapping[str, Any], str, "os.PathLike[str]"]
@@ -81,8 +81,9 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
           [w, dt], inliers (mask or indices), p_failure, sigma, inlier_probabilities, status, message, each of which may be
           left out; or None where it finds no motion. Without pose_cov it is given the first-order covariance of its inliers;
           without inliers, those are the matches that agree with its motion. Nothing that it does ends the run: an exception
-          is the status library_error, an answer of a wrong type or shape unreadable_answer, a matrix that is no rotation
-          invalid_motion; the summary counts them. It should depend on its arguments alone: the seed is the trial's.
+          is the status library_error, an answer of a wrong type or shape or with an unknown key unreadable_answer, a matrix that
+          is no rotation invalid_motion; the summary counts them, and a RuntimeWarning at the end says what the first one was. It
+          should depend on its arguments alone: the seed is the trial's.
         - a dict {"name": ..., "options": {...}} of a registered estimator, or the path of an estimator file.
     out : path of the result file; a run that was cut off is resumed, a file of another study (or of a function whose source
         has changed) is refused. Default: a file that is gone when the interpreter ends.
@@ -100,7 +101,8 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
 
     Raises
     ------
-    ValueError : an argument, a study or a result file that is wrong. KeyboardInterrupt: Ctrl-C; the trials so far are kept.
+    ValueError : an argument, a study or a result file that is wrong, a function that cannot take the five arguments.
+    KeyboardInterrupt: Ctrl-C; the trials so far are kept.
     RuntimeError: another run or audit of this process has not ended.
     """
     source = source_of(study, overrides, seed=seed, trials=trials, allow_process=allow_process)
@@ -109,6 +111,7 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
     path = _own_path() if out is None else _check.path("out", out, "a result file")
     with alone("run"):
         _rcme.run(source, functions, num_threads, path)
+    warn_of(functions)
     return path
 
 
@@ -138,7 +141,8 @@ def conform(study: Study, *, estimator: Optional[str] = None, out: Optional[str]
     """Makes an estimator keep its word by the problems of a study, as `rcme conform` does (docs/conform.md).
 
     `estimator`: a label of the study or of `estimators`, which are those of `run`, functions too. `out`: the file to write; it is the
-    estimator `conform` with the option `file`, for `estimate_relative_pose` and `run`. `check`: a file of before, to be tested on the study's
+    estimator `conform` with the option `file`, for `estimate_relative_pose` and `run`, which are given the same `estimators` where
+    it is of a function. `check`: a file of before, to be tested on the study's
     problems instead. `level`, `wrong_and_accepted`, `risk`, `new` ("usual", "trial", "condition") and `models` as the command's options.
     Returns its report as a dict: `regions`, `accept`, `probabilities`, `promises`, of a check `shift`. Other arguments and errors as
     for `run`.
@@ -159,6 +163,7 @@ def conform(study: Study, *, estimator: Optional[str] = None, out: Optional[str]
     num_threads = _check.whole("threads", threads, 0, 1024)
     with alone("conform"):
         answer = _rcme.conform(source, functions, label, *numbers, new, *files, num_threads)
+    warn_of(functions)
     if path is not None:
         _rcme.write_file(path, answer["file"])
     return json.loads(answer["json"])
@@ -179,9 +184,9 @@ def source_of(study: Optional[Study], overrides: Optional[Mapping[str, Any]] = N
 
 
 def add_estimators(source: _rcme.StudySource,
-                   estimators: Optional[Mapping[str, Estimator]]) -> dict[str, tuple[Callable[..., Any], str]]:
+                   estimators: Optional[Mapping[str, Estimator]]) -> Functions:
     """Those with a name or a file go into the source; returns the functions, each with the hash of its source."""
-    functions = {}
+    functions: Functions = {}
     if estimators is None:
         return functions
     expected = "a dict {label: function, dict {name, options}, or path of an estimator file}"
@@ -195,7 +200,7 @@ def add_estimators(source: _rcme.StudySource,
         elif isinstance(estimator, (str, os.PathLike)):
             source.add_estimator_file(label, _check.existing_or_shared(name, estimator, "an estimator file"))
         elif callable(estimator):
-            functions[label] = (estimator_of(estimator), code_of(estimator))
+            functions[label] = named_function(name, estimator)
         else:
             raise ValueError(f"{name}: {_check.words(estimator)} is not allowed; expected {expected}")
     return functions

@@ -11,6 +11,7 @@ from typing import Any, Optional, Union
 import pandas
 
 from rcme import _check, _rcme
+from rcme._function import warn_of
 from rcme._study import Estimator, Study, add_estimators, alone, source_of
 
 _MARKED = re.compile("^'(?=[' ]*[=+\\-@\t\r\uff1d\uff0b\uff0d\uff20])")
@@ -39,6 +40,28 @@ def summarize(run: str, *, times: bool = False, pooled: bool = False) -> pandas.
     """
     path = _check.existing("run", run, "a result file")
     return _frame(_rcme.summary_csv(path, _check.yes_or_no("times", times), _check.yes_or_no("pooled", pooled)))
+
+
+def trials(run: str, *, times: bool = False) -> pandas.DataFrame:
+    """Every trial of every estimator, a row each, nothing summarized: `rcme summarize --raw csv`.
+
+    Parameters
+    ----------
+    run : path of a result file
+    times : bool; with the column seconds, which no two runs share
+
+    Returns
+    -------
+    DataFrame with the columns study, condition, one per factor, trial, estimator (its label), outcome (success, failure, refusal,
+    not_scored), status, and the numbers of the tables trials and problems of the file (docs/result_file.md). Unknown
+    numbers are NaN.
+
+    Raises
+    ------
+    ValueError : no such file, no sound result file, or one that keeps counts instead of trials.
+    """
+    path = _check.existing("run", run, "a result file")
+    return _frame(_rcme.trials_csv(path, _check.yes_or_no("times", times)))
 
 
 def compare(run: str, against: Optional[str] = None, *, of: Union[str, Sequence[str]] = "events",
@@ -112,6 +135,7 @@ def audit(study: Optional[Study] = None, estimators: Optional[Mapping[str, Estim
     num_threads = _check.whole("threads", threads, 0, 1024)
     with alone("audit"):
         text = _rcme.audit_json(source, functions, wanted, is_full, num_threads)
+    warn_of(functions)
     return pandas.DataFrame(_audit_rows(json.loads(text)), columns=AUDIT_COLUMNS)
 
 

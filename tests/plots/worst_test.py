@@ -168,7 +168,7 @@ class Events(unittest.TestCase):
         sure_failure = {"outcome": "failure", "nees": "40", "failure_probability": "0.005"}
         doubtful = {**sure_failure, "failure_probability": "0.4"}
         silent = {**sure_failure, "failure_probability": ""}
-        absent = {**silent, "outcome": "not_simulated"}
+        absent = {**silent, "outcome": "not_scored"}
         self.assertEqual([event_of("failure", row) for row in (sure_failure, doubtful, silent, absent)], [1, 1, 1, -1])
         self.assertEqual([event_of("sure_failure", row) for row in (sure_failure, doubtful, silent, absent)], [1, -1, -1, -1])
         self.assertEqual([event_of("coverage", row) for row in (sure_failure, doubtful, silent)], [1, -1, -1])

@@ -41,6 +41,23 @@ class Conform(unittest.TestCase):
         covered = table[table.quantity == "nees_coverage"].groupby("estimator")["value"].mean()
         self.assertGreater(covered["kept"], covered["mine"] + 0.3)
 
+    def test_the_file_of_a_function_is_an_estimator_of_single_calls(self):
+        self.make()
+        trial = rcme.simulate(STUDY, 0, 3)
+        pair = [trial[key] for key in ("x1", "x2", "camera1", "camera2")]
+        options = {"estimator": "conform", "file": self.file, "accept_rule": "ignore"}
+        _, alone = rcme.estimate_relative_pose(*pair, {"estimator": "mine"}, estimators=self.functions)
+        pose, kept = rcme.estimate_relative_pose(*pair, options, estimators=self.functions)
+        self.assertIsNotNone(pose)
+        self.assertGreater(np.trace(kept["pose_cov"]), 10 * np.trace(alone["pose_cov"]))
+        many = rcme.estimate_relative_poses([pair] * 3, options, estimators=self.functions)
+        np.testing.assert_array_equal(many.R[2], pose.R)
+        np.testing.assert_array_equal(many.pose_cov[2], kept["pose_cov"])
+        with self.assertRaisesRegex(ValueError, "'mine' is not there"):
+            rcme.estimate_relative_pose(*pair, options)
+        with self.assertRaisesRegex(ValueError, "'mine' has changed"):
+            rcme.estimate_relative_pose(*pair, options, estimators={"mine": lambda *arguments: None})
+
     def test_a_change_is_noticed(self):
         self.make()
         same = rcme.conform(STUDY, check=self.file, estimators=self.functions, trials=40, seed=6)["shift"]

@@ -177,6 +177,8 @@ class Estimate(unittest.TestCase):
         simple = {"model": "SIMPLE_PINHOLE", "width": self.trial["camera1"]["width"],
                   "height": self.trial["camera1"]["height"], "params": [fx, cx, cy]}
         first, _ = rcme.estimate_relative_pose(*self.arguments, {"estimator": "standard"})
+        for camera in (self.trial["camera1"], K, 2 * K, K.tolist(), simple):
+            np.testing.assert_array_equal(rcme.intrinsics(camera), K)
         for camera in (K, K.tolist(), simple):
             pose, info = rcme.estimate_relative_pose(*self.arguments[:2], camera, camera, {"estimator": "standard"})
             np.testing.assert_array_equal(pose.R, first.R)

@@ -6,6 +6,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import warnings
 
 import numpy as np
 import rcme
@@ -50,7 +51,11 @@ ANSWERS = {
     "nan": ((np.full((3, 3), np.nan), np.ones(3)), "invalid_motion"),
     "no_length": ((np.eye(3), np.zeros(3)), "invalid_motion"),
     "inliers": (((np.eye(3), np.ones(3)), {"inliers": [5000]}), "unreadable_answer"),
-    "twice": (((np.eye(3), np.ones(3)), {"inliers": [1, 1], "pose_cov": np.eye(6)}), "invalid_motion"),
+    "twice": (((np.eye(3), np.ones(3)), {"inliers": [1, 1], "pose_cov": np.eye(6)}), "unreadable_answer"),
+    "integers": (((np.eye(3), np.ones(3)), {"inliers": np.arange(100) % 2}), "unreadable_answer"),
+    "list_of_integers": (((np.eye(3), np.ones(3)), {"inliers": [0, 1] * 50}), "unreadable_answer"),
+    "key": (((np.eye(3), np.ones(3)), {"covariance": np.eye(6)}), "unreadable_answer"),
+    "key_of_the_pose": ({"R": np.eye(3), "t": np.ones(3), "pose_cov": np.eye(6)}, "unreadable_answer"),
     "mask": (((np.eye(3), np.ones(3)), {"inliers": np.ones(7, dtype=bool)}), "unreadable_answer"),
     "covariance_shape": (((np.eye(3), np.ones(3)), {"pose_cov": np.eye(5)}), "unreadable_answer"),
     "covariance": (((np.eye(3), np.ones(3)), {"pose_cov": -np.eye(6)}), "invalid_covariance"),
@@ -100,6 +105,36 @@ class Run(unittest.TestCase):
                                                                               "leaves": "library_error"}
         for name, status in expected.items():
             self.assertEqual(statuses_of(run, name), {} if status == "ok" else {status: 1.0}, name)
+
+    def test_what_went_wrong_is_said(self):
+        """The first exception with its line, what is no answer with what to do; nothing of a function that does well."""
+        functions = {"raises": raise_error, "key": lambda *arguments: ((np.eye(3), np.ones(3)), {"inlier_mask": None, "inlers": 1}),
+                     "mask": lambda x1, *arguments: ((np.eye(3), np.ones(3)), {"inliers": [0, 1] * (len(x1) // 2)}), "well": identity}
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            rcme.run(STUDY, functions, trials=2)
+        said = [str(warning.message) for warning in caught if warning.category is RuntimeWarning]
+        line = raise_error.__code__.co_firstlineno + 1
+        self.assertEqual(len(said), 3)
+        self.assertTrue(all(warning.filename == __file__ for warning in caught))
+        by_label = {text.split("'")[1]: text for text in said}
+        self.assertIn(f"raised an exception in 4 of 4 calls (library_error); first: KeyError: 'of the function' in run_test.py:{line}",
+                      by_label["raises"])
+        self.assertIn("info['inlier_mask'] is not known (did you mean 'inliers'?); expected keys among: inliers, pose_cov", by_label["key"])
+        self.assertIn("convert with .astype(bool)", by_label["mask"])
+
+    def test_a_function_of_other_parameters_is_refused(self):
+        for function in (lambda x1, x2: None, lambda x1, x2, camera1, camera2, *, options: None):
+            with tempfile.TemporaryDirectory() as folder:
+                out = os.path.join(folder, "run.sqlite")
+                with self.assertRaisesRegex(ValueError, r"estimators\['mine'\].*\(x1, x2, camera1, camera2, options\)"):
+                    rcme.run(STUDY, {"mine": function}, out=out)
+                self.assertFalse(os.path.exists(out))
+
+    def test_what_others_return_can_be_passed_on(self):
+        info = {"inliers": np.ones(100, dtype=np.uint8), "num_inliers": 100, "iterations": 3, "pose_cov": np.eye(6)}
+        run = rcme.run(STUDY, {"mine": lambda *arguments: ((np.eye(3), np.ones(3)), info)}, trials=2)
+        self.assertEqual(statuses_of(run, "mine"), {})
 
     def test_arguments_are_the_problem_and_nothing_else(self):
         seen = []
@@ -167,6 +202,18 @@ class Tables(unittest.TestCase):
         rates = frame[frame.kind == "rate"]
         self.assertTrue(((rates.lower <= rates.value) & (rates.value <= rates.upper) | (rates.n == 0)).all())
         self.assertEqual(len(rcme.summarize(self.run_file, pooled=True).condition.unique()), 1)
+
+    def test_trials(self):
+        frame = rcme.trials(self.run_file)
+        self.assertEqual(len(frame), 2 * 20 * 3)
+        self.assertEqual(list(frame.columns[:7]), ["study", "condition", "outlier_ratio", "trial", "estimator", "outcome", "status"])
+        rates = rcme.summarize(self.run_file)
+        rates = rates[rates.quantity == "success"].set_index(["condition", "estimator"]).value
+        counted = (frame.outcome == "success").groupby([frame.condition, frame.estimator]).mean()
+        np.testing.assert_allclose(counted, rates[counted.index], atol=1e-9)
+        self.assertEqual(frame.rotation_error_deg.dtype, float)
+        self.assertNotIn("seconds", frame)
+        self.assertIn("seconds", rcme.trials(self.run_file, times=True))
 
     def test_compare(self):
         frame = rcme.compare(self.run_file, "standard", of=["failure", "auc_10_deg"])

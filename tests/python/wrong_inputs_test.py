@@ -86,6 +86,8 @@ WRONG = {
         ("options", dict(options={"estimator": "standard", "mu": 3})), ("options", dict(options={"colour": "red"})),
         ("options", dict(options={"estimator": "standard", "num_iterations": -3})),
         ("options", dict(options={"estimator_file": "/nowhere.yaml"})),
+        ("estimators", dict(estimators=3)), ("estimators", dict(estimators={"mine": "standard"})),
+        ("estimators['mine']", dict(estimators={"mine": lambda x1, x2: None})),
         ("options", dict(options={"estimator": "python"})), ("options", dict(options={1: 2})),
     ]],
     "conditions": NO_STUDIES,
@@ -111,6 +113,8 @@ WRONG = {
         ("only", dict(study=STUDY, only=3)), ("nothing", dict(study=STUDY, only="nothing"))],
     "summarize": NO_RUNS + [("times", dict(run=__file__, times=1)), ("pooled", dict(run=__file__, pooled="yes")),
                             ("wrong_inputs_test", dict(run=__file__)), ("run", dict(run=["a"])), ("run", dict(run={}))],
+    "trials": NO_RUNS + [("times", dict(run=__file__, times=1)), ("times", dict(run=__file__, times="yes")),
+                         ("wrong_inputs_test", dict(run=__file__)), ("run", dict(run=["a"])), ("run", dict(run={}))],
     "compare": NO_RUNS + [("against", dict(run=__file__, against=3)), ("of", dict(run=__file__, of=3)),
                           ("of", dict(run=__file__, of=[])), ("anytime", dict(run=__file__, anytime=None)),
                           ("wrong_inputs_test", dict(run=__file__))],
@@ -153,7 +157,7 @@ class WrongInputs(unittest.TestCase):
                 self.assertLess(len(str(caught.exception)), 3000)
 
     def test_each_call(self):
-        public = {name for name in rcme.__all__ if inspect.isfunction(getattr(rcme, name))} - {"estimators"}
+        public = {name for name in rcme.__all__ if inspect.isfunction(getattr(rcme, name))} - {"estimators", "intrinsics"}
         self.assertEqual(public, set(WRONG))
         for name, cases in WRONG.items():
             self.check(getattr(rcme, name), cases)
@@ -169,6 +173,16 @@ class WrongInputs(unittest.TestCase):
             rcme.estimate_relative_pose(X.T, X, K, K)
         with self.assertRaisesRegex(ValueError, r"x2: its shape is \(7, 2\); expected that of x1, \(20, 2\)"):
             rcme.estimate_relative_pose(X, X[:7], K, K)
+
+    def test_what_to_do_is_said(self):
+        with self.assertRaisesRegex(ValueError, "camera: None is not allowed"):
+            rcme.intrinsics(None)
+        for words, changed in ((r"convert with .reshape\(-1, 2\)", dict(x1=X[:, None])),
+                               ("did you mean 'sigma_px'", dict(options={"sigma": 2})),
+                               ("camera1: None is not allowed; expected a dict", dict(camera1=None)),
+                               ("gravity_sd_deg is missing", dict(prior={"gravity1": [0, 1, 0], "gravity2": [0, 1, 0]}))):
+            with self.assertRaisesRegex(ValueError, words):
+                rcme.estimate_relative_pose(**{**dict(x1=X, x2=X, camera1=K, camera2=K), **changed})
 
     def test_a_damaged_result_file(self):
         with tempfile.NamedTemporaryFile(suffix=".sqlite") as file:

@@ -12,7 +12,6 @@ namespace rcme {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Cells = std::vector<std::vector<std::string>>;  // of the headings, then of each row
 
 template <typename... Visitors>
 struct Overloaded : Visitors... {
@@ -75,51 +74,61 @@ std::string FormatValue(const Value& value, const Column& column, const Signs& s
       value);
 }
 
-// The headings, then the rows.
+// In a cell, line ends are spaces.
+void AppendCell(std::string text, std::vector<std::string>* row) {
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  row->push_back(std::move(text));
+}
+
 Cells FormatCells(const Table& table) {
-  Cells cells(1);
-  for (const Column& column : table.columns) cells[0].push_back(column.Heading());
-  for (const std::vector<Value>& row : table.rows) {
-    cells.emplace_back();
-    for (size_t c = 0; c < row.size(); ++c)
-      cells.back().push_back(FormatValue(row[c], table.columns[c], kPlainSigns));
-  }
-  for (std::vector<std::string>& row : cells) {
-    for (std::string& cell : row)
-      std::ranges::replace_if(
-          cell, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  }
+  Cells cells;
+  AppendCells(table, &cells);
   return cells;
 }
 
 constexpr size_t kGap = 2;  // between columns
 
-size_t FindWidth(const Cells& cells, size_t c) {
-  return std::ranges::max_element(cells, {}, [c](const auto& row) { return row[c].size(); })->at(c).size();
+// Of column c, whose cells below the heading go on in further lines where they are wider than `most`.
+size_t FindWidth(const Cells& cells, size_t c, size_t most = std::string::npos) {
+  size_t width = cells[0][c].size();
+  for (size_t r = 1; r < cells.size(); ++r) {
+    const std::string& cell = cells[r][c];
+    if (cell.size() <= most) {
+      width = std::max(width, cell.size());
+      continue;
+    }
+    for (const std::string& line : BreakLines(cell, most)) width = std::max(width, line.size());
+  }
+  return width;
 }
 
 // What a cell of each column may take: a text half of `width`, and not more than the keys leave of it; the
 // only column beside the keys all that they leave.
-std::vector<size_t> FindMostWidths(const Table& table, const Cells& cells, size_t width) {
+std::vector<size_t> FindMostWidths(const std::vector<Column>& columns, const Cells& cells, size_t width) {
   const size_t half = width / 2;
   size_t keys_width = 0, num_others = 0;
-  for (size_t c = 0; c < table.columns.size(); ++c) {
-    num_others += !table.columns[c].is_key;
-    if (table.columns[c].is_key) keys_width += std::min(FindWidth(cells, c), half) + kGap;
+  for (size_t c = 0; c < columns.size(); ++c) {
+    num_others += !columns[c].is_key;
+    if (columns[c].is_key) keys_width += std::min(FindWidth(cells, c), half) + kGap;
   }
   const size_t rest =
       std::clamp(width - std::min(keys_width, width), half / 2, num_others == 1 ? width : half);
   std::vector<size_t> most;
-  for (const Column& column : table.columns)
+  for (const Column& column : columns)
     most.push_back(column.type != ColumnType::kText ? std::string::npos : column.is_key ? half : rest);
   return most;
 }
 
 // Cells that are wider than they may be go on in rows of their own, whose other cells are empty.
-Cells BreakCells(const Cells& cells, const std::vector<size_t>& most) {
-  Cells broken = {cells[0]};
+Cells BreakCells(Cells cells, const std::vector<size_t>& most) {
+  const auto is_whole = [&](const std::vector<std::string>& row) {
+    return std::ranges::equal(row, most, [](const std::string& cell, size_t m) { return cell.size() <= m; });
+  };
+  if (std::all_of(cells.begin() + 1, cells.end(), is_whole)) return cells;
+  Cells broken = {std::move(cells[0])};
   for (size_t r = 1; r < cells.size(); ++r) {
-    const std::vector<std::string>& row = cells[r];
+    const std::vector<std::string> row = std::move(cells[r]);
     const size_t first = broken.size();
     broken.push_back(row);
     for (size_t c = 0; c < row.size(); ++c) {
@@ -132,51 +141,56 @@ Cells BreakCells(const Cells& cells, const std::vector<size_t>& most) {
   return broken;
 }
 
-// The headings and cells of these columns, without rows that say nothing beside their keys, but for the first
-// block.
-Cells SelectBlock(const Table& table, const Cells& cells, const std::vector<size_t>& block, bool is_first) {
+// Takes the headings and cells of these columns, of which the keys alone are left, without rows that say
+// nothing beside their keys, but for the first block.
+Cells TakeBlock(const std::vector<Column>& columns, const std::vector<size_t>& block, bool is_first,
+                Cells* cells) {
   Cells part;
-  for (const std::vector<std::string>& row : cells) {
+  for (std::vector<std::string>& row : *cells) {
     const bool says_something = std::ranges::any_of(block, [&](size_t c) {
-      return !table.columns[c].is_key && row[c].find_first_not_of(' ') != std::string::npos;
+      return !columns[c].is_key && row[c].find_first_not_of(' ') != std::string::npos;
     });
     if (!says_something && !is_first && !part.empty()) continue;
     part.emplace_back();
-    for (const size_t c : block) part.back().push_back(row[c]);
+    part.back().reserve(block.size());
+    for (const size_t c : block) part.back().push_back(columns[c].is_key ? row[c] : std::move(row[c]));
   }
   return part;
 }
 
 // Pads counts on the left, so that they end below each other.
-void AlignCounts(const Table& table, Cells* cells) {
-  for (size_t c = 0; c < table.columns.size(); ++c) {
-    if (table.columns[c].type != ColumnType::kCount) continue;
+void AlignCounts(const std::vector<Column>& columns, Cells* cells) {
+  for (size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].type != ColumnType::kCount) continue;
     size_t width = 0;
     for (const auto& row : *cells) width = std::max(width, row[c].size());
     for (auto& row : *cells) row[c].insert(0, width - row[c].size(), ' ');
   }
 }
 
-// The columns of each block: the keys, and as many others as fit.
-std::vector<std::vector<size_t>> SplitIntoBlocks(const Table& table, const Cells& cells, size_t max_width) {
+// The columns of each block: the keys, and as many others as fit. most: the width of each that cells may
+// have.
+std::vector<std::vector<size_t>> SplitIntoBlocks(const std::vector<Column>& columns, const Cells& cells,
+                                                 const std::vector<size_t>& most, size_t max_width) {
   std::vector<size_t> keys;
   size_t keys_width = 0;
-  const auto width_of = [&](size_t c) { return FindWidth(cells, c) + kGap; };
-  for (size_t c = 0; c < table.columns.size(); ++c) {
-    if (!table.columns[c].is_key) continue;
+  const auto width_of = [&](size_t c) { return FindWidth(cells, c, most[c]) + kGap; };
+  for (size_t c = 0; c < columns.size(); ++c) {
+    if (!columns[c].is_key) continue;
     keys.push_back(c);
     keys_width += width_of(c);
   }
   std::vector<std::vector<size_t>> blocks = {keys};
   size_t width = keys_width;
-  for (size_t c = 0; c < table.columns.size(); ++c) {
-    if (table.columns[c].is_key) continue;
-    if (width + width_of(c) > max_width + kGap && blocks.back().size() > keys.size()) {
+  for (size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].is_key) continue;
+    const size_t width_of_column = width_of(c);
+    if (width + width_of_column > max_width + kGap && blocks.back().size() > keys.size()) {
       blocks.push_back(keys);
       width = keys_width;
     }
     blocks.back().push_back(c);
-    width += width_of(c);
+    width += width_of_column;
   }
   return blocks;
 }
@@ -256,19 +270,35 @@ std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format)
   return FormatEstimate(estimate, format, kPlainSigns);
 }
 
-std::string RenderText(const Table& table, size_t width) {
-  Cells cells = FormatCells(table);
-  AlignCounts(table, &cells);
-  const std::vector<size_t> most = FindMostWidths(table, cells, width);
+void AppendCells(const Table& rows, Cells* cells) {
+  if (cells->empty()) {
+    cells->emplace_back();
+    for (const Column& column : rows.columns) AppendCell(column.Heading(), &cells->back());
+  }
+  for (const std::vector<Value>& row : rows.rows) {
+    cells->emplace_back();
+    cells->back().reserve(row.size());
+    for (size_t c = 0; c < row.size(); ++c)
+      AppendCell(FormatValue(row[c], rows.columns[c], kPlainSigns), &cells->back());
+  }
+}
+
+std::string RenderCells(const std::vector<Column>& columns, Cells cells, size_t width) {
+  AlignCounts(columns, &cells);
+  const std::vector<size_t> most = FindMostWidths(columns, cells, width);
   std::string text;
-  for (const std::vector<size_t>& block : SplitIntoBlocks(table, BreakCells(cells, most), width)) {
+  for (const std::vector<size_t>& block : SplitIntoBlocks(columns, cells, most, width)) {
     std::vector<size_t> most_of_block;
     for (const size_t c : block) most_of_block.push_back(most[c]);
-    const Cells part = SelectBlock(table, cells, block, text.empty());
+    Cells part = TakeBlock(columns, block, text.empty(), &cells);
     if (part.size() == 1 && cells.size() > 1) continue;
-    text += (text.empty() ? "" : "\n") + FormatColumns(BreakCells(part, most_of_block));
+    text += (text.empty() ? "" : "\n") + FormatColumns(BreakCells(std::move(part), most_of_block));
   }
   return text;
+}
+
+std::string RenderText(const Table& table, size_t width) {
+  return RenderCells(table.columns, FormatCells(table), width);
 }
 
 std::string RenderCsvHeading(const Table& table) {

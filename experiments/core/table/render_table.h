@@ -5,9 +5,12 @@
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "experiments/core/table/table.h"
 #include "experiments/core/text/columns.h"
+#include "experiments/core/text/write_text.h"
 
 namespace rcme {
 
@@ -19,6 +22,33 @@ namespace rcme {
 // "-": not known.
 std::string RenderText(const Table& table, size_t width = kTextWidth);
 
+// The texts of a table's cells, of the headings, then of each row.
+using Cells = std::vector<std::vector<std::string>>;
+void AppendCells(const Table& rows, Cells* cells);
+std::string RenderCells(const std::vector<Column>& columns, Cells cells, size_t width = kTextWidth);
+
+// A table of some of the items after the other: all values of a large table take several times as much memory
+// as their texts.
+template <typename Item, typename Visit>
+void ForEachPart(const std::vector<ColumnOf<Item>>& columns, const std::vector<Item>& items, Visit visit) {
+  constexpr size_t kNumTogether = 1000;
+  for (size_t begin = 0; begin < items.size(); begin += kNumTogether) {
+    const size_t size = std::min(kNumTogether, items.size() - begin);
+    visit(MakeTable(columns, std::span(items).subspan(begin, size)));
+  }
+}
+
+// RenderText(MakeTable(columns, items)).
+template <typename Item>
+std::string RenderText(const std::vector<ColumnOf<Item>>& columns, const std::vector<Item>& items) {
+  const Table heading = MakeTable(columns, std::vector<Item>());
+  Cells cells;
+  cells.reserve(1 + items.size());
+  AppendCells(heading, &cells);
+  ForEachPart(columns, items, [&](const Table& rows) { AppendCells(rows, &cells); });
+  return RenderCells(heading.columns, std::move(cells));
+}
+
 // A cell of RenderText.
 std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format);
 
@@ -28,17 +58,12 @@ std::string RenderCsv(const Table& table);
 // Its parts: that of all rows is the heading and the rows of any division of them.
 std::string RenderCsvHeading(const Table& table);
 std::string RenderCsvRows(const Table& table);
-// RenderCsv(MakeTable(columns, items)) without a table of all items: its values take ten times as much memory
-// as their text.
+// RenderCsv(MakeTable(columns, items)), given to `write` piece by piece.
 template <typename Item>
-std::string RenderCsv(const std::vector<ColumnOf<Item>>& columns, const std::vector<Item>& items) {
-  constexpr size_t kNumTogether = 1000;
-  std::string text = RenderCsvHeading(MakeTable(columns, std::vector<Item>()));
-  for (size_t begin = 0; begin < items.size(); begin += kNumTogether) {
-    const size_t size = std::min(kNumTogether, items.size() - begin);
-    text += RenderCsvRows(MakeTable(columns, std::span(items).subspan(begin, size)));
-  }
-  return text;
+void WriteCsv(const std::vector<ColumnOf<Item>>& columns, const std::vector<Item>& items,
+              const WriteText& write) {
+  write(RenderCsvHeading(MakeTable(columns, std::vector<Item>())));
+  ForEachPart(columns, items, [&](const Table& rows) { write(RenderCsvRows(rows)); });
 }
 
 // An array with an object per row. Numbers have all digits; null: not known, or infinite. An interval is a

@@ -3,16 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 
 namespace rcme {
 namespace {
 
-std::string FormatLine(const std::vector<std::string>& cells, const std::vector<size_t>& widths) {
-  std::string line;
-  for (size_t c = 0; c < cells.size(); ++c) line += fmt::format("{:<{}}  ", cells[c], widths[c]);
-  line.erase(line.find_last_not_of(' ') + 1);
-  return line + "\n";
+void AppendLine(const std::vector<std::string>& cells, const std::vector<size_t>& widths, std::string* text) {
+  const size_t begin = text->size();
+  for (size_t c = 0; c < cells.size(); ++c)
+    fmt::format_to(std::back_inserter(*text), "{:<{}}  ", cells[c], widths[c]);
+  const size_t last = text->find_last_not_of(' ');
+  text->erase(last == std::string::npos ? begin : std::max(begin, last + 1));
+  *text += '\n';
 }
 
 bool IsBlank(const std::string& text) { return text.find_first_not_of(' ') == std::string::npos; }
@@ -45,12 +48,11 @@ std::string FormatColumns(const std::vector<std::vector<std::string>>& rows) {
   }
   std::string text;
   for (size_t r = 0; r < rows.size(); ++r) {
-    text += FormatLine(rows[r], widths);
+    AppendLine(rows[r], widths, &text);
     if (r > 0) continue;
     std::vector<std::string> rules;
-    for (size_t c = 0; c < rows[0].size(); ++c)
-      rules.emplace_back(IsBlank(rows[0][c]) ? 0 : widths[c], '-');
-    text += FormatLine(rules, widths);
+    for (size_t c = 0; c < rows[0].size(); ++c) rules.emplace_back(IsBlank(rows[0][c]) ? 0 : widths[c], '-');
+    AppendLine(rules, widths, &text);
   }
   return text;
 }

@@ -1,6 +1,7 @@
 #include "experiments/core/text/json_output.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 namespace rcme {
 namespace {
@@ -26,20 +27,22 @@ std::string JsonText(const char* format, const Json& object) {
   return Dump(stamped) + "\n";
 }
 
-std::string JsonText(const char* format, const Json& object, const std::string& key,
-                     const std::function<Json()>& next_rows) {
-  std::string text = JsonText(format, object);
+void WriteJson(const char* format, const Json& object, const std::string& key,
+               const std::function<Json()>& next_rows, const WriteText& write) {
+  const std::string text = JsonText(format, object);
   const std::string empty = "\n " + Json(key).dump() + ": []";  // no string holds the end of a line
   const size_t inside = text.find(empty) + empty.size() - 1;
-  const std::string rest = text.substr(inside);
-  text.resize(inside);
+  write(text.substr(0, inside));
+  bool is_first = true;
   for (Json rows = next_rows(); !rows.empty(); rows = next_rows()) {
+    std::string piece;
     for (const Json& row : rows) {
-      if (text.back() != '[') text += ',';
-      AppendRow(row, &text);
+      if (!std::exchange(is_first, false)) piece += ',';
+      AppendRow(row, &piece);
     }
+    write(piece);
   }
-  return text + (text.back() == '[' ? "" : "\n ") + rest;
+  write((is_first ? "" : "\n ") + text.substr(inside));
 }
 
 }  // namespace rcme

@@ -5,6 +5,8 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "experiments/core/text/write_text.h"
+
 namespace rcme {
 
 // A program that reads one of these refuses a format that it does not know; the number rises whenever a key
@@ -52,9 +54,10 @@ inline constexpr const char* kWorstFormat = "rcme worst 1";  // written by plots
 // The text of an object with `format` as its first key. Names are whatever bytes the input held: what is no
 // UTF-8 is replaced.
 std::string JsonText(const char* format, const nlohmann::ordered_json& object);
-// The same for an array of millions of rows, the empty array `key` of `object`, which are never all there as
-// JSON: next_rows() gives some of them as an array, and an empty one where there are no more.
-std::string JsonText(const char* format, const nlohmann::ordered_json& object, const std::string& key,
-                     const std::function<nlohmann::ordered_json()>& next_rows);
+// The same, given to `write` piece by piece, for an array of millions of rows, the empty array `key` of
+// `object`, which are never all there as JSON: next_rows() gives some of them as an array, and an empty one
+// where there are no more.
+void WriteJson(const char* format, const nlohmann::ordered_json& object, const std::string& key,
+               const std::function<nlohmann::ordered_json()>& next_rows, const WriteText& write);
 
 }  // namespace rcme

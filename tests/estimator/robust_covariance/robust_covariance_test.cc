@@ -9,6 +9,7 @@
 #include "stats/distributions.h"
 #include "tests/simulator/noise/noise_sample.h"
 #include "tests/test_support/coverage_count.h"
+#include "tests/test_support/every_target.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/two_camera_scene.h"
@@ -449,6 +450,19 @@ TEST(RobustCovariance, OfFiveInliersIsNone) {
   const MotionProblem problem = TwoCameraProblem(20, 0.5, 0.0, 1);
   EXPECT_FALSE(RobustCovariance(problem, {}, std::vector<int>{0, 1, 2, 3, 4}, {}).has_value());
   EXPECT_FALSE(RobustCovariance(problem, {}, {}, {}).has_value());
+}
+
+// Fit, leverages and pairs of key points, some of which are repeated.
+TEST(RobustCovariance, HasTheSameBytesFromEveryInstructionSet) {
+  for (std::uint32_t trial = 0; trial < 6; ++trial) {
+    RelativePose pose_true;
+    MotionProblem problem = TwoCameraProblem(150, 0.5, 0.0, trial, &pose_true);
+    for (size_t i = 0; i < 10 * trial; ++i) problem.matches.push_back(problem.matches[2 * i]);
+    const std::vector<int> all = Separate(problem.matches.size());
+    const std::optional<Matrix5d> first = RobustCovariance(problem, pose_true, all, {});
+    ASSERT_TRUE(first.has_value());
+    RunOnEveryTarget([&] { EXPECT_EQ(RobustCovariance(problem, pose_true, all, {}), first) << trial; });
+  }
 }
 
 }  // namespace

@@ -84,16 +84,16 @@ TEST_F(PopulationSummary, RatesHaveTheIntervalOverDraws) {
   const PopulationRate expected = MeasurePopulationRate(counts_, ConditionWeights::kByTrials);
   int num_checked = 0;
   for (const SummaryRow& row : pooled.rows) {
-    EXPECT_EQ(row.interval_kind, IntervalKind::kPopulation) << row.quantity;
+    EXPECT_EQ(row.interval_kind, IntervalKind::kPopulation) << row.quantity.text();
     if (row.estimator != "standard" || row.quantity != "failure") continue;
     ++num_checked;
     EXPECT_EQ(row.n, 120);
     EXPECT_DOUBLE_EQ(row.value, expected.value);
     EXPECT_DOUBLE_EQ(row.interval.lower, expected.interval.lower);
     EXPECT_DOUBLE_EQ(row.interval.upper, expected.interval.upper);
-    EXPECT_DOUBLE_EQ(row.effective_n, expected.effective_n);
-    EXPECT_LT(row.effective_n, 60.0);
-    EXPECT_LT(row.of_these_conditions.upper, row.interval.upper);
+    EXPECT_DOUBLE_EQ(row.of_population.value().effective_n, expected.effective_n);
+    EXPECT_LT(row.of_population->effective_n, 60.0);
+    EXPECT_LT(row.of_population->of_these_conditions.upper, row.interval.upper);
   }
   EXPECT_EQ(num_checked, 1);
   EXPECT_FALSE(Summarize(Open(), false).is_of_population);  // a condition's own numbers
@@ -185,7 +185,7 @@ TEST(PopulationSummaryOfCounts, IsThatOfTheTrials) {
       SummarizeCounts(OpenCounts(folder.Path("counts.sqlite")), false, Pooling::kPooled);
   EXPECT_EQ(SummaryAsCsv(of_trials), SummaryAsCsv(of_counts));
   const auto row = [&](const std::string& quantity) {
-    return *std::ranges::find(of_trials.rows, quantity, &SummaryRow::quantity);
+    return *std::ranges::find(of_trials.rows, SharedText(quantity), &SummaryRow::quantity);
   };
   EXPECT_EQ(row("not_simulated").n, 40);
   EXPECT_GT(row("not_simulated").value, 0.0);

@@ -107,7 +107,7 @@ TEST_F(RepeatedScenesTest, ScenesOfBothOutcomesAndSharesAreThoseOfWholeScenes) {
 
 TEST_F(RepeatedScenesTest, WithoutRepeatsNothingOfThisIsThere) {
   for (const SummaryRow& row : SummarizeRun("run").rows)
-    EXPECT_EQ(row.quantity.find("_flips"), std::string::npos);
+    EXPECT_EQ(row.quantity.text().find("_flips"), std::string::npos);
   EXPECT_EQ(SummaryAsTable(SummarizeRun("run")).find("sampler"), std::string::npos);
 }
 

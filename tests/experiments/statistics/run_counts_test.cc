@@ -70,7 +70,7 @@ TEST_F(RunCountsTest, SumUpToWhatTheTrialsDo) {
     std::set<SummaryRow::Kind> kinds;
     for (size_t i = 0; i < of_counts.rows.size(); ++i) {
       const SummaryRow &a = of_counts.rows[i], &b = of_trials.rows[i];
-      SCOPED_TRACE(a.estimator + " " + a.quantity);
+      SCOPED_TRACE(a.estimator.text() + " " + a.quantity.text());
       kinds.insert(a.kind);
       EXPECT_EQ(a.quantity, b.quantity);
       EXPECT_EQ(a.condition, b.condition);

@@ -419,7 +419,7 @@ TEST_F(SummarizeTest, RowsAreComplete) {
                 2 * static_cast<size_t>(std::ranges::count_if(SummaryQuantities(), is_left_out)));
   EXPECT_EQ(summary.levels, (std::vector<std::vector<std::string>>{{"0"}, {"0.3"}}));
   for (const SummaryRow& row : SummarizeRun("run").rows)
-    EXPECT_EQ(row.quantity.find("time_ms"), std::string::npos) << "times were not asked for";
+    EXPECT_EQ(row.quantity.text().find("time_ms"), std::string::npos) << "times were not asked for";
 }
 
 TEST_F(SummarizeTest, UnknownTruthIsNotCounted) {
@@ -573,7 +573,7 @@ TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
     } else if (row.kind == SummaryRow::Kind::kArea) {
       ADD_FAILURE() << row.quantity << " of weighted trials";
     } else if (row.kind != SummaryRow::Kind::kRate || row.quantity == "kappa_flag") {
-      EXPECT_EQ(row.n, 0) << row.quantity;  // a mean, or of a part of the trials
+      EXPECT_EQ(row.n, 0) << row.quantity.text();  // a mean, or of a part of the trials
     }
   }
 }

@@ -6,8 +6,8 @@
 #include <map>
 #include <sstream>
 
-#include "experiments/statistics/summarize.h"
 #include "experiments/run/run_study.h"
+#include "experiments/statistics/summarize.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -68,7 +68,11 @@ TEST_F(TrialTable, EveryOutcomeHasItsWord) {
   add(MotionStatus::kOk, 5.0, "failure");
   add(MotionStatus::kOk, unknown, "not_scored");
   for (const MotionStatus status : AllStatuses()) {
-    if (status != MotionStatus::kOk) add(status, unknown, StatusName(status));
+    if (status == MotionStatus::kOk) continue;
+    const bool is_invalid =
+        status == MotionStatus::kInvalidMotion || status == MotionStatus::kInvalidCovariance;
+    const bool is_counted = status != MotionStatus::kNotSimulated && status != MotionStatus::kTruthInDoubt;
+    add(status, unknown, is_invalid ? "failure" : is_counted ? "refusal" : "not_scored");
   }
   {
     ResultStore store = ResultStore::OpenForRun(path_, MakePlan(study_));
@@ -76,7 +80,10 @@ TEST_F(TrialTable, EveryOutcomeHasItsWord) {
   }
   const std::vector<Row> rows = Rows();
   ASSERT_EQ(rows.size(), records.size());
-  for (size_t i = 0; i < rows.size(); ++i) EXPECT_EQ(rows[i].at("outcome"), words[i]);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(rows[i].at("outcome"), words[i]);
+    EXPECT_EQ(rows[i].at("status"), StatusName(records[i].status));
+  }
   EXPECT_EQ(rows[1].at("rotation_error_deg"), "5");
   EXPECT_EQ(rows[2].at("rotation_error_deg"), "") << "not known";
 }
@@ -90,9 +97,9 @@ TEST_F(TrialTable, OneRowPerTrialAndEstimatorWithAllNumbers) {
   }
   const std::vector<Row> rows = Rows();
   ASSERT_EQ(rows.size(), 2u * 6 * 2);
-  EXPECT_EQ(
-      std::vector<std::string>(header_.begin(), header_.begin() + 6),
-      (std::vector<std::string>{"study", "condition", "outlier_ratio", "trial", "estimator", "outcome"}));
+  EXPECT_EQ(std::vector<std::string>(header_.begin(), header_.begin() + 7),
+            (std::vector<std::string>{"study", "condition", "outlier_ratio", "trial", "estimator", "outcome",
+                                      "status"}));
   size_t r = 0;
   const ResultStore store = ResultStore::OpenForReading(path_);
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
@@ -119,12 +126,15 @@ TEST_F(TrialTable, TheWordsCountAsTheSummaryDoes) {
     RunStudy(plan, 2, &store);
   }
   std::map<std::string, int> count;  // condition, estimator, word
-  for (const Row& row : Rows()) ++count[row.at("condition") + row.at("estimator") + row.at("outcome")];
+  for (const Row& row : Rows()) {
+    for (const char* word : {"outcome", "status"})
+      ++count[row.at("condition") + row.at("estimator") + row.at(word)];
+  }
   for (const SummaryRow& row : Summarize(ResultStore::OpenForReading(path_), false).rows) {
     if (row.quantity != "success" && row.quantity != "failure" && row.quantity != "no_candidate") continue;
     EXPECT_EQ(count[fmt::format("{}{}{}", row.condition, row.estimator, row.quantity)],
               std::llround(row.value * static_cast<double>(row.n)))
-        << row.quantity;
+        << row.quantity.text();
   }
 }
 

@@ -30,18 +30,20 @@ TEST(JsonText, BytesThatAreNoTextAreReplaced) {
   EXPECT_NE(JsonText("rcme test 1", {{"name", "\xff"}}).find("\xEF\xBF\xBD"), std::string::npos);
 }
 
-TEST(JsonText, RowsOneAfterTheOtherAreTheArray) {
+TEST(WriteJson, RowsOneAfterTheOtherAreTheArray) {
   const nlohmann::ordered_json row = {
       {"name", "a\n \"rows\": []"}, {"levels", {{"n", 3}}}, {"interval", {0, 1}}};
   for (const size_t num_rows : {0u, 1u, 5u}) {
     nlohmann::ordered_json object = {
         {"before", row}, {"rows", nlohmann::ordered_json::array()}, {"after", 1}};
     size_t next = 0;
-    const std::string text = JsonText("rcme test 1", object, "rows", [&] {  // two at a time
+    const auto next_rows = [&] {  // two at a time
       nlohmann::ordered_json rows = nlohmann::ordered_json::array();
       for (const size_t end = std::min(next + 2, num_rows); next < end; ++next) rows.push_back(row);
       return rows;
-    });
+    };
+    std::string text;
+    WriteJson("rcme test 1", object, "rows", next_rows, [&](const std::string& piece) { text += piece; });
     for (size_t i = 0; i < num_rows; ++i) object["rows"].push_back(row);
     EXPECT_EQ(text, JsonText("rcme test 1", object)) << num_rows;
   }

@@ -1,0 +1,33 @@
+// An optional value on the heap: eight bytes in each of millions of rows of which few have one.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace rcme {
+
+template <typename T>
+class BoxedOptional {
+ public:
+  BoxedOptional() = default;
+  BoxedOptional(T value) : value_(std::make_unique<T>(std::move(value))) {}
+  BoxedOptional(const BoxedOptional& other) : value_(other ? std::make_unique<T>(*other) : nullptr) {}
+  BoxedOptional(BoxedOptional&&) noexcept = default;
+  BoxedOptional& operator=(BoxedOptional other) noexcept {
+    value_ = std::move(other.value_);
+    return *this;
+  }
+
+  explicit operator bool() const { return value_ != nullptr; }
+  bool has_value() const { return value_ != nullptr; }
+  const T& operator*() const { return *value_; }
+  const T* operator->() const { return value_.get(); }
+  // Throws std::bad_optional_access where there is none.
+  const T& value() const { return value_ ? *value_ : throw std::bad_optional_access(); }
+
+ private:
+  std::unique_ptr<T> value_;
+};
+
+}  // namespace rcme
