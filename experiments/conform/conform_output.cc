@@ -31,6 +31,8 @@ namespace {
 
 using Judged = std::vector<JudgedAnswer>;
 
+constexpr std::int64_t kFewAnswers = 30;  // show no moderate shift
+
 const NumberFormat kShare{100.0, "%", ".1f", ".2g"};
 
 // The share of the answers, with its interval by groups; `more`: groups of problems for which it does not
@@ -196,6 +198,8 @@ std::string DescribeShift(const ShiftFinding& shift, const ConformRule& rule) {
                                 shift.p_value, *shift.noticed_after, looked, shift.feature)
       : !shift.could_notice ? fmt::format("Whether there is a shift cannot be told: {} are too few.", looked)
                             : fmt::format("No shift is seen in {} (p = {:.2g}).", looked, shift.p_value);
+  if (!shift.noticed_after && shift.could_notice && shift.num_looked_at < kFewAnswers)
+    text += " So few can show none but a great one.";
   text += fmt::format(" Called strange are {:.1f} %, {:.0f} % if nothing differs.",
                       100.0 * shift.strange_share, 100.0 * kStrangeLevel);
   if (rule.origin.new_groups) text += " One answer of each condition or scene is looked at.";
