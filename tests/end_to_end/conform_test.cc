@@ -76,6 +76,9 @@ TEST_F(Conform, NoticesAShiftAndNothingElse) {
 
 // What nothing visible shows, the truth does: the first line says so.
 TEST_F(Conform, SaysThatAPromiseIsBroken) {
+  study_ = folder_.Write("clean.yaml",
+                         "name: clean\nseed: 5\ntrials: 40\ndata: {scene: uniform_volume, num_matches: 60}\n"
+                         "estimators: [{name: standard}]\n");
   Make();
   const std::vector<std::string> check = {"--check", file_, "--trials", "50", "--seed", "77"};
   const ProgramResult same = RunConform(check);
