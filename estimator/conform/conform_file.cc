@@ -54,6 +54,20 @@ class ObjectReader {
     if (!value.is_number()) Fail(fmt::format("'{}' is no number", key));
     return value.get<double>();
   }
+  // Between the two, neither included.
+  double NumberBetween(const std::string& key, double low, double high) {
+    const double value = Number(key);
+    if (!(value > low && value < high))
+      Fail(fmt::format("'{}' is {:.6g}, not between {:.6g} and {:.6g}", key, value, low, high));
+    return value;
+  }
+  // Of a failure bound.
+  double Angle(const std::string& key) {
+    const double value = Number(key);
+    if (!(value > 0.0 && value <= 180.0))
+      Fail(fmt::format("'{}' is {:.6g}, not above 0 and at most 180 degrees", key, value));
+    return value;
+  }
   std::int64_t Count(const std::string& key) {
     const Json& value = At(key);
     if (!value.is_number_integer() || value.get<double>() < 0.0 || value.get<double>() > 1e15)
@@ -127,39 +141,65 @@ void ReadEstimator(const Json& json, ConformRule* rule) {
   reader.RequireNoOther();
 }
 
+// Each group has a problem, and each problem is an answer or a refusal.
+void RequireConsistentCounts(const ConformOrigin& origin) {
+  const auto require_at_most = [](std::int64_t count, const char* key, std::int64_t most, const char* what) {
+    if (count > most)
+      throw std::invalid_argument(
+          fmt::format("calibration '{}' is {}, more than {}, which are {}", key, count, what, most));
+  };
+  if (origin.num_answers < 1) throw std::invalid_argument("calibration 'answers' is 0, not at least 1");
+  require_at_most(origin.num_groups, "groups", origin.num_answers + origin.num_refusals,
+                  "answers and refusals");
+  require_at_most(origin.num_refused_groups, "refused_groups",
+                  std::min(origin.num_groups, origin.num_refusals), "groups or refusals");
+  if (origin.num_groups < 1) throw std::invalid_argument("calibration 'groups' is 0, not at least 1");
+}
+
 ConformOrigin OriginFrom(const Json& json) {
   ObjectReader reader(json, "calibration");
   ConformOrigin origin{reader.Text("study"),     reader.Text("identity"), reader.Count("answers"),
                        reader.Count("refusals"), reader.Count("groups"),  reader.Count("refused_groups"),
                        reader.Flag("new_groups")};
   reader.RequireNoOther();
+  RequireConsistentCounts(origin);
   return origin;
+}
+
+double FactorFrom(const Json& json) {
+  if (json == "all motions") return kInfinity;
+  const double factor = NumberIn(json, "factors");
+  if (!(factor > 0.0 && std::isfinite(factor)))
+    throw std::invalid_argument(
+        fmt::format("region 'factors' holds {:.6g}, not a number above 0 or \"all motions\"", factor));
+  return factor;
 }
 
 void ReadRegion(const Json& json, ConformRule* rule) {
   ObjectReader reader(json, "region");
-  rule->level = reader.Number("level");
+  rule->level = reader.NumberBetween("level", 0.5, 1.0);
   rule->difficulty = ModelFrom(reader.At("difficulty"), "difficulty");
   for (const Json& edge : reader.List("edges")) rule->edges.push_back(NumberIn(edge, "edges"));
-  for (const Json& factor : reader.List("factors"))
-    rule->factors.push_back(factor == "all motions" ? kInfinity : NumberIn(factor, "factors"));
+  for (const Json& factor : reader.List("factors")) rule->factors.push_back(FactorFrom(factor));
   reader.RequireNoOther();
 }
 
 void ReadFailure(const Json& json, ConformRule* rule) {
   ObjectReader reader(json, "failure");
-  rule->max_rotation_error_deg = reader.Number("max_rotation_error_deg");
-  rule->max_direction_error_deg = reader.Number("max_direction_error_deg");
+  rule->max_rotation_error_deg = reader.Angle("max_rotation_error_deg");
+  rule->max_direction_error_deg = reader.Angle("max_direction_error_deg");
   rule->failure = ModelFrom(reader.At("log_odds"), "log_odds");
   rule->log_odds_intercept = reader.Number("intercept");
   rule->log_odds_slope = reader.Number("slope");
+  if (!(rule->log_odds_slope >= 0.0))  // 0: the odds say nothing
+    reader.Fail(fmt::format("'slope' is {:.6g}, not at least 0", rule->log_odds_slope));
   reader.RequireNoOther();
 }
 
 void ReadAcceptRule(const Json& json, ConformRule* rule) {
   ObjectReader reader(json, "accept_rule");
-  rule->wrong_and_accepted = reader.Number("wrong_and_accepted");
-  rule->risk = reader.Number("risk");
+  rule->wrong_and_accepted = reader.NumberBetween("wrong_and_accepted", 0.0, 1.0);
+  rule->risk = reader.NumberBetween("risk", 0.0, 1.0);
   if (!reader.At("greatest_log_odds").is_null()) rule->greatest_log_odds = reader.Number("greatest_log_odds");
   reader.RequireNoOther();
 }
@@ -189,6 +229,10 @@ ConformRule RuleFrom(const Json& json) {
   ReadAcceptRule(reader.At("accept_rule"), &rule);
   ReadFamiliar(reader.At("familiar"), &rule);
   reader.RequireNoOther();
+  const size_t width = rule.familiar_features.size();
+  if (width > 0 && rule.familiar.size() / width > static_cast<size_t>(rule.origin.num_groups))
+    reader.Fail(fmt::format("has {} familiar answers, more than 'groups', which are {}",
+                            rule.familiar.size() / width, rule.origin.num_groups));
   ConformJudge{rule};  // throws for numbers that are no rule
   return rule;
 }
@@ -220,6 +264,9 @@ ConformFile ParseConformFile(std::string_view text, const std::string& path) {
   hash.Add(text);
   try {
     return {RuleFrom(Json::parse(text)), fmt::format("{:016x}", hash.value())};
+  } catch (const nlohmann::json::parse_error& error) {
+    throw fail(error.byte > text.size() ? fmt::format("is no JSON: it is cut off at byte {}", text.size())
+                                        : fmt::format("is no JSON at byte {}", error.byte));
   } catch (const nlohmann::json::exception&) {
     throw fail("is no JSON");
   } catch (const std::invalid_argument& error) {

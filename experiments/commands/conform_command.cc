@@ -130,7 +130,8 @@ void Conform(const ConformArguments& arguments) {
   PrintResult(MakeConformResult(report, arguments.is_by_strata), arguments.format,
               is_check ? arguments.out : "");
   runner.RemoveCheckpoint();
-  if (report.shift && report.shift->noticed_after) throw EndWith{kShiftIsNoticed};
+  const bool is_broken = report.kept && report.kept->IsAnyRefuted();
+  if (is_broken || (report.shift && report.shift->noticed_after)) throw EndWith{kShiftIsNoticed};
 }
 
 }  // namespace
@@ -156,9 +157,10 @@ with those of the study. Of a population of conditions, and of several real scen
 problem is of a new condition or scene, and these are what is counted; --new trial promises
 for the same conditions and scenes alone.
 
-With --check FILE the study has new problems: how the file does on them, and whether they are
-like those of its calibration. The test is valid at every look. Exit code: 1 if a shift is
-noticed (at level 5 %), else 0; 2: wrong input.
+With --check FILE the study has new problems: how the file does on them, whether its promises
+hold there (tested at level 2.5 %) and whether the problems look like those of its calibration
+(at level 5 %). Exit code: 1 if a promise does not hold or a shift is noticed, else 0; 2: wrong
+input.
 
 Examples:
   rcme conform --needs --wrong-and-accepted 0.01

@@ -11,6 +11,7 @@
 #include "experiments/conform/conform_strata.h"
 #include "experiments/conform/fit_rule.h"
 #include "experiments/conform/region_kinds.h"
+#include "experiments/conform/test_promises.h"
 #include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
@@ -29,6 +30,8 @@ namespace rcme {
 namespace {
 
 using Judged = std::vector<JudgedAnswer>;
+
+constexpr std::int64_t kFewAnswers = 30;  // show no moderate shift
 
 const NumberFormat kShare{100.0, "%", ".1f", ".2g"};
 
@@ -84,6 +87,22 @@ Table MakeRegionTable(const ConformReport& report) {
   return MakeTable(columns, ListRegionKinds(report.is_check));
 }
 
+bool IsAcceptedByRule(const JudgedAnswer& answer) { return answer.verdict.is_accepted; }
+
+// What the estimator of the file does: strange answers are refused too.
+bool IsAcceptedInUse(const JudgedAnswer& answer) {
+  return answer.verdict.is_accepted && answer.verdict.familiarity > kStrangeLevel;
+}
+
+// Of all problems, also the refused ones, as it is promised.
+Estimate MeasureWrongAndAccepted(const ConformReport& report) {
+  std::vector<std::int64_t> refused;
+  for (const AskedProblem& problem : report.problems)
+    if (problem.is_refused) refused.push_back(problem.group);
+  return MeasureShare(
+      report.judged, [](const JudgedAnswer& a) { return a.row.is_wrong && IsAcceptedByRule(a); }, refused);
+}
+
 struct AcceptKind {
   std::string name;
   std::function<bool(const JudgedAnswer&)> accepts;
@@ -93,10 +112,8 @@ Table MakeAcceptTable(const ConformReport& report) {
   std::vector<AcceptKind> kinds = {{"all", [](const JudgedAnswer&) { return true; }}};
   if (!report.is_check)
     kinds.push_back({"by matches", [](const JudgedAnswer& a) { return a.is_accepted_by_count; }});
-  kinds.push_back({"by the rule", [](const JudgedAnswer& a) { return a.verdict.is_accepted; }});
-  std::vector<std::int64_t> refused;
-  for (const AskedProblem& problem : report.problems)
-    if (problem.is_refused) refused.push_back(problem.group);
+  kinds.push_back({"by the rule", IsAcceptedByRule});
+  kinds.push_back({"in use", IsAcceptedInUse});
   const auto among = [&](const std::function<bool(const JudgedAnswer&)>& holds) {
     Judged some;
     std::ranges::copy_if(report.judged, std::back_inserter(some), holds);
@@ -177,14 +194,58 @@ std::string DescribeShift(const ShiftFinding& shift, const ConformRule& rule) {
       shift.noticed_after ? fmt::format(
                                 "Shift: these problems are not like those of the calibration (p = {:.2g}, "
                                 "noticed after {} of {}; "
-                                "what differs most: {}). None of the promises above is for them.",
+                                "what differs most: {}). None of the promises is for them.",
                                 shift.p_value, *shift.noticed_after, looked, shift.feature)
       : !shift.could_notice ? fmt::format("Whether there is a shift cannot be told: {} are too few.", looked)
                             : fmt::format("No shift is seen in {} (p = {:.2g}).", looked, shift.p_value);
+  if (!shift.noticed_after && shift.could_notice && shift.num_looked_at < kFewAnswers)
+    text += " So few can show none but a great one.";
   text += fmt::format(" Called strange are {:.1f} %, {:.0f} % if nothing differs.",
                       100.0 * shift.strange_share, 100.0 * kStrangeLevel);
   if (rule.origin.new_groups) text += " One answer of each condition or scene is looked at.";
   return text;
+}
+
+std::string ShareAsText(const Estimate& share) {
+  return fmt::format("{:.1f} % [{:.1f}, {:.1f}]", 100.0 * share.value, 100.0 * share.interval.lower,
+                     100.0 * share.interval.upper);
+}
+
+// What is refuted first; where nothing is, that.
+std::vector<std::string> DescribeKept(const ConformReport& report) {
+  const PromiseFinding& kept = *report.kept;
+  const ConformRule& rule = report.rule;
+  std::vector<std::string> sentences;
+  if (kept.IsCoverageRefuted()) {
+    const Estimate coverage = MeasureShare(report.judged, ListRegionKinds(true).back().covers);
+    sentences.push_back(fmt::format(
+        "The promise of the regions does not hold on these problems: coverage {} of a promised {:.3g} % (p = "
+        "{:.2g}).",
+        ShareAsText(coverage), 100.0 * rule.level, kept.coverage_p_value));
+  }
+  if (kept.IsAcceptRefuted()) {
+    const Estimate wrong = MeasureWrongAndAccepted(report);
+    sentences.push_back(fmt::format(
+        "The promise of the accept rule does not hold on these problems: wrong and accepted are {} of them, "
+        "promised are at most {:.3g} % (p = {:.2g}).",
+        ShareAsText(wrong), 100.0 * rule.wrong_and_accepted, kept.accept_p_value));
+  }
+  if (!kept.IsAnyRefuted())
+    sentences.push_back(fmt::format(
+        "No promise is refuted: coverage p = {:.2g} by {}, wrong and accepted p = {:.2g} by {}.",
+        kept.coverage_p_value, Counted(kept.num_answers, "answer", "answers"), kept.accept_p_value,
+        rule.origin.new_groups ? Counted(kept.num_problems, "condition or scene", "conditions or scenes")
+                               : Counted(kept.num_problems, "problem", "problems")));
+  return sentences;
+}
+
+// The promises that are refuted, and the shift.
+std::string DescribeVerdicts(const ConformReport& report) {
+  std::string text;
+  if (report.kept)
+    for (const std::string& sentence : DescribeKept(report)) text += FormatParagraph(sentence);
+  if (report.shift) text += FormatParagraph(DescribeShift(*report.shift, report.rule));
+  return text.empty() ? text : text + "\n";
 }
 
 }  // namespace
@@ -259,7 +320,8 @@ std::string DescribeNeeds(const ConformPromise& promise) {
 std::string ConformAsText(const ConformReport& report, bool by_strata) {
   const ConformRule& rule = report.rule;
   const std::int64_t num_refusals = std::ranges::count(report.problems, true, &AskedProblem::is_refused);
-  std::string text = FormatParagraph(fmt::format(
+  std::string text = DescribeVerdicts(report);
+  text += FormatParagraph(fmt::format(
       "{}: {}, {}{}. {}", report.label, Counted(std::ssize(report.judged), "answer", "answers"),
       Counted(num_refusals, "refusal", "refusals"),
       report.num_unscored > 0
@@ -267,23 +329,23 @@ std::string ConformAsText(const ConformReport& report, bool by_strata) {
           : "",
       report.is_check ? "New answers, judged by the file:"
                       : "Cross-validated, each answer judged by a rule of other groups:"));
-  if (report.judged.empty())
-    return text + (report.shift ? FormatParagraph(DescribeShift(*report.shift, rule)) : "");
+  if (report.judged.empty()) return text;
   for (const Table& table : {MakeRegionTable(report), MakeAcceptTable(report), MakeProbabilityTable(report)})
     text += "\n" + RenderText(table);
-  text +=
-      "\n" +
-      FormatParagraph(fmt::format("size_deg: median of the geometric mean of the region's semi-axes; "
-                                  "hardest: the {} answers that look "
-                                  "hardest; all_motions: regions that exclude nothing. Intervals are 95 %.",
-                                  (report.judged.size() + 3) / 4)) +
-      "\n";
+  text += "\n" +
+          FormatParagraph(fmt::format(
+              "size_deg: median of the geometric mean of the region's semi-axes; "
+              "hardest: the {} answers that look "
+              "hardest; all_motions: regions that exclude nothing. in use: by the rule and not strange, as "
+              "an estimator of the file accepts. Shares are of the answers, refusals left out. Intervals "
+              "are 95 %.",
+              (report.judged.size() + 3) / 4)) +
+          "\n";
   for (const std::string& promise : DescribePromises(rule)) text += FormatParagraph(promise);
   if (report.shares_images)
     text += FormatParagraph(
         "Pairs of one scene share images and are counted as if they were independent: the promises say too "
         "much.");
-  if (report.shift) text += FormatParagraph(DescribeShift(*report.shift, rule));
   if (by_strata)
     text += "\n" + StrataAsText({"size_deg"}, MeasureConformStrata(report)) +
             DescribeStrata(StrataIntervals::kClusters);
@@ -312,6 +374,14 @@ std::string ConformAsJson(const ConformReport& report, bool by_strata) {
                                                            : nlohmann::ordered_json()},
                      {"feature", shift.feature},
                      {"strange_share", shift.strange_share}};
+  }
+  if (report.kept) {
+    const PromiseFinding& kept = *report.kept;
+    json["promise_test"] = {{"holds", !kept.IsAnyRefuted()},
+                            {"answers", kept.num_answers},
+                            {"coverage_p_value", kept.coverage_p_value},
+                            {"problems", kept.num_problems},
+                            {"wrong_and_accepted_p_value", kept.accept_p_value}};
   }
   if (by_strata) {
     const Table strata = MakeStrataTable("region", {"size_deg"}, MeasureConformStrata(report));

@@ -164,6 +164,7 @@ ConformReport CheckConform(const StudyPlan& plan, const ConformRule& rule, const
   report.rule = rule;
   report.judged = JudgeAnswers(rule, answers.rows);
   report.shift = LookForShift(rule, answers);
+  report.kept = TestPromises(rule, answers, report.judged);
   report.problems = answers.problems;
   report.num_unscored = answers.num_unscored;
   return report;

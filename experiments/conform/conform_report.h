@@ -8,6 +8,7 @@
 #include "experiments/conform/calibration_work.h"
 #include "experiments/conform/cross_validate.h"
 #include "experiments/conform/set_promises.h"
+#include "experiments/conform/test_promises.h"
 
 namespace rcme {
 
@@ -31,6 +32,7 @@ struct ConformReport {
   bool is_check = false;       // of a rule that is there, by new answers
   bool shares_images = false;  // real pairs counted as if they were independent
   std::optional<ShiftFinding> shift;
+  std::optional<PromiseFinding> kept;  // are the promises kept; of a check
 };
 
 // By two tests, each at half the level: of what is seen of answers, and of how often there is none.

@@ -74,6 +74,31 @@ TEST_F(Conform, NoticesAShiftAndNothingElse) {
   EXPECT_THAT(noisy.out, Not(HasSubstr("\"noticed_after\": null")));
 }
 
+// What nothing visible shows, the truth does: the first line says so.
+TEST_F(Conform, SaysThatAPromiseIsBroken) {
+  study_ = folder_.Write("clean.yaml",
+                         "name: clean\nseed: 5\ntrials: 40\ndata: {scene: uniform_volume, num_matches: 60}\n"
+                         "estimators: [{name: standard}]\n");
+  Make();
+  const std::vector<std::string> check = {"--check", file_, "--trials", "50", "--seed", "77"};
+  const ProgramResult same = RunConform(check);
+  EXPECT_EQ(same.out.rfind("No promise is refuted", 0), 0U) << same.out;
+  std::vector<std::string> arguments = check;
+  arguments.insert(arguments.end(), {"--set", "focal_error=0.05"});
+  const ProgramResult broken = RunConform(arguments);
+  EXPECT_EQ(broken.exit_code, 1) << broken.out << broken.err;
+  EXPECT_EQ(broken.out.rfind("The promise of the regions does not hold on these problems: coverage ", 0), 0U)
+      << broken.out;
+  arguments.insert(arguments.end(), {"--format", "json"});
+  EXPECT_THAT(RunConform(arguments).out, HasSubstr("\"coverage_p_value\""));
+}
+
+TEST_F(Conform, SaysWhereAFileIsCutOff) {
+  Make();
+  const std::string cut = folder_.Write("cut.json", ReadBytes(file_).substr(0, 1000));
+  EXPECT_TRUE(IsRefused(RunConform({"--check", cut, "--seed", "9"}), {"cut off at byte 1000"}));
+}
+
 // A study, rcme estimate and an estimator file take it.
 TEST_F(Conform, TheFileIsAnEstimator) {
   Make();

@@ -31,7 +31,7 @@ SHIFTS = {
 
 
 def run(arguments):
-    """The report of a command; exit code 1 is a shift."""
+    """The report of a command; exit code 1 is a shift or a broken promise."""
     done = subprocess.run([RCME, "conform", *arguments, "--format", "json"], capture_output=True, text=True, cwd=ROOT)
     if done.returncode not in (0, 1):
         raise SystemExit(f"rcme conform {' '.join(arguments)}: {done.stderr}")
@@ -74,7 +74,8 @@ def population_tables(out, conditions):
         fresh = run([study, "--check", str(rule), "--seed", str(FRESH_SEED)])
         for draws, report in (("cross-validated", made), ("fresh", fresh)):
             for name, rows in tables.items():
-                rows += [{"estimator": estimator, "draws": draws, "answers": report["answers"], **flat(row)} for row in report[name]]
+                rows += [{"estimator": estimator, "draws": draws, "answers": report["answers"], **flat(row)}
+                         for row in report[name] if row.get("accepted") != "in use"]
     for name, rows in tables.items():
         write(out / f"{name}.csv", rows)
 

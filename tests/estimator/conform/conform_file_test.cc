@@ -53,7 +53,7 @@ TEST(ConformFile, SaysWhatIsWrong) {
   expect(Replaced("rcme conform 1", "rcme conform 9"), "is of format 'rcme conform 9'");
   expect(Replaced("\"level\"", "\"levels\""), "has no key 'level'");
   expect(Replaced("\"level\": 0.95", "\"level\": \"a\""), "'level' is no number");
-  expect(Replaced("\"level\": 0.95", "\"level\": 7"), "level is not between");
+  expect(Replaced("\"level\": 0.95", "\"level\": 7"), "'level' is 7, not between 0.5 and 1");
   expect(Replaced("\"all motions\"", "\"none\""), "factors holds something");
   expect(Replaced("\"edges\": [", "\"edges\": [1e9,"), "edges");
   expect(Replaced("\"feature\": \"direction_sd\"", "\"feature\": \"colour\""), "unknown feature");
@@ -61,6 +61,36 @@ TEST(ConformFile, SaysWhatIsWrong) {
   expect(Replaced("\"new_groups\": false", "\"new_groups\": 0"), "'new_groups' is neither");
   expect(Replaced("\"name\": \"standard\"", "\"name\": \"standard\", \"extra\": 1"), "unknown key 'extra'");
   expect(Replaced("\"num_iterations\": \"50\"", "\"num_iterations\": 50"), "no text");
+}
+
+// Numbers that no calibration writes, changed by hand.
+TEST(ConformFile, RefusesNumbersOutOfRange) {
+  const auto expect = [](const std::string& text, const std::string& words) {
+    EXPECT_TRUE(ThrowsInputError([&] { ParseConformFile(text, "x.json"); }, {"x.json", words}));
+  };
+  expect(Replaced("\"risk\": 0.05", "\"risk\": -1"), "'risk' is -1, not between 0 and 1");
+  expect(Replaced("\"wrong_and_accepted\": 0.02", "\"wrong_and_accepted\": 1"),
+         "'wrong_and_accepted' is 1, not between");
+  expect(Replaced("\"max_rotation_error_deg\": 3.0", "\"max_rotation_error_deg\": -1"),
+         "'max_rotation_error_deg' is -1, not above 0 and at most 180");
+  expect(Replaced("\"max_direction_error_deg\": 15.0", "\"max_direction_error_deg\": 181"),
+         "'max_direction_error_deg' is 181, not above 0");
+  expect(Replaced("\"slope\": 1.0", "\"slope\": -1"), "'slope' is -1, not at least 0");
+  expect(Replaced("1.5", "0"), "'factors' holds 0, not a number above 0");
+  expect(Replaced("1.5", "-2"), "'factors' holds -2");
+  expect(Replaced("\"groups\": 21", "\"groups\": 24"), "'groups' is 24, more than answers and refusals");
+  expect(Replaced("\"groups\": 21", "\"groups\": 20"), "21 familiar answers, more than 'groups'");
+  expect(Replaced("\"answers\": 21", "\"answers\": 0"), "'answers' is 0");
+  expect(Replaced("\"refused_groups\": 1", "\"refused_groups\": 3"), "'refused_groups' is 3, more than");
+  EXPECT_EQ(ParseConformFile(Replaced("\"slope\": 1.0", "\"slope\": 0"), "").rule.log_odds_slope, 0.0);
+}
+
+TEST(ConformFile, SaysWhereItIsCutOff) {
+  const std::string text = ExampleText();
+  EXPECT_TRUE(ThrowsInputError([&] { ParseConformFile(text.substr(0, 200), "x.json"); },
+                               {"x.json", "cut off at byte 200"}));
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ParseConformFile("{\"format\"; 1}", "x.json"); }, {"no JSON at byte 10"}));
 }
 
 // Whatever becomes of a file's bytes: a rule or an error that names the file.

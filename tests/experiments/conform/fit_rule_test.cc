@@ -10,6 +10,7 @@
 #include "experiments/conform/conform_output.h"
 #include "experiments/conform/conform_report.h"
 #include "experiments/conform/cross_validate.h"
+#include "experiments/conform/test_promises.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
@@ -264,6 +265,76 @@ TEST(LookForShift, NoticesRefusalsAndSaysWhatItCannotTell) {
   EXPECT_EQ(refusals.feature, "refusals");
   EXPECT_TRUE(refusals.could_notice);
   EXPECT_FALSE(LookForShift(rule, fresh.Part([](std::int64_t group) { return group == 0; })).could_notice);
+}
+
+ConformRule FitWithOrigin(const AnswerRows& answers, const ConformPromise& promise = {}) {
+  ConformRule rule = FitConformRule(answers, promise);
+  rule.origin.num_answers = std::ssize(answers.rows);
+  rule.origin.num_refusals = answers.CountRefusals();
+  rule.origin.num_groups = answers.CountGroups();
+  return rule;
+}
+
+PromiseFinding TestNew(const ConformRule& rule, const AnswerRows& fresh) {
+  return TestPromises(rule, fresh, JudgeAnswers(rule, fresh.rows));
+}
+
+// On new problems of the same law: strata or none, more new answers than the calibration has or fewer, and
+// groups that answers share. The p-value of the regions is below .1 in at most a tenth, and the tests alarm
+// as seldom as they say; the accept rule breaks its promise in up to 5 %.
+TEST(TestPromises, SeldomRefutesWhatIsKept) {
+  struct Case {
+    AnswerLaw law;
+    int num_groups, per_group, num_new;
+  };
+  constexpr int kNumRepeated = 200;
+  for (const Case& of : {Case{{true, 0.0}, 140, 1, 1000}, Case{{true, 0.0}, 600, 1, 2000},
+                         Case{{false, 0.0}, 600, 1, 200}, Case{{true, 0.9}, 60, 20, 100}}) {
+    int num_below = 0, num_coverage = 0, num_accept = 0;
+    for (std::uint32_t repetition = 0; repetition < kNumRepeated; ++repetition) {
+      RandomStream rng({.seed = 1, .trial = repetition, .purpose = 441});
+      const ConformRule rule = FitWithOrigin(of.law.DrawGroups(of.num_groups, of.per_group, rng));
+      const PromiseFinding found = TestNew(rule, of.law.DrawGroups(of.num_new, of.per_group, rng));
+      num_below += found.coverage_p_value <= 0.1;
+      num_coverage += found.IsCoverageRefuted();
+      num_accept += found.IsAcceptRefuted();
+    }
+    const auto least = [](int k) { return ExactBinomialInterval(k, kNumRepeated, 0.99).lower; };
+    EXPECT_LE(least(num_below), 0.1) << of.num_groups << " " << num_below;
+    EXPECT_LE(least(num_coverage), kPromiseLevel / 2.0) << of.num_groups << " " << num_coverage;
+    EXPECT_LE(least(num_accept), 0.05 + kPromiseLevel / 2.0) << of.num_groups << " " << num_accept;
+  }
+}
+
+// What is seen of an answer stays as it was, so that no shift is noticed.
+TEST(TestPromises, RefutesWhatIsBroken) {
+  for (const int per_group : {1, 5}) {
+    int num_coverage = 0, num_accept = 0;
+    for (std::uint32_t repetition = 0; repetition < 50; ++repetition) {
+      RandomStream rng({.seed = 1, .trial = repetition, .purpose = 442});
+      const AnswerLaw law;
+      const ConformRule rule = FitWithOrigin(law.DrawGroups(400, per_group, rng));
+      AnswerRows fresh = law.DrawGroups(200, per_group, rng);
+      for (AnswerRow& row : fresh.rows) {
+        row.nees *= 4.0;
+        row.is_wrong = row.is_wrong || rng.Uniform() < 0.2;
+      }
+      const PromiseFinding found = TestNew(rule, fresh);
+      EXPECT_EQ(found.num_answers, 200);
+      EXPECT_EQ(found.num_problems, 200);
+      num_coverage += found.IsCoverageRefuted();
+      num_accept += found.IsAcceptRefuted();
+    }
+    EXPECT_GE(num_coverage, 48);
+    EXPECT_GE(num_accept, 48);
+  }
+}
+
+TEST(TestPromises, SaysNothingOfNoAnswers) {
+  RandomStream rng({.seed = 1, .purpose = 443});
+  const PromiseFinding none = TestNew(FitWithOrigin(AnswerLaw{}.DrawGroups(100, 1, rng)), {});
+  EXPECT_EQ(none.coverage_p_value, 1.0);
+  EXPECT_EQ(none.accept_p_value, 1.0);
 }
 
 TEST(DescribeNeeds, NamesTheNumbers) {
