@@ -132,6 +132,23 @@ TEST_F(Gate, GoesOnWhereItWasStopped) {
   EXPECT_EQ(RunRcme(hurried).out, whole.out);
 }
 
+// Margins that are chosen after a look would void the level.
+TEST_F(Gate, OtherTermsNeedAnotherFolder) {
+  const auto judge = [&](const std::vector<std::string>& terms) {
+    std::vector<std::string> all = {"gate",         study_, "--old", "standard",           "--new", "standard",
+                                    "--max-trials", "30",   "--out", folder_.Path("terms")};
+    all.insert(all.end(), terms.begin(), terms.end());
+    return RunRcme(all);
+  };
+  const std::string failure = "--of=failure", margin = "--margin=failure=0.05";
+  const ProgramResult first = judge({failure});
+  EXPECT_EQ(first.exit_code, 3) << first.out << first.err;
+  EXPECT_THAT(first.out, HasSubstr("not judged: refusal,"));
+  EXPECT_TRUE(IsRefused(judge({failure, margin}), {"failure=0.005", "failure=0.05", "another --out"}));
+  EXPECT_TRUE(IsRefused(judge({"--of=failure,refusal"}), {"refusal=0.005", "another --out"}));
+  EXPECT_EQ(judge({failure}).exit_code, 3) << "the same terms go on";
+}
+
 TEST_F(Gate, WrongInputIsRefused) {
   const std::string out = folder_.Path("bad");
   EXPECT_TRUE(IsRefused(RunRcme({"gate", study_, "--old", "standard", "--out", out}), {"--new is missing"}));
