@@ -60,7 +60,7 @@ TEST_F(Gate, IsUndecidedWithinTheBudget) {
 TEST_F(Gate, JudgesOneVersionByALimit) {
   const auto judge = [&](const std::string& limit) {
     return RunRcme(
-        {"gate", study_, "--new", "ours", "--failure-at-most", limit, "--out", folder_.Path("one")});
+        {"gate", study_, "--new", "ours", "--failure-at-most", limit, "--out", folder_.Path("at" + limit)});
   };
   const ProgramResult loose = judge("0.9"), strict = judge("0.001");
   EXPECT_EQ(loose.exit_code, 0) << loose.out << loose.err;
