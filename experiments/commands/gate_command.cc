@@ -16,6 +16,7 @@
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/make_data.h"
 #include "experiments/gate/gate_output.h"
+#include "experiments/gate/gate_terms.h"
 #include "experiments/run/run_study.h"
 #include "experiments/study/find_estimator.h"
 #include "parameters/input_error.h"
@@ -87,11 +88,16 @@ GateReport BeginReport(const ReadableRun& run, const std::vector<GateTest>& test
   return report;
 }
 
+// For trials that are judged by these terms, from the first look to the last.
+void TakeTerms(const GateTerms& terms, const std::string& path, ResultStore* store) {
+  if (store->NumTrials() > 0) RequireSameTerms(terms, store->Description().stopping_rule, path);
+  store->NoteStoppingRule(terms.AsStoppingRule());
+}
+
 // Runs the plan's trials as far as the verdict needs them.
 void RunUntilDecided(StudyPlan plan, const GateArguments& arguments, std::int64_t max_rounds,
                      const ReadableRun& run, const std::vector<GateTest>& tests, ResultStore* store,
                      GateReport* report) {
-  store->NoteStoppingRule("the verdict of a gate is decided");
   report->look = LookUntilDecided(run, tests, max_rounds, [&](std::int64_t num_rounds) {
     for (Condition& condition : plan.conditions) condition.num_trials = static_cast<int>(num_rounds);
     try {
@@ -127,6 +133,7 @@ GateReport GateStudy(const GateArguments& arguments) {
   const std::string path = TrialsPath(arguments);
   const StudyPlan plan = MakePlan(study, arguments.first);
   ResultStore store = ResultStore::OpenForRun(path, plan);
+  TakeTerms(MakeGateTerms(tests, has_old ? versions.front().label : "", versions), path, &store);
   const ReadableRun run = ReadRun(store);
   GateReport report = BeginReport(run, tests, has_old);
   RunUntilDecided(plan, arguments, arguments.max_trials, run, tests, &store, &report);
@@ -152,6 +159,8 @@ GateReport GateAgainstBaseline(const GateArguments& arguments) {
   const std::string path = TrialsPath(arguments);
   const StudyPlan plan = MakePlan(study, arguments.first);
   ResultStore store = ResultStore::OpenForRun(path, plan);
+  const std::string old_label = baseline.Description().estimators.at(e).label;
+  TakeTerms(MakeGateTerms(tests, old_label, version), path, &store);
   store.NoteOrigin(ThisProgram());
   const ReadableRun run = JoinRuns(baseline, {e}, store, {0});
   GateReport report = BeginReport(run, tests, true);
@@ -237,6 +246,8 @@ Times of two runs are judged only if --of names them.
 
 Writes DIR/gate.md (for a pull request), DIR/gate.xml (JUnit), DIR/gate.json and
 DIR/trials.sqlite. If the command is stopped or the time is over, run it again: it goes on.
+Other margins, other quantities or another build of rcme or of a version's program need
+another DIR.
 
 Examples:
   rcme gate study.yaml --old rcme --new rcme_calibrated --out gate

@@ -19,7 +19,7 @@
 namespace rcme {
 namespace {
 
-constexpr int kRiskIsExceeded = 1;  // exit code
+constexpr int kRiskIsExceeded = 1, kRiskIsUndecided = 3;  // exit codes
 
 struct IntegrityArguments : EstimatorRunArguments {
   IntegrityTerms terms;
@@ -70,7 +70,9 @@ void RunIntegrity(const IntegrityArguments& arguments) {
   PrintResult(result, arguments.format);
   if (!arguments.out.empty()) WriteReport(result, arguments.out);
   runner.RemoveCheckpoint();
-  if (IsRiskExceeded(report)) throw EndWith{kRiskIsExceeded};
+  const RiskVerdict verdict = JudgeRisk(report);
+  if (verdict == RiskVerdict::kExceeded) throw EndWith{kRiskIsExceeded};
+  if (verdict == RiskVerdict::kUndecided) throw EndWith{kRiskIsUndecided};
 }
 
 }  // namespace
@@ -91,8 +93,10 @@ DIR they are in DIR/integrity.txt too, and in DIR/integrity.json with the counts
 Stanford diagram. Only counts are kept, so that millions of trials need no room. If the
 command is stopped, run it again: it goes on.
 
-Exit code: 1 if misleading answers are more than the risk allows, else 0. If the risk is
-kept, the exit code is 1 with probability at most 5 %. 2: wrong input.
+Exit code, over all trials: 0 if the risk is kept for rotation and direction, 1 if it is
+exceeded for one of them, 3 if that is undecided: there are too few answers, or none. With
+an estimator that keeps its risk the exit code is 1 with probability at most 5 %. 2: wrong
+input.
 
 Examples:
   rcme integrity own_camera --estimator rcme_calibrated --out integrity

@@ -28,9 +28,11 @@ class GateEvidence {
 
   // `scene` is counted from 0 where trials share scenes, else negative.
   void Add(const std::optional<double>& of_old, const std::optional<double>& of_new, std::int64_t scene) {
-    if (of_old) old_.Add(*of_old);
-    if (of_new) new_.Add(*of_new);
+    num_old_ += of_old.has_value();
+    num_new_ += of_new.has_value();
     if (!of_new || (!of_old && !test_.is_limit)) return;
+    if (of_old) old_.Add(*of_old);
+    new_.Add(*of_new);
     const double difference = test_.is_limit ? *of_new : test_.quantity.Difference(*of_new, *of_old);
     if (scene < 0) return differences_.Add(difference);
     if (std::ssize(scenes_) <= scene) scenes_.resize(static_cast<size_t>(scene) + 1);
@@ -86,14 +88,15 @@ class GateEvidence {
   }
 
   void RequireBothOrNone() const {
-    if (old_.median.n() == 0 && new_.median.n() == 0) return;
+    if (num_old_ == 0 && num_new_ == 0) return;
     throw InputError(fmt::format(
         "{}: no trial has it of both versions ({} of the old one, {} of the new one); leave it out with --of",
-        test_.quantity.name, old_.median.n(), new_.median.n()));
+        test_.quantity.name, num_old_, num_new_));
   }
 
   GateTest test_;
-  Numbers old_, new_;
+  std::int64_t num_old_ = 0, num_new_ = 0;  // trials that give a number, paired or not
+  Numbers old_, new_;                       // of the pairs
   ScoreMean differences_;
   Moments log_growth_;
   std::vector<SceneMean> scenes_;
@@ -143,6 +146,16 @@ std::int64_t FirstLook(const ReadableRun& run) {
   return std::max(kLeastRounds, (kTrialsOfFirstLook + num_conditions - 1) / num_conditions);
 }
 
+// Of no trial: everything is open.
+GateLook BeforeFirstLook(const std::vector<GateTest>& tests) {
+  GateLook look;
+  for (const GateTest& test : tests) {
+    look.rows.push_back(
+        {.test = test, .of_old = kNaN, .of_new = kNaN, .difference = kNaN, .interval = {kNaN, kNaN}});
+  }
+  return look;
+}
+
 // Worse ones rise.
 int RankOutcome(TrialOutcome outcome) {
   return outcome == TrialOutcome::kSuccess ? 0 : outcome == TrialOutcome::kRefusal ? 1 : 2;
@@ -187,7 +200,7 @@ GateLook TakeGateLook(const ReadableRun& run, const std::vector<GateTest>& tests
 
 GateLook LookUntilDecided(const ReadableRun& run, const std::vector<GateTest>& tests, std::int64_t max_rounds,
                           const GrowRun& grow) {
-  GateLook look;
+  GateLook look = BeforeFirstLook(tests);
   for (std::int64_t next = FirstLook(run);; next += std::max<std::int64_t>(1, next / 4)) {
     const std::int64_t num_rounds = std::min(next, max_rounds);
     if (!grow(num_rounds)) return look;

@@ -39,10 +39,10 @@ std::string Name(GateVerdict verdict);  // "not worse", ...
 struct GateRow {
   GateTest test;
   std::int64_t n = 0;                 // pairs, of scenes where trials share them; of a limit trials
-  double of_old = 0.0, of_new = 0.0;  // rates, mean scores, medians; NaN: not known
+  double of_old = 0.0, of_new = 0.0;  // of these pairs: rates, mean scores, medians; NaN: not known
   double difference = 0.0;            // as people read it; of a limit the rate
-  Interval interval;                  // each end holds at every look with probability 1 - alpha
-  double size_ratio = kNaN;           // of miscoverage: the regions' size over the old ones', pair by pair
+  Interval interval;         // each end holds at every look with probability 1 - alpha, both with 1 - 2 alpha
+  double size_ratio = kNaN;  // of miscoverage: the regions' size over the old ones', pair by pair
   double p_worse = 1.0, p_not_worse = 1.0;  // the first is Holm-adjusted
   GateVerdict verdict = GateVerdict::kUndecided;
 };
@@ -62,7 +62,8 @@ GateLook TakeGateLook(const ReadableRun& run, const std::vector<GateTest>& tests
 using GrowRun = std::function<bool(std::int64_t num_rounds)>;
 
 // Looks after about 200 trials and then after a quarter more each time, until the verdict is decided or
-// `max_rounds` is reached. The numbers of trials depend on the study alone.
+// `max_rounds` is reached. The numbers of trials depend on the study alone. If the time is over before the
+// first look, every test is undecided after no trial.
 GateLook LookUntilDecided(const ReadableRun& run, const std::vector<GateTest>& tests, std::int64_t max_rounds,
                           const GrowRun& grow);
 

@@ -111,6 +111,10 @@ std::string ListRows(const GateReport& report, GateVerdict verdict) {
   std::vector<std::string> parts;
   for (const GateRow& row : report.look.rows) {
     if (row.verdict != verdict) continue;
+    if (row.n == 0) {
+      parts.push_back(row.test.Name());
+      continue;
+    }
     parts.push_back(
         row.test.is_limit
             ? fmt::format("{} {}, {}", row.test.quantity.name, FormatChange(row), FormatMargin(row.test))
@@ -119,13 +123,39 @@ std::string ListRows(const GateReport& report, GateVerdict verdict) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
+// "failure, refusal": the quantities with this verdict.
+std::string ListQuantities(const GateReport& report, GateVerdict verdict) {
+  std::vector<std::string> names;
+  for (const GateRow& row : report.look.rows) {
+    const std::string& name = row.test.quantity.name;
+    if (row.verdict == verdict && std::ranges::count(names, name) == 0) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+// "; not judged: error, time": what a verdict says nothing about; empty if there is nothing of the kind.
+std::string ListNotJudged(const GateReport& report) {
+  std::vector<std::string> left_out = GateQuantityNames();
+  for (const GateRow& row : report.look.rows) std::erase(left_out, row.test.quantity.name);
+  const std::string not_measured = ListQuantities(report, GateVerdict::kNotMeasured);
+  return (not_measured.empty() ? "" : "; no trial has: " + not_measured) +
+         (left_out.empty() ? "" : fmt::format("; not judged: {}", fmt::join(left_out, ", ")));
+}
+
 std::string TableLegend(const GateReport& report) {
   return fmt::format(
-      "change: new less old, of error and time as a share. Each end of an interval holds at every look with "
-      "probability {:.0f} %. Worse: the change exceeds the margin, at level {:.0f} % for all {} tests "
+      "{}change: new less old over the pairs, of rates and scores in percentage points; of error and time "
+      "the "
+      "geometric mean of new over old, less 1, each ratio cut off at 1/e and e. An interval of one quantity "
+      "holds at every look with probability {:.0f} %, each of its ends with {:.0f} %. Worse: the change "
+      "exceeds the margin, at level {:.0f} % for all {} tests "
       "together "
       "(Holm). Not worse: no change reaches its margin, at level {:.0f} %.{}",
-      100.0 * (1.0 - kGateLevel), 100.0 * kGateLevel, report.look.rows.size(), 100.0 * kGateLevel,
+      report.old_label.empty() ? ""
+                               : "old, new: over the pairs, of error and time medians, so that their ratio "
+                                 "is not the change. ",
+      100.0 * (1.0 - 2.0 * kGateLevel), 100.0 * (1.0 - kGateLevel), 100.0 * kGateLevel,
+      report.look.rows.size(), 100.0 * kGateLevel,
       HasSizes(report)
           ? " regions: geometric mean over the pairs of the new regions' size over the old ones'; "
             "wider regions lower miscoverage, and are no merit."
@@ -138,7 +168,8 @@ std::vector<std::string> ListAssumptions(const ReadableRun& run, const std::vect
   const RunDescription& description = run.description;
   std::vector<std::string> assumptions = {
       fmt::format(
-          "The verdict is for the mean over these {} conditions, each with the same weight; in a single "
+          "The verdict is for the mean over these {} conditions, each with the same weight; in quantities of "
+          "trials that both versions answer, a condition with many refusals weighs less. In a single "
           "condition a change may be greater.",
           description.conditions.size()),
       "Trials are independent draws of the simulator, and an answer depends on the problem and the stream of "
@@ -164,20 +195,21 @@ std::string GateSentence(const GateReport& report) {
   const std::string against = report.old_label.empty() ? "" : fmt::format(" than {}", report.old_label);
   switch (look.verdict) {
     case GateVerdict::kWorse:
-      return fmt::format("{} is worse{} after {}: {}.", report.new_label,
+      return fmt::format("{} is worse{} after {}: {}{}.", report.new_label,
                          against.empty() ? " than allowed" : against, trials,
-                         ListRows(report, GateVerdict::kWorse));
+                         ListRows(report, GateVerdict::kWorse), ListNotJudged(report));
     case GateVerdict::kNotWorse:
-      return fmt::format("{} is not worse{} by its margins, after {}.", report.new_label,
-                         against.empty() ? " than allowed" : against, trials);
+      return fmt::format("{} is not worse{} in {} by the margins, after {}{}.", report.new_label,
+                         against.empty() ? " than allowed" : against,
+                         ListQuantities(report, GateVerdict::kNotWorse), trials, ListNotJudged(report));
     case GateVerdict::kUndecided:
     case GateVerdict::kNotMeasured:
       break;
   }
-  return fmt::format("Undecided whether {} is worse{} after {}, {}{}{}.", report.new_label,
+  return fmt::format("Undecided whether {} is worse{} after {}, {}{}{}{}.", report.new_label,
                      against.empty() ? " than allowed" : against, trials,
-                     report.is_out_of_time ? "when the time was over" : "when no trials were left",
-                     look.rows.empty() ? "" : ": ", ListRows(report, GateVerdict::kUndecided));
+                     report.is_out_of_time ? "when the time was over" : "when no trials were left", ": ",
+                     ListRows(report, GateVerdict::kUndecided), ListNotJudged(report));
 }
 
 std::string ShowCommand(const GateReport& report, const ChangedTrial& trial, bool of_old) {

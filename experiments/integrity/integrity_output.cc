@@ -250,11 +250,14 @@ IntegrityRates MeasureIntegrity(const IntegrityReport& report, size_t quantity) 
   return MeasureIntegrity(clusters.tallies, clusters.by_trial, quantity, report.terms.risk);
 }
 
-bool IsRiskExceeded(const IntegrityReport& report) {
+RiskVerdict JudgeRisk(const IntegrityReport& report) {
+  bool is_open = false;
   for (size_t q = 0; q < kNumIntegrityQuantities; ++q) {
-    if (MeasureIntegrity(report, q).verdict == RiskVerdict::kExceeded) return true;
+    const RiskVerdict verdict = MeasureIntegrity(report, q).verdict;
+    if (verdict == RiskVerdict::kExceeded) return verdict;
+    is_open = is_open || verdict == RiskVerdict::kUndecided;
   }
-  return false;
+  return is_open ? RiskVerdict::kUndecided : RiskVerdict::kKept;
 }
 
 std::string IntegrityAsText(const IntegrityReport& report) {

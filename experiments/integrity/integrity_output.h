@@ -40,9 +40,9 @@ IntegrityRates MeasureIntegrity(const std::vector<IntegrityTally>& clusters, boo
 // are the clusters; otherwise scenes or trials.
 IntegrityRates MeasureIntegrity(const IntegrityReport& report, size_t quantity);
 
-// Whether the risk is exceeded in rotation or in direction, over all conditions. If neither is, this is true
-// with probability at most 5 %: 2.5 % for each, as the lower end of an interval has it.
-bool IsRiskExceeded(const IntegrityReport& report);
+// Over all conditions: exceeded in rotation or in direction, kept in both, or undecided. If the risk is kept,
+// "exceeded" is said with probability at most 5 %: 2.5 % for each, as the lower end of an interval has it.
+RiskVerdict JudgeRisk(const IntegrityReport& report);
 
 std::string IntegrityAsText(const IntegrityReport& report);
 std::string IntegrityAsJson(const IntegrityReport& report);

@@ -128,7 +128,7 @@ def chosen(recipes, names, with_long):
     return wanted
 
 
-VERDICTS = ("integrity",)  # commands of `rcme` whose exit code 1 is what they found
+VERDICTS = ("integrity",)  # commands of `rcme` whose exit codes 1 and 3 are what they found
 
 
 def run(command, out, programs):
@@ -139,7 +139,7 @@ def run(command, out, programs):
         target, words = words[-1], words[:-2]
     program = programs / words[0] if "/" not in words[0] else Path(words[0])
     done = subprocess.run([str(program), *words[1:]], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    if done.returncode != 0 and not (done.returncode == 1 and words[1] in VERDICTS):
+    if done.returncode != 0 and not (done.returncode in (1, 3) and words[1] in VERDICTS):
         last = done.stderr.decode(errors="replace").strip().splitlines()[-3:]
         raise ResultError(f"'{command}' ended with {done.returncode}: " + " / ".join(last))
     if target:

@@ -60,7 +60,7 @@ TEST_F(Gate, IsUndecidedWithinTheBudget) {
 TEST_F(Gate, JudgesOneVersionByALimit) {
   const auto judge = [&](const std::string& limit) {
     return RunRcme(
-        {"gate", study_, "--new", "ours", "--failure-at-most", limit, "--out", folder_.Path("one")});
+        {"gate", study_, "--new", "ours", "--failure-at-most", limit, "--out", folder_.Path("at" + limit)});
   };
   const ProgramResult loose = judge("0.9"), strict = judge("0.001");
   EXPECT_EQ(loose.exit_code, 0) << loose.out << loose.err;
@@ -130,6 +130,23 @@ TEST_F(Gate, GoesOnWhereItWasStopped) {
   EXPECT_TRUE(hurry.exit_code == 3 || hurry.exit_code == 0) << hurry.err;
   hurried.back() = "5m";
   EXPECT_EQ(RunRcme(hurried).out, whole.out);
+}
+
+// Margins that are chosen after a look would void the level.
+TEST_F(Gate, OtherTermsNeedAnotherFolder) {
+  const auto judge = [&](const std::vector<std::string>& terms) {
+    std::vector<std::string> all = {"gate",         study_, "--old", "standard",           "--new", "standard",
+                                    "--max-trials", "30",   "--out", folder_.Path("terms")};
+    all.insert(all.end(), terms.begin(), terms.end());
+    return RunRcme(all);
+  };
+  const std::string failure = "--of=failure", margin = "--margin=failure=0.05";
+  const ProgramResult first = judge({failure});
+  EXPECT_EQ(first.exit_code, 3) << first.out << first.err;
+  EXPECT_THAT(first.out, HasSubstr("not judged: refusal,"));
+  EXPECT_TRUE(IsRefused(judge({failure, margin}), {"failure=0.005", "failure=0.05", "another --out"}));
+  EXPECT_TRUE(IsRefused(judge({"--of=failure,refusal"}), {"refusal=0.005", "another --out"}));
+  EXPECT_EQ(judge({failure}).exit_code, 3) << "the same terms go on";
 }
 
 TEST_F(Gate, WrongInputIsRefused) {

@@ -52,6 +52,14 @@ TEST_F(Integrity, EndsWithOneIfTheRiskIsExceeded) {
   EXPECT_THAT(result.out, HasSubstr("exceeded"));
 }
 
+// Too few answers, or none at all, do not show that a risk is kept.
+TEST_F(Integrity, EndsWithThreeIfItIsUndecided) {
+  const ProgramResult few =
+      RunRcme({"integrity", study_, "--estimator", "rcme_calibrated", "--trials", "2", "--risk", "1e-3"});
+  EXPECT_EQ(few.exit_code, 3) << few.out << few.err;
+  EXPECT_THAT(few.out, HasSubstr("undecided"));
+}
+
 TEST_F(Integrity, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(IsRefused(RunRcme({"integrity"}), {"study"}));
   EXPECT_TRUE(IsRefused(RunRcme({"integrity", study_}), {"choose one with --estimator"}));

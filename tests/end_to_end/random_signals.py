@@ -141,7 +141,7 @@ def commands(inputs):
         Command("solve", lambda out: ["solve", study, "--over", "outlier_ratio", "--trials", "300", *base, "--out", out], resumes=True,
                 longer=["--trials", "6000"]),
         Command("integrity", lambda out: ["integrity", study, "--estimator", "standard", "--risk", "0.4", "--trials", "150", *base,
-                                          "--out", out], codes=(0, 1), resumes=True, longer=["--trials", "6000"]),
+                                          "--out", out], codes=(0, 1, 3), resumes=True, longer=["--trials", "6000"]),
         Command("model_choice", lambda out: ["model-choice", "model_choice", "--trials", "1", *base, "--out", out], resumes=True,
                 longer=["--trials", "10"]),
         Command("paper_table", lambda out: ["paper-table", run, "--out", out], codes=(0, 2)),

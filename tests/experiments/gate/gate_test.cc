@@ -156,7 +156,9 @@ TEST(Gate, IsUndecidedWhereTheTrialsEndOrTheTimeDoes) {
   EXPECT_EQ(look.num_rounds, 50);
   const GateLook no_time = LookUntilDecided(run, FailureTest(), 50, [](std::int64_t) { return false; });
   EXPECT_EQ(no_time.verdict, GateVerdict::kUndecided);
-  EXPECT_TRUE(no_time.rows.empty());
+  ASSERT_EQ(no_time.rows.size(), 1U);
+  EXPECT_EQ(no_time.rows.front().n, 0);
+  EXPECT_EQ(no_time.num_rounds, 0);
 }
 
 TEST(Gate, ALimitNeedsNoOldVersion) {

@@ -133,8 +133,8 @@ TEST(RiskVerdict, FalseAlarmsAndPowerAreKnown) {
   RandomStream rng({.seed = 1, .purpose = 493});
   int num_false_alarms = 0, num_seen = 0;
   for (int i = 0; i < 1000; ++i) {
-    num_false_alarms += IsRiskExceeded(DrawReport(1000, 0.01, 0.01, rng));
-    num_seen += i < 200 && IsRiskExceeded(DrawReport(1000, 0.025, 0.01, rng));
+    num_false_alarms += JudgeRisk(DrawReport(1000, 0.01, 0.01, rng)) == RiskVerdict::kExceeded;
+    num_seen += i < 200 && JudgeRisk(DrawReport(1000, 0.025, 0.01, rng)) == RiskVerdict::kExceeded;
   }
   EXPECT_LE(num_false_alarms, 73);
   EXPECT_GE(num_false_alarms, 10);  // the test is not empty: its exact rate is about 3 %
@@ -149,6 +149,13 @@ TEST(RiskVerdict, KeptNeedsAsManyTrialsAsTheRiskAsksFor) {
   EXPECT_EQ(verdict(0), RiskVerdict::kUndecided);
   EXPECT_EQ(verdict(3687), RiskVerdict::kUndecided);
   EXPECT_EQ(verdict(3688), RiskVerdict::kKept);  // log(.025) / log(.999) = 3687.0
+  const auto judge = [&](std::int64_t trials) { return JudgeRisk(DrawReport(trials, 0.0, 1e-3, rng)); };
+  EXPECT_EQ(judge(0), RiskVerdict::kUndecided) << "no answer says nothing";
+  EXPECT_EQ(judge(3687), RiskVerdict::kUndecided);
+  EXPECT_EQ(judge(3688), RiskVerdict::kKept);
+  IntegrityReport half = DrawReport(3688, 0.0, 1e-3, rng);
+  half.conditions[0].counts.tally.regions[1] = {};
+  EXPECT_EQ(JudgeRisk(half), RiskVerdict::kUndecided) << "both kinds of error have to be kept";
 }
 
 // All misleading answers are in one of 40 conditions: for new trials many, for new conditions one of 40.
@@ -159,9 +166,9 @@ TEST(RiskVerdict, OfNewConditionsCountsConditions) {
     for (RegionCounts& of : condition.counts.tally.regions) of[0] = 1000;
   }
   for (RegionCounts& of : report.conditions[0].counts.tally.regions) of = {900, 100, 0, 0, 0};
-  EXPECT_TRUE(IsRiskExceeded(report));
+  EXPECT_EQ(JudgeRisk(report), RiskVerdict::kExceeded);
   report.new_problem = NewProblem::kCondition;
-  EXPECT_FALSE(IsRiskExceeded(report));
+  EXPECT_NE(JudgeRisk(report), RiskVerdict::kExceeded);
   EXPECT_EQ(MeasureIntegrity(report, 0).misleading.value, 0.0025);
 }
 
@@ -177,7 +184,7 @@ TEST(RiskVerdict, ScenesCommonToConditionsCountOnce) {
     }
   }
   const Estimate common = MeasureIntegrity(report, 0).misleading;
-  EXPECT_FALSE(IsRiskExceeded(report));
+  EXPECT_NE(JudgeRisk(report), RiskVerdict::kExceeded);
   report.has_common_scenes = false;
   const Estimate apart = MeasureIntegrity(report, 0).misleading;
   EXPECT_EQ(common.value, apart.value);

@@ -1,0 +1,119 @@
+#include "experiments/gate/gate_terms.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "experiments/study/command_permission.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
+#include "stats/fnv1a.h"
+
+namespace rcme {
+namespace {
+
+constexpr const char* kGateRule = "the verdict of a gate is decided: ";
+constexpr const char* kBetweenTerms = "; ";
+
+std::string HashBytesOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  Fnv1a hash;
+  hash.Add(bytes);
+  return fmt::format("{:016x}", hash.value());
+}
+
+bool IsRegularFile(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
+std::string BuildOf(const std::string& name, const std::string& hash) {
+  return fmt::format("build of {} {}", name, hash);
+}
+
+// "build of NAME " without the hash.
+std::string WhoseBuild(const std::string& build) { return build.substr(0, build.rfind(' ') + 1); }
+
+std::string FormatGateTests(const std::vector<GateTest>& tests, const std::string& old_label) {
+  std::vector<std::string> parts;
+  for (const GateTest& test : tests) parts.push_back(fmt::format("{}={}", test.Name(), test.margin));
+  if (!old_label.empty()) parts.push_back("against " + old_label);
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+}  // namespace
+
+std::string HashFilesOfCommand(const std::string& command) {
+  Fnv1a hash;
+  // Words of the shell, and what follows an equals sign: `VAR=1 ./a --model=b.bin | "c d.py"` names three.
+  const auto add_file = [&hash](const std::string& word) {
+    if (IsRegularFile(word)) hash.Add(word + " " + HashBytesOf(word) + "\n");
+  };
+  std::string word;
+  char quote = '\0';
+  for (size_t i = 0; i <= command.size(); ++i) {
+    const char c = i < command.size() ? command[i] : ' ';
+    if (quote == '\0' && (c == '\'' || c == '"')) {
+      quote = c;
+    } else if (c == quote && quote != '\0') {
+      quote = '\0';
+    } else if (c == '\\' && quote != '\'' && i + 1 < command.size()) {
+      word += command[++i];
+    } else if (quote == '\0' && std::string_view(" \t\n|&;<>()=").find(c) != std::string_view::npos) {
+      add_file(word);
+      word.clear();
+    } else {
+      word += c;
+    }
+  }
+  return fmt::format("{:016x}", hash.value());
+}
+
+GateTerms MakeGateTerms(const std::vector<GateTest>& tests, const std::string& old_label,
+                        const std::vector<EstimatorSpec>& versions) {
+  GateTerms terms{FormatGateTests(tests, old_label), {BuildOf("rcme", HashBytesOf("/proc/self/exe"))}};
+  for (const EstimatorSpec& version : versions) {
+    const std::string command = FindCommand(version);
+    if (!command.empty()) terms.builds.push_back(BuildOf(version.label, HashFilesOfCommand(command)));
+  }
+  return terms;
+}
+
+std::string GateTerms::AsStoppingRule() const {
+  return kGateRule + judged + kBetweenTerms + fmt::format("{}", fmt::join(builds, kBetweenTerms));
+}
+
+void RequireSameTerms(const GateTerms& terms, const std::string& stored_rule, const std::string& path) {
+  if (stored_rule == terms.AsStoppingRule()) return;
+  if (!stored_rule.starts_with(kGateRule)) {
+    throw InputError(
+        fmt::format("{}: its trials are not those of a gate with known margins. Give another --out or remove "
+                    "it",
+                    path));
+  }
+  const std::string stored = stored_rule.substr(std::string_view(kGateRule).size());
+  const std::string head = terms.judged + kBetweenTerms;
+  if (!stored.starts_with(head + WhoseBuild(terms.builds.front()))) {
+    const size_t end = stored.find(kBetweenTerms + WhoseBuild(terms.builds.front()));
+    throw InputError(fmt::format(
+        "{}: its trials were judged by {}; this call judges by {}. The verdict keeps its 5 % only "
+        "if quantities and margins are chosen before the trials are seen. Give another --out",
+        path, Quoted(stored.substr(0, end)), Quoted(terms.judged)));
+  }
+  for (const std::string& build : terms.builds) {
+    if ((stored + kBetweenTerms).find(kBetweenTerms + build + kBetweenTerms) != std::string::npos) continue;
+    std::string name = WhoseBuild(build).substr(std::string_view("build of ").size());
+    name.pop_back();
+    throw InputError(fmt::format(
+        "the trials in {} are of another build of {}; give another --out or remove it", path, name));
+  }
+  throw InputError(
+      fmt::format("the trials in {} are of other programs; give another --out or remove it", path));
+}
+
+}  // namespace rcme
