@@ -8,7 +8,7 @@ It draws what the file says and computes nothing: values and interval bounds are
 import sys
 
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
-from common.summary_csv import read_summary, where
+from common.summary_csv import of_estimators, read_summary, where
 from rates.lines import draw
 
 EXAMPLE = """
@@ -18,7 +18,7 @@ example:
 draws failure_rate.png and failure_rate.pdf: the failure rate and the detect-fail rate of each estimator.
 
   rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate_1px \\
-      --where sigma_px=1 --where estimator=standard --where estimator=rcme --quantities failure --log-y
+      --where sigma_px=1 --estimators standard,rcme --quantities failure --log-y
 draws only the failure rate of two estimators at one noise level, on a logarithmic axis; there a rate of exactly zero,
 which has no place, becomes an arrow that points down from its upper bound.
 
@@ -35,6 +35,7 @@ def parse(arguments):
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     parser.add_argument("--quantities", default="failure,no_candidate", metavar="A,B",
                         help="rates and scores to draw, one panel each (default: %(default)s)")
+    parser.add_argument("--estimators", metavar="A,B", help="labels of the estimators to draw (default: all)")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")
     parser.add_argument("--log-y", action="store_true", default=None,
@@ -42,12 +43,14 @@ def parse(arguments):
     parser.add_argument("--linear-y", action="store_false", dest="log_y", help="linear y axis")
     options = parser.parse_args(arguments)
     options.quantities = names_of("--quantities", options.quantities, "failure")
+    options.estimators = [] if options.estimators is None else names_of("--estimators", options.estimators, "rcme")
     check_figure_path(options.out)
     return options
 
 
 def draw_for(options):
-    return draw(where(read_summary(options.summary), options.where), options.x, options.quantities, options.log_y)
+    summary = of_estimators(where(read_summary(options.summary), options.where), options.estimators)
+    return draw(summary, options.x, options.quantities, options.log_y)
 
 
 def main(arguments=None):

@@ -9,7 +9,7 @@ compare`. A mark is filled where the Holm-adjusted p-value is below 0.05.
 import sys
 
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
-from common.summary_csv import read_comparison, where
+from common.summary_csv import of_estimators, read_comparison, where
 from rates.differences import draw
 
 EXAMPLE = """
@@ -19,7 +19,7 @@ example:
 draws difference.png and difference.pdf: the failure rate of each estimator minus that of the study's first.
 
   rcme plot paired_difference comparison.csv --x outlier_ratio --out difference --event failure,failure_or_refusal \\
-      --where sigma_px=1 --where estimator=rcme
+      --where sigma_px=1 --estimators rcme
 draws two events, one estimator, at one noise level.
 
   rcme compare run.sqlite --of scores --format csv > scores.csv
@@ -35,16 +35,19 @@ def parse(arguments):
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     parser.add_argument("--event", default="failure", metavar="A,B",
                         help="events or scores of the table, one panel each (default: %(default)s)")
+    parser.add_argument("--estimators", metavar="A,B", help="labels of the estimators to draw (default: all)")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")
     options = parser.parse_args(arguments)
     options.event = names_of("--event", options.event, "failure")
+    options.estimators = [] if options.estimators is None else names_of("--estimators", options.estimators, "rcme")
     check_figure_path(options.out)
     return options
 
 
 def draw_for(options):
-    return draw(where(read_comparison(options.comparison), options.where), options.x, options.event)
+    comparison = of_estimators(where(read_comparison(options.comparison), options.where), options.estimators)
+    return draw(comparison, options.x, options.event)
 
 
 def main(arguments=None):

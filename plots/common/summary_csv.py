@@ -103,6 +103,15 @@ def where(summary, conditions):
     return summary.with_rows(rows_where(summary.path, summary.rows, keys, conditions))
 
 
+def of_estimators(summary, names):
+    """The rows of these estimators; without names all."""
+    present = list(dict.fromkeys(summary.rows.estimator))
+    for name in names:
+        if name not in present:
+            raise PlotError(f"--estimators {name}: {summary.path} has no such estimator; allowed: {', '.join(present)}.")
+    return summary.with_rows(summary.rows[summary.rows.estimator.isin(names)]) if names else summary
+
+
 def rows_where(path, rows, allowed_keys, conditions):
     """The same of any rows whose columns `allowed_keys` are texts."""
     wanted, is_wanted = {}, [True] * len(rows)

@@ -81,6 +81,17 @@ class FailureRateTest(PlotTestCase):
         return self.run_script(path or self.write(text), "--x", x, "--out", self.out, *arguments)
 
 
+class Estimators(FailureRateTest):
+    def test_estimators_can_be_chosen(self):
+        options = failure_rate.parse([self.write(TABLE), "--x", "outlier_ratio", "--out", str(self.out), "--estimators", "mine"])
+        axes = failure_rate.draw_for(options).axes[0]
+        self.assertEqual({line.get_label() for line in axes.lines if not line.get_label().startswith("_")}, {"mine"})
+        code, _, err = self.run_main("--estimators", "standard,rcme")
+        self.assertNotEqual(code, 0)
+        self.assertIn("--estimators rcme", err)
+        self.assertIn("allowed: standard, mine", err)
+
+
 class WrittenFiles(FailureRateTest):
     def test_the_command_writes_both_files_and_prints_their_paths(self):
         done = subprocess.run(["/usr/bin/python3", str(PLOTS / "failure_rate.py"), self.write(TABLE), "--x",

@@ -41,6 +41,17 @@ class PairedDifferenceTest(PlotTestCase):
         return self.run_script(self.write(text), "--x", x, "--out", self.folder / "difference", *arguments)
 
 
+class Estimators(PairedDifferenceTest):
+    def test_estimators_can_be_chosen(self):
+        options = paired_difference.parse([self.write(TABLE), "--x", "outlier_ratio", "--out",
+                                           str(self.folder / "difference"), "--estimators", "mine"])
+        axes = paired_difference.draw_for(options).axes[0]
+        self.assertEqual((marks_of(axes, "RCME"), marks_of(axes, "mine") != {}), ({}, True))
+        code, _, err = self.run_main("--estimators", "other")
+        self.assertNotEqual(code, 0)
+        self.assertIn("allowed: mine, rcme", err)
+
+
 class Drawn(PairedDifferenceTest):
     def test_marks_are_those_of_the_file_filled_where_holm_says_so(self):
         axes = self.draw().axes[0]
