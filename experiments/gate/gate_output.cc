@@ -145,12 +145,10 @@ std::string ListNotJudged(const GateReport& report) {
 std::string TableLegend(const GateReport& report) {
   return fmt::format(
       "{}change: new less old over the pairs, of rates and scores in percentage points; of error and time "
-      "the "
-      "geometric mean of new over old, less 1, each ratio cut off at 1/e and e. An interval of one quantity "
-      "holds at every look with probability {:.0f} %, each of its ends with {:.0f} %. Worse: the change "
-      "exceeds the margin, at level {:.0f} % for all {} tests "
-      "together "
-      "(Holm). Not worse: no change reaches its margin, at level {:.0f} %.{}",
+      "the geometric mean of new over old, less 1, each ratio cut off at 1/e and e. An interval of one "
+      "quantity holds at every look with probability {:.0f} %, each of its ends with {:.0f} %. Worse: the "
+      "change exceeds the margin, at level {:.0f} % for all {} tests together (Holm). Not worse: no change "
+      "reaches its margin, at level {:.0f} %.{}",
       report.old_label.empty() ? ""
                                : "old, new: over the pairs, of error and time medians, so that their ratio "
                                  "is not the change. ",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -19,11 +20,15 @@ namespace {
 constexpr const char* kGateRule = "the verdict of a gate is decided: ";
 constexpr const char* kBetweenTerms = "; ";
 
-std::string HashBytesOf(const std::string& path) {
+// Piece by piece: a command may name a file of any size.
+std::string HashFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::array<char, 1 << 16> piece;
   Fnv1a hash;
-  hash.Add(bytes);
+  while (file) {
+    file.read(piece.data(), std::ssize(piece));
+    hash.Add({piece.data(), static_cast<size_t>(file.gcount())});
+  }
   return fmt::format("{:016x}", hash.value());
 }
 
@@ -32,12 +37,12 @@ bool IsRegularFile(const std::string& path) {
   return std::filesystem::is_regular_file(path, ignored);
 }
 
-std::string BuildOf(const std::string& name, const std::string& hash) {
+std::string FormatBuild(const std::string& name, const std::string& hash) {
   return fmt::format("build of {} {}", name, hash);
 }
 
 // "build of NAME " without the hash.
-std::string WhoseBuild(const std::string& build) { return build.substr(0, build.rfind(' ') + 1); }
+std::string CutHash(const std::string& build) { return build.substr(0, build.rfind(' ') + 1); }
 
 std::string FormatGateTests(const std::vector<GateTest>& tests, const std::string& old_label) {
   std::vector<std::string> parts;
@@ -52,7 +57,7 @@ std::string HashFilesOfCommand(const std::string& command) {
   Fnv1a hash;
   // Words of the shell, and what follows an equals sign: `VAR=1 ./a --model=b.bin | "c d.py"` names three.
   const auto add_file = [&hash](const std::string& word) {
-    if (IsRegularFile(word)) hash.Add(word + " " + HashBytesOf(word) + "\n");
+    if (IsRegularFile(word)) hash.Add(word + " " + HashFile(word) + "\n");
   };
   std::string word;
   char quote = '\0';
@@ -76,10 +81,10 @@ std::string HashFilesOfCommand(const std::string& command) {
 
 GateTerms MakeGateTerms(const std::vector<GateTest>& tests, const std::string& old_label,
                         const std::vector<EstimatorSpec>& versions) {
-  GateTerms terms{FormatGateTests(tests, old_label), {BuildOf("rcme", HashBytesOf("/proc/self/exe"))}};
+  GateTerms terms{FormatGateTests(tests, old_label), {FormatBuild("rcme", HashFile("/proc/self/exe"))}};
   for (const EstimatorSpec& version : versions) {
     const std::string command = FindCommand(version);
-    if (!command.empty()) terms.builds.push_back(BuildOf(version.label, HashFilesOfCommand(command)));
+    if (!command.empty()) terms.builds.push_back(FormatBuild(version.label, HashFilesOfCommand(command)));
   }
   return terms;
 }
@@ -98,8 +103,8 @@ void RequireSameTerms(const GateTerms& terms, const std::string& stored_rule, co
   }
   const std::string stored = stored_rule.substr(std::string_view(kGateRule).size());
   const std::string head = terms.judged + kBetweenTerms;
-  if (!stored.starts_with(head + WhoseBuild(terms.builds.front()))) {
-    const size_t end = stored.find(kBetweenTerms + WhoseBuild(terms.builds.front()));
+  if (!stored.starts_with(head + CutHash(terms.builds.front()))) {
+    const size_t end = stored.find(kBetweenTerms + CutHash(terms.builds.front()));
     throw InputError(fmt::format(
         "{}: its trials were judged by {}; this call judges by {}. The verdict keeps its 5 % only "
         "if quantities and margins are chosen before the trials are seen. Give another --out",
@@ -107,7 +112,7 @@ void RequireSameTerms(const GateTerms& terms, const std::string& stored_rule, co
   }
   for (const std::string& build : terms.builds) {
     if ((stored + kBetweenTerms).find(kBetweenTerms + build + kBetweenTerms) != std::string::npos) continue;
-    std::string name = WhoseBuild(build).substr(std::string_view("build of ").size());
+    std::string name = CutHash(build).substr(std::string_view("build of ").size());
     name.pop_back();
     throw InputError(fmt::format(
         "the trials in {} are of another build of {}; give another --out or remove it", path, name));
