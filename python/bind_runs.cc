@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/run/run_study.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/statistics/forecast_output.h"
@@ -57,14 +58,14 @@ std::string ComparisonCsv(const std::string& run, const std::string& against,
     throw InputError(comparison.caution.empty() ? run + ": one estimator; a comparison needs two"
                                                 : run + ": " + comparison.caution);
   }
-  return ComparisonAsCsv(comparison);
+  return RenderCsv(MakeComparisonResult(comparison).rows);
 }
 
 std::string ReliabilityJson(const std::string& run, const std::string& by) {
   const py::gil_scoped_release unlocked;
   std::vector<ResultStore> runs;
   runs.push_back(ResultStore::OpenForReading(run));
-  return ForecastsAsJson(runs.front().Description().study, by, MeasureFailureForecasts(runs, by));
+  return MakeForecastResult(runs.front().Description().study, by, MeasureFailureForecasts(runs, by)).json;
 }
 
 }  // namespace

@@ -29,17 +29,6 @@ Interval ExactBinomialInterval(std::int64_t successes, std::int64_t n, double co
                         [&] { return ClopperPearson(successes, n, confidence); });
 }
 
-Interval WilsonInterval(std::int64_t successes, std::int64_t n, double confidence) {
-  if (n <= 0) return {0.0, 1.0};
-  const double z = NormalQuantile(0.5 * (1.0 + confidence));
-  const double trials = static_cast<double>(n), rate = static_cast<double>(successes) / trials;
-  const double scale = 1.0 / (1.0 + z * z / trials);
-  const double center = scale * (rate + 0.5 * z * z / trials);
-  const double half = scale * z * std::sqrt(rate * (1.0 - rate) / trials + 0.25 * z * z / (trials * trials));
-  return {successes == 0 ? 0.0 : std::max(0.0, center - half),
-          successes == n ? 1.0 : std::min(1.0, center + half)};
-}
-
 Interval StudentInterval(const Moments& moments, double confidence) {
   if (moments.n() < 2) return {-kInfinity, kInfinity};
   const double quantile = StudentQuantile(static_cast<int>(moments.n() - 1), 0.5 * (1.0 + confidence));

@@ -15,11 +15,6 @@ struct Interval {
 // at n = 0. Covers at least `confidence` for every true probability.
 Interval ExactBinomialInterval(std::int64_t successes, std::int64_t n, double confidence = 0.95);
 
-// Wilson's (1927) score interval: the p whose z-test the data pass, |p_hat - p| <= z sqrt(p (1 - p) / n). Its
-// coverage is close to `confidence` on average over p, but near 0 and 1 it falls below for some p: for
-// drawing and for planning; a verdict takes the exact one.
-Interval WilsonInterval(std::int64_t successes, std::int64_t n, double confidence = 0.95);
-
 // Of the mean of independent normal numbers: mean +- t_(n-1) s / sqrt(n). Unbounded below two numbers.
 Interval StudentInterval(const Moments& moments, double confidence = 0.95);
 

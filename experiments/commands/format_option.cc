@@ -2,7 +2,6 @@
 
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
 
 namespace rcme {
 
@@ -22,11 +21,6 @@ void WriteResultFiles(const CommandResult& result, const std::string& stem) {
   WriteFileWhole(stem + ".txt", RenderResult(result, "table"));
   WriteFileWhole(stem + ".csv", RenderResult(result, "csv"));
   WriteFileWhole(stem + ".json", RenderResult(result, "json"));
-}
-
-void PrintForPeople(const std::string& text, const std::string& format) {
-  if (format == "table") return PrintOrWrite("", text);
-  PrintMessage("{}", text);
 }
 
 }  // namespace rcme

@@ -17,8 +17,4 @@ void PrintResult(const CommandResult& result, const std::string& format, const s
 // `stem`.txt, .csv and .json.
 void WriteResultFiles(const CommandResult& result, const std::string& stem);
 
-// Text of people alone: for a part of the work, or where there is no result yet. With another format it goes
-// to standard error.
-void PrintForPeople(const std::string& text, const std::string& format);
-
 }  // namespace rcme

@@ -42,8 +42,6 @@ Json EventsAsJson(const std::vector<EventsAtLevel>& events) {
   return json;
 }
 
-}  // namespace
-
 std::string CrossingsAsTable(const Study& study, const CrossingQuestion& question,
                              const CrossingAnswer& answer) {
   std::vector<ColumnOf<RateCrossing>> columns = CrossingColumns(question, answer.factors);
@@ -82,6 +80,8 @@ std::string CrossingsAsJson(const Study& study, const CrossingQuestion& question
                                      {"rate", question.rate},
                                      {"crossings", rows}});
 }
+
+}  // namespace
 
 CommandResult MakeCrossingsResult(const Study& study, const CrossingQuestion& question,
                                   const CrossingAnswer& answer) {

@@ -7,14 +7,7 @@
 
 namespace rcme {
 
-// For people: a row for each condition and estimator.
-std::string CrossingsAsTable(const Study& study, const CrossingQuestion& question,
-                             const CrossingAnswer& answer);
-// The same rows.
-// The rows, and the events at every level that was asked.
-std::string CrossingsAsJson(const Study& study, const CrossingQuestion& question,
-                            const CrossingAnswer& answer);
-
+// A row for each condition and estimator; in JSON also the events at every level that was asked.
 CommandResult MakeCrossingsResult(const Study& study, const CrossingQuestion& question,
                                   const CrossingAnswer& answer);
 

@@ -149,8 +149,6 @@ Table MakeRowTable(const Comparison& comparison) {
   return MakeTable(columns, comparison.rows);
 }
 
-}  // namespace
-
 std::string ComparisonAsTable(const Comparison& comparison) {
   std::string text =
       fmt::format("Study {} against {}: {} of {} trials done\n", comparison.study, comparison.reference,
@@ -172,19 +170,16 @@ std::string ComparisonAsTable(const Comparison& comparison) {
   return text;
 }
 
-std::string ComparisonAsCsv(const Comparison& comparison) { return RenderCsv(MakeRowTable(comparison)); }
-
-std::string ComparisonAsJson(const Comparison& comparison) {
-  return JsonText(kComparisonFormat, {{"study", comparison.study},
-                                      {"reference", comparison.reference},
-                                      {"trials_done", comparison.num_trials_done},
-                                      {"trials_planned", comparison.num_trials_planned},
-                                      {"caution", comparison.caution},
-                                      {"rows", RenderJson(MakeRowTable(comparison))}});
-}
+}  // namespace
 
 CommandResult MakeComparisonResult(const Comparison& comparison) {
-  return {ComparisonAsTable(comparison), MakeRowTable(comparison), ComparisonAsJson(comparison)};
+  return MakeResult(ComparisonAsTable(comparison), kComparisonFormat,
+                    {{"study", comparison.study},
+                     {"reference", comparison.reference},
+                     {"trials_done", comparison.num_trials_done},
+                     {"trials_planned", comparison.num_trials_planned},
+                     {"caution", comparison.caution}},
+                    MakeRowTable(comparison));
 }
 
 }  // namespace rcme

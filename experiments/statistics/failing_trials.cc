@@ -57,8 +57,6 @@ Table MakeFailingTable(const FailingTrials& trials, bool with_probability = true
   return MakeTable(columns, trials.listed);
 }
 
-}  // namespace
-
 FailingTrials ListFailingTrials(const ResultStore& store, const FailureQuery& query) {
   const RunDescription run = store.Description();
   const TrialEvent& event = FindListedEvent(query.event);
@@ -100,17 +98,13 @@ std::string FailingTrialsAsTable(const FailingTrials& trials, const std::string&
                     run, first.condition, first.trial);
 }
 
-std::string FailingTrialsAsCsv(const FailingTrials& trials) { return RenderCsv(MakeFailingTable(trials)); }
-
-std::string FailingTrialsAsJson(const FailingTrials& trials) {
-  return JsonText(kFailuresFormat, {{"study", trials.study},
-                                    {"found", trials.num_found},
-                                    {"looked_at", trials.num_looked_at},
-                                    {"rows", RenderJson(MakeFailingTable(trials))}});
-}
+}  // namespace
 
 CommandResult MakeFailuresResult(const FailingTrials& trials, const std::string& run) {
-  return {FailingTrialsAsTable(trials, run), MakeFailingTable(trials), FailingTrialsAsJson(trials)};
+  return MakeResult(
+      FailingTrialsAsTable(trials, run), kFailuresFormat,
+      {{"study", trials.study}, {"found", trials.num_found}, {"looked_at", trials.num_looked_at}},
+      MakeFailingTable(trials));
 }
 
 }  // namespace rcme

@@ -39,12 +39,7 @@ struct FailingTrials {
 // sound.
 FailingTrials ListFailingTrials(const ResultStore& store, const FailureQuery& query);
 
-// For people: the list, how many there are, and the command that shows the first.
-std::string FailingTrialsAsTable(const FailingTrials& trials, const std::string& run);
-// For programs: a row per answer.
-std::string FailingTrialsAsCsv(const FailingTrials& trials);
-std::string FailingTrialsAsJson(const FailingTrials& trials);
-
+// A row per answer; for people also how many there are, and the command that shows the first.
 CommandResult MakeFailuresResult(const FailingTrials& trials, const std::string& run);
 
 }  // namespace rcme

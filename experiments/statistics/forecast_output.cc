@@ -187,6 +187,18 @@ Json RenderForecastEntry(const ForecastMeasures& m) {
   return entry;
 }
 
+std::string ForecastsAsJson(const std::string& study, const std::string& by,
+                            const std::vector<ForecastMeasures>& measures) {
+  Json json = {{"study", study},
+               {"by", by},
+               {"sure_below", kSureBelow},
+               {"histogram_edges", HistogramEdges()},
+               {"entries", Json::array()}};
+  json["rows"] = RenderJson(MakeForecastFileTable(measures));
+  for (const ForecastMeasures& m : measures) json["entries"].push_back(RenderForecastEntry(m));
+  return JsonText(kReliabilityFormat, json);
+}
+
 }  // namespace
 
 std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, const std::string& by) {
@@ -211,18 +223,6 @@ std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, cons
         "regression on the other half of the scenes of this run, stands in.");
   }
   return text;
-}
-
-std::string ForecastsAsJson(const std::string& study, const std::string& by,
-                            const std::vector<ForecastMeasures>& measures) {
-  Json json = {{"study", study},
-               {"by", by},
-               {"sure_below", kSureBelow},
-               {"histogram_edges", HistogramEdges()},
-               {"entries", Json::array()}};
-  json["rows"] = RenderJson(MakeForecastFileTable(measures));
-  for (const ForecastMeasures& m : measures) json["entries"].push_back(RenderForecastEntry(m));
-  return JsonText(kReliabilityFormat, json);
 }
 
 CommandResult MakeForecastResult(const std::string& study, const std::string& by,

@@ -12,11 +12,8 @@ namespace rcme {
 // empty.
 std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, const std::string& by = {});
 
-// For programs and figures: an object {study, by, entries: [...]} with every measure, the reliability curve
-// with its band, the bins and the risk-coverage curve; unknown and infinite numbers are null.
-std::string ForecastsAsJson(const std::string& study, const std::string& by,
-                            const std::vector<ForecastMeasures>& measures);
-
+// The table; in JSON every measure, the reliability curve with its band, the bins and the risk-coverage curve
+// (`entries`); unknown and infinite numbers are null.
 CommandResult MakeForecastResult(const std::string& study, const std::string& by,
                                  const std::vector<ForecastMeasures>& measures);
 

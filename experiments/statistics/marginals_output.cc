@@ -46,8 +46,6 @@ MarginalColumns ListColumns(bool for_people) {
   return columns;
 }
 
-}  // namespace
-
 std::string MarginalsAsTable(const std::string& study, const Marginals& marginals, size_t num_shown) {
   std::vector<Marginal> whole, worst;
   for (const Marginal& one : marginals.rows) {
@@ -77,21 +75,18 @@ std::string MarginalsAsTable(const std::string& study, const Marginals& marginal
   return text;
 }
 
-std::string MarginalsAsCsv(const Marginals& marginals) {
-  return RenderCsv(MakeTable(ListColumns(false), marginals.rows));
-}
+}  // namespace
 
-std::string MarginalsAsJson(const std::string& study, const Marginals& marginals) {
-  return JsonText(kMarginalsFormat,
-                  {{"study", study},
-                   {"confidence", marginals.confidence},
-                   {"num_intervals", marginals.num_intervals},
-                   {"marginals", RenderJson(MakeTable(ListColumns(false), marginals.rows))}});
-}
+Table MakeMarginalsTable(const Marginals& marginals) { return MakeTable(ListColumns(false), marginals.rows); }
 
 CommandResult MakeMarginalsResult(const std::string& study, const Marginals& marginals, size_t num_shown) {
-  return {MarginalsAsTable(study, marginals, num_shown), MakeTable(ListColumns(false), marginals.rows),
-          MarginalsAsJson(study, marginals)};
+  const Table rows = MakeMarginalsTable(marginals);
+  return {MarginalsAsTable(study, marginals, num_shown), rows,
+          RenderDocument(kMarginalsFormat,
+                         {{"study", study},
+                          {"confidence", marginals.confidence},
+                          {"num_intervals", static_cast<std::int64_t>(marginals.num_intervals)}},
+                         {{"marginals", rows}})};
 }
 
 }  // namespace rcme

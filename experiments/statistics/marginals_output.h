@@ -7,13 +7,11 @@
 
 namespace rcme {
 
-// For people: every estimator over all conditions, then the `num_shown` regimes farthest from what is
-// claimed.
-std::string MarginalsAsTable(const std::string& study, const Marginals& marginals, size_t num_shown);
-// All of them.
-std::string MarginalsAsCsv(const Marginals& marginals);
-std::string MarginalsAsJson(const std::string& study, const Marginals& marginals);
+// A row per regime and quantity.
+Table MakeMarginalsTable(const Marginals& marginals);
 
+// For people every estimator over all conditions, then the `num_shown` regimes farthest from what is claimed;
+// in files these rows.
 CommandResult MakeMarginalsResult(const std::string& study, const Marginals& marginals, size_t num_shown);
 
 }  // namespace rcme

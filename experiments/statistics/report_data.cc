@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "experiments/core/files/file_output.h"
+#include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/statistics/forecast_output.h"
@@ -139,12 +140,14 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   WriteSummaryCsv(summary, [&](const std::string& text) { table.Write(text); });
   table.Finish();
   if (!forecasts.empty())
-    WriteFileWhole(folder + "/reliability.json", ForecastsAsJson(summary.study, "", forecasts));
+    WriteFileWhole(folder + "/reliability.json", MakeForecastResult(summary.study, "", forecasts).json);
   if (comparison.caution.empty() && HasMarginals(store.Description())) {
-    WriteFileWhole(folder + "/marginals.csv",
-                   MarginalsAsCsv(MeasureMarginals(store, {.with_pairs = false, .estimators = {}})));
+    WriteFileWhole(
+        folder + "/marginals.csv",
+        RenderCsv(MakeMarginalsTable(MeasureMarginals(store, {.with_pairs = false, .estimators = {}}))));
   }
-  if (!comparison.rows.empty()) WriteFileWhole(folder + "/comparison.csv", ComparisonAsCsv(comparison));
+  if (!comparison.rows.empty())
+    WriteFileWhole(folder + "/comparison.csv", RenderCsv(MakeComparisonResult(comparison).rows));
 }
 
 }  // namespace

@@ -54,8 +54,6 @@ Table MakeTransferCells(const StudyPlan& plan, const TransferResult& result) {
   return WithIntervalColumns(table);
 }
 
-}  // namespace
-
 std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result) {
   const Tuning& tuning = *plan.study.tuning;
   Table table{{Column::Key("tuned on"), Column::Text("setting"),
@@ -120,6 +118,8 @@ std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, c
                      {"cells", cells}};
   return JsonText(kTransferFormat, json);
 }
+
+}  // namespace
 
 CommandResult MakeTransferResult(const StudyPlan& plan, const SettingPlan& settings,
                                  const TransferResult& result) {

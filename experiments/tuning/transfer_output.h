@@ -7,11 +7,8 @@
 
 namespace rcme {
 
-// For people: what each family is tuned to, and on how many of the others the target holds.
-std::string TransferAsTable(const StudyPlan& plan, const TransferResult& result);
-// For plots/transfer.py: every cell of the matrix.
-std::string TransferAsJson(const StudyPlan& plan, const SettingPlan& settings, const TransferResult& result);
-
+// For people what each family is tuned to, and on how many of the others the target holds; in files every
+// cell of the matrix.
 CommandResult MakeTransferResult(const StudyPlan& plan, const SettingPlan& settings,
                                  const TransferResult& result);
 

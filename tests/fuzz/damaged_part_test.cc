@@ -94,7 +94,8 @@ class DamagedParts : public testing::Test {
       RequireWhole(work.items, merged);
       const TransferResult result =
           MeasureTransfer(plan_, settings_, "", CountsIn(plan_, settings_, work, merged));
-      return TransferAsTable(plan_, result) + TransferAsJson(plan_, settings_, result);
+      const CommandResult transfer = MakeTransferResult(plan_, settings_, result);
+      return transfer.text + transfer.json;
     };
     return {"transfer", paths, tables};
   }
@@ -215,7 +216,7 @@ class DamagedParts : public testing::Test {
       KeptSteps steps(runner);
       const MotionEstimator& estimator = *plan_.estimators.back();
       const TwinSource source = AnswerScene("made", *plan_.conditions[0].source, {}, estimator, 1, &steps);
-      return TwinsAsJson({MakeTwinReport(source, estimator, "pairs", 0.5, 1, 1, &steps)});
+      return MakeTwinsResult({MakeTwinReport(source, estimator, "pairs", 0.5, 1, 1, &steps)}).json;
     });
   }
 

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/run/run_study.h"
 #include "experiments/run/store/new_trials.h"
 #include "experiments/run/store/salvage.h"
@@ -40,7 +41,7 @@ inline bool Execute(const std::string& path, const std::string& sql) {
 inline std::string ReadAllResults(const std::string& path) {
   const ResultStore store = ResultStore::OpenForReading(path);
   std::string text = SummaryAsCsv(Summarize(store, /*with_times=*/true)) +
-                     ComparisonAsCsv(Compare(store, "")) + store.Plan().study_yaml;
+                     RenderCsv(MakeComparisonResult(Compare(store, "")).rows) + store.Plan().study_yaml;
   WriteTrialTable(store, /*with_times=*/true, [&](const std::string& row) { text += row; });
   const RunDescription run = store.Description();
   text += fmt::format("{} {} {} {} {}", run.description, run.stopping_rule, run.until_options,

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "stats/distributions.h"
-#include "stats/goodness_of_fit.h"
+#include "tests/test_support/kolmogorov_smirnov.h"
 
 namespace rcme {
 namespace {

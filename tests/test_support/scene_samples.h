@@ -17,7 +17,7 @@
 #include "simulator/cameras/camera_models.h"
 #include "simulator/scene_generator.h"
 #include "simulator/scene_model.h"
-#include "stats/goodness_of_fit.h"
+#include "tests/test_support/kolmogorov_smirnov.h"
 
 namespace rcme {
 

@@ -54,8 +54,6 @@ std::string DescribeLevels(const ChoiceCounts& counts, const ChoiceGroup& group)
   return words.empty() ? "all conditions" : fmt::format("{}", fmt::join(words, ", "));
 }
 
-}  // namespace
-
 std::string ChoicesAsTable(const StudyPlan& plan, const ChoiceCounts& counts) {
   const std::int64_t num_trials = plan.study.trials * std::ssize(plan.conditions);
   std::int64_t num_simulated = 0;
@@ -112,6 +110,8 @@ Table MakeChoiceFileTable(const StudyPlan& plan, const ChoiceCounts& counts) {
   }
   return table;
 }
+
+}  // namespace
 
 CommandResult MakeChoiceResult(const StudyPlan& plan, const ChoiceCounts& counts) {
   const Facts facts = {{"study", plan.study.name},

@@ -247,8 +247,6 @@ Table MakePaperRateTable() {
   return table;
 }
 
-}  // namespace
-
 std::string PaperTableAsText(const PaperTable& table) {
   std::string text =
       FormatParagraph(fmt::format("{}: refusals and failures, % of the pairs, 95 % intervals "
@@ -278,16 +276,15 @@ Table MakePaperFileTable(const PaperTable& table) {
   return all;
 }
 
-std::string PaperTableAsJson(const PaperTable& table) {
-  return JsonText(kPaperTableFormat, {{"study", table.study},
-                                      {"max_rotation_error_deg", table.bounds.max_rotation_error_deg},
-                                      {"max_direction_error_deg", table.bounds.max_direction_error_deg},
-                                      {"rates", RenderJson(MakeRunTable(table))},
-                                      {"printed", RenderJson(MakePaperRateTable())}});
-}
+}  // namespace
 
 CommandResult MakePaperResult(const PaperTable& table) {
-  return {PaperTableAsText(table), MakePaperFileTable(table), PaperTableAsJson(table)};
+  return {PaperTableAsText(table), MakePaperFileTable(table),
+          RenderDocument(kPaperTableFormat,
+                         {{"study", table.study},
+                          {"max_rotation_error_deg", table.bounds.max_rotation_error_deg},
+                          {"max_direction_error_deg", table.bounds.max_direction_error_deg}},
+                         {{"rates", MakeRunTable(table)}, {"printed", MakePaperRateTable()}})};
 }
 
 }  // namespace rcme

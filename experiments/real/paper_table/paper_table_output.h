@@ -7,13 +7,8 @@
 
 namespace rcme {
 
-// A table per estimator, then what the paper prints.
-std::string PaperTableAsText(const PaperTable& table);
-// A row per scene or group, estimator and quantity; the printed rates follow with `source` paper.
-Table MakePaperFileTable(const PaperTable& table);
-// The same rows as objects.
-std::string PaperTableAsJson(const PaperTable& table);
-
+// For people a table per estimator, then what the paper prints. In files a row per scene or group, estimator
+// and quantity; the printed rates follow with `source` paper, in JSON as an array of their own.
 CommandResult MakePaperResult(const PaperTable& table);
 
 }  // namespace rcme

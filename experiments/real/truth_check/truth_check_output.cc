@@ -106,8 +106,6 @@ std::string DescribeSum(const std::vector<CheckedPair>& pairs) {
       sum.in_doubt, sum.pairs, sum.silent, sum.no_truth));
 }
 
-}  // namespace
-
 std::string TruthCheckAsText(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options) {
   std::string text = DescribeSum(pairs) + "\n" + RenderText(MakeSceneTable(CountScenes(pairs)));
   const std::vector<EvidenceRow> in_doubt = ListEvidence(pairs, true);
@@ -124,14 +122,7 @@ std::string TruthCheckAsText(const std::vector<CheckedPair>& pairs, const TruthC
              kTruthDoubtLevel));
 }
 
-std::string TruthCheckAsJson(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options) {
-  return JsonText(kTruthCheckFormat,
-                  {{"max_rotation_error_deg", options.bounds.max_rotation_error_deg},
-                   {"max_direction_error_deg", options.bounds.max_direction_error_deg},
-                   {"level", kTruthDoubtLevel},
-                   {"scenes", RenderJson(MakeSceneTable(CountScenes(pairs)))},
-                   {"evidence", RenderJson(MakeEvidenceTable(ListEvidence(pairs, false)))}});
-}
+}  // namespace
 
 std::string TruthDoubtsAsCsv(const std::vector<CheckedPair>& pairs) {
   std::vector<CheckedPair> in_doubt;
@@ -147,8 +138,13 @@ std::string TruthDoubtsAsCsv(const std::vector<CheckedPair>& pairs) {
 }
 
 CommandResult MakeTruthCheckResult(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options) {
-  return {TruthCheckAsText(pairs, options), MakeEvidenceTable(ListEvidence(pairs, false)),
-          TruthCheckAsJson(pairs, options)};
+  const Table evidence = MakeEvidenceTable(ListEvidence(pairs, false));
+  return {TruthCheckAsText(pairs, options), evidence,
+          RenderDocument(kTruthCheckFormat,
+                         {{"max_rotation_error_deg", options.bounds.max_rotation_error_deg},
+                          {"max_direction_error_deg", options.bounds.max_direction_error_deg},
+                          {"level", kTruthDoubtLevel}},
+                         {{"scenes", MakeSceneTable(CountScenes(pairs))}, {"evidence", evidence}})};
 }
 
 }  // namespace rcme

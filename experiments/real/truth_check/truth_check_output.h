@@ -8,13 +8,10 @@
 
 namespace rcme {
 
-// A table of the scenes, then one of the pairs in doubt.
-std::string TruthCheckAsText(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options);
-// A row per pair and front end.
-std::string TruthCheckAsJson(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options);
+// For people a table of the scenes, then one of the pairs in doubt; in files a row per pair and front end.
+CommandResult MakeTruthCheckResult(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options);
+
 // The pairs in doubt, for the key truth_in_doubt of a study (experiments/data/truth_doubts.h).
 std::string TruthDoubtsAsCsv(const std::vector<CheckedPair>& pairs);
-
-CommandResult MakeTruthCheckResult(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options);
 
 }  // namespace rcme

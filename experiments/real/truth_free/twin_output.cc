@@ -124,8 +124,6 @@ Table MakeRowTable(const std::vector<TwinReport>& reports) {
       rows);
 }
 
-}  // namespace
-
 std::string TwinsAsText(const std::vector<TwinReport>& reports) {
   std::string text;
   for (const TwinReport& report : reports) text += ReportAsText(report);
@@ -154,6 +152,8 @@ std::string TwinsAsJson(const std::vector<TwinReport>& reports) {
   }
   return JsonText(kTwinFormat, json);
 }
+
+}  // namespace
 
 CommandResult MakeTwinsResult(const std::vector<TwinReport>& reports) {
   return {TwinsAsText(reports), MakeRowTable(reports), TwinsAsJson(reports)};

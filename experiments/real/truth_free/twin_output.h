@@ -8,10 +8,7 @@
 
 namespace rcme {
 
-// Tables for people; a row per scene, twin and quantity; the same for programs, with the data blocks.
-std::string TwinsAsText(const std::vector<TwinReport>& reports);
-std::string TwinsAsJson(const std::vector<TwinReport>& reports);
-
+// Tables for people; a row per scene, twin and quantity for programs; in JSON also the data blocks.
 CommandResult MakeTwinsResult(const std::vector<TwinReport>& reports);
 
 }  // namespace rcme

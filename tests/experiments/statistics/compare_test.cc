@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/statistics/summarize.h"
 #include "experiments/trial/trial_measure.h"
@@ -200,7 +201,7 @@ TEST_F(CompareTest, ABadLabelNamesWhatIsAllowed) {
 TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
   const Comparison comparison = CompareRun("run");
-  std::istringstream csv(ComparisonAsCsv(comparison));
+  std::istringstream csv(RenderCsv(MakeComparisonResult(comparison).rows));
   std::vector<std::string> lines;
   for (std::string line; std::getline(csv, line);) lines.push_back(line);
   ASSERT_EQ(lines.size(), 7u);
@@ -211,7 +212,7 @@ TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
                                   "0.0703125,0.2109375,event,0.0703125,mcnemar,tango",
                                   comparison.rows[0].interval.lower, comparison.rows[0].interval.upper));
   EXPECT_EQ(lines[4], "small,1,0.3,ours,standard,failure,0,0,0,0,0,,-1,1,,,event,,mcnemar,tango");
-  const nlohmann::json json = nlohmann::json::parse(ComparisonAsJson(comparison));
+  const nlohmann::json json = nlohmann::json::parse(MakeComparisonResult(comparison).json);
   EXPECT_EQ(json["reference"], "standard");
   ASSERT_EQ(json["rows"].size(), 6u);
   EXPECT_EQ(json["rows"][0]["levels"]["outlier_ratio"], "0");
@@ -312,12 +313,12 @@ TEST_F(CompareMeasuresTest, WhatLooksAgainAndAgainGetsTestsThatAreValidAtEveryLo
     EXPECT_EQ(error.p_value, AnytimeMcNemarPValue(error.counts));
     EXPECT_TRUE(std::isnan(error.interval.lower) && std::isnan(error.interval.upper));
   }
-  const std::string csv = ComparisonAsCsv(stopped);
+  const std::string csv = RenderCsv(MakeComparisonResult(stopped).rows);
   EXPECT_NE(csv.find(",event,0.0"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",discordant_sequence,betting\n"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",discordant_sequence,\n"), std::string::npos) << csv;
-  EXPECT_TRUE(nlohmann::json::parse(ComparisonAsJson(stopped))["rows"][0]["p_mcnemar"].is_null());
-  const std::string table = ComparisonAsTable(stopped);
+  EXPECT_TRUE(nlohmann::json::parse(MakeComparisonResult(stopped).json)["rows"][0]["p_mcnemar"].is_null());
+  const std::string table = MakeComparisonResult(stopped).text;
   EXPECT_NE(table.find("valid at every look"), std::string::npos) << table;
   EXPECT_EQ(table.find("McNemar"), std::string::npos) << table;
 }
@@ -364,13 +365,13 @@ TEST_F(CompareMeasuresTest, RepeatedScenesAreComparedByTheirMeans) {
   const ComparisonRow error = Row(comparison, "max_error_median_deg");
   EXPECT_EQ(error.n, 3) << "first trials";
   ExpectCounts(error.counts, {0, 0, 1, 2});
-  EXPECT_NE(ComparisonAsCsv(comparison).find(",betting,betting\n"), std::string::npos);
-  EXPECT_NE(ComparisonAsTable(comparison).find("Scenes are repeated"), std::string::npos);
+  EXPECT_NE(RenderCsv(MakeComparisonResult(comparison).rows).find(",betting,betting\n"), std::string::npos);
+  EXPECT_NE(MakeComparisonResult(comparison).text.find("Scenes are repeated"), std::string::npos);
 }
 
 TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
-  const std::string table = ComparisonAsTable(CompareRun("run"));
+  const std::string table = MakeComparisonResult(CompareRun("run")).text;
   EXPECT_TRUE(std::regex_search(table, std::regex("ours +21 +1 +1 +7 +12\\n")))
       << table;  // n, both, ours only
   for (const char* part : {"Study small against standard: 21 of 12 trials done", "standard only",

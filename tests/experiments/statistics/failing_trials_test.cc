@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/render_table.h"
 #include "parameters/input_error.h"
 #include "tests/test_support/summarized_run.h"
 
@@ -66,11 +67,12 @@ TEST_F(FailingTrialsTest, WhatThereIsNotIsRefused) {
 
 TEST_F(FailingTrialsTest, EveryFormatHasTheSameRows) {
   const FailingTrials failures = List({});
-  const auto json = nlohmann::json::parse(FailingTrialsAsJson(failures));
+  const CommandResult result = MakeFailuresResult(failures, "my.sqlite");
+  const auto json = nlohmann::json::parse(result.json);
   EXPECT_EQ(json["format"], "rcme failures 1");
   EXPECT_EQ(json["rows"].size(), 2u);
   EXPECT_EQ(json["rows"][0]["trial"], failures.listed[0].trial);
-  const std::string csv = FailingTrialsAsCsv(failures), table = FailingTrialsAsTable(failures, "my.sqlite");
+  const std::string csv = RenderCsv(result.rows), &table = result.text;
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 3);
   EXPECT_NE(table.find("2 of 10 answers"), std::string::npos) << table;
   EXPECT_NE(

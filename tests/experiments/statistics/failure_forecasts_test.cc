@@ -218,7 +218,7 @@ TEST_F(FailureForecastsTest, TableAndFileSayTheSame) {
   EXPECT_THAT(table, testing::HasSubstr("stated"));
   EXPECT_THAT(table, testing::Not(testing::HasSubstr("stands in"))) << "no proxy, no word of it";
   EXPECT_THAT(table, testing::HasSubstr("50.00 % [1.26, 98.74]"));
-  const auto json = nlohmann::json::parse(ForecastsAsJson("small", "", measures));
+  const auto json = nlohmann::json::parse(MakeForecastResult("small", "", measures).json);
   EXPECT_EQ(json["format"], "rcme reliability 1");
   const auto& entry = json["entries"].at(0);
   EXPECT_EQ(entry["source"], "stated");
@@ -238,7 +238,7 @@ TEST_F(FailureForecastsTest, WithoutAnswersOnlyCountsAreGiven) {
   const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(Stored({Refusal(0), Refusal(1)}));
   EXPECT_EQ(measures[0].n, 0);
   EXPECT_THAT(ForecastsAsTable(measures), testing::HasSubstr("standard"));
-  const auto json = nlohmann::json::parse(ForecastsAsJson("small", "", measures));
+  const auto json = nlohmann::json::parse(MakeForecastResult("small", "", measures).json);
   EXPECT_EQ(json["entries"][0]["refused"], 2);
   EXPECT_FALSE(json["entries"][0].contains("brier"));
 }

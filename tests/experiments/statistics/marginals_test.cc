@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/statistics/marginals_output.h"
 #include "stats/random.h"
 #include "tests/test_support/add_records.h"
@@ -85,7 +86,8 @@ TEST_F(MarginalsOfRun, ACoverageHasItsSharpness) {
     }
   }
   EXPECT_EQ(num_coverages, 8);
-  for (const std::string& text : {MarginalsAsTable("wide", marginals, 3), MarginalsAsCsv(marginals)})
+  for (const std::string& text :
+       {MakeMarginalsResult("wide", marginals, 3).text, RenderCsv(MakeMarginalsTable(marginals))})
     EXPECT_NE(text.find("sd_over_crb"), std::string::npos);
 }
 
@@ -101,7 +103,7 @@ TEST_F(MarginalsOfRun, TheWrongRegimeComesFirst) {
   for (const Marginal& one : marginals.rows) {
     EXPECT_TRUE(one.excess == 0.0 || one.regime.find("num_matches = 50") == std::string::npos) << one.regime;
   }
-  EXPECT_NE(MarginalsAsTable("wide", marginals, 3).find("num_matches = 60"), std::string::npos);
+  EXPECT_NE(MakeMarginalsResult("wide", marginals, 3).text.find("num_matches = 60"), std::string::npos);
 }
 
 // The spread over conditions is zero, but 0 failures of 1,920 trials do not show that they are rarer than

@@ -110,7 +110,8 @@ TEST(SimulateDraw, TransferHasFamiliesWithoutATrial) {
     EXPECT_EQ(result.verified[f][0].n, is_possible ? NumPossible(plan) * 5 : 0);
     EXPECT_EQ(result.families[f].choice.setting.has_value(), is_possible);
   }
-  EXPECT_THAT(TransferAsTable(plan, result), HasSubstr("could not be simulated (not_simulated)"));
+  EXPECT_THAT(MakeTransferResult(plan, settings, result).text,
+              HasSubstr("could not be simulated (not_simulated)"));
 }
 
 TEST(SimulateDraw, AnAuditNamesConditionsWithoutATrial) {
@@ -238,7 +239,7 @@ TEST(SimulateDraw, SolveAsksTheTrialsThatThereAre) {
     if (IsPossible(condition)) continue;
     EXPECT_TRUE(std::isinf(crossing.interval.lower) && std::isinf(crossing.interval.upper));
   }
-  EXPECT_THAT(CrossingsAsTable(plan.study, question, answer),
+  EXPECT_THAT(MakeCrossingsResult(plan.study, question, answer).text,
               HasSubstr(fmt::format("{} of the 960 trials could not be simulated",
                                     120 * (kNumDraws - NumPossible(plan)))));
 }
@@ -253,7 +254,7 @@ TEST(SimulateDraw, ModelChoiceCountsTheTrialsThatThereAre) {
     }
     EXPECT_EQ(n, group.levels.front() == "1000" ? 0 : kTrials * NumPossible(plan));
   }
-  EXPECT_THAT(ChoicesAsTable(plan, counts), HasSubstr("could not be simulated (not_simulated)"));
+  EXPECT_THAT(MakeChoiceResult(plan, counts).text, HasSubstr("could not be simulated (not_simulated)"));
 }
 
 TEST(SimulateDraw, ABudgetIsOfTheProblemsThatThereAre) {

@@ -80,8 +80,8 @@ TEST(Transfer, AFamilyIsTunedOnItsOwnConditionsAlone) {
 
 TEST(Transfer, DoesNotDependOnThreads) {
   const StudyPlan plan = FourConditions();
-  EXPECT_EQ(TransferAsJson(plan, MakeTunedSettings(plan), Transfer(plan, "", 1)),
-            TransferAsJson(plan, MakeTunedSettings(plan), Transfer(plan, "", 3)));
+  EXPECT_EQ(MakeTransferResult(plan, MakeTunedSettings(plan), Transfer(plan, "", 1)).json,
+            MakeTransferResult(plan, MakeTunedSettings(plan), Transfer(plan, "", 3)).json);
 }
 
 TEST(Transfer, WhatHasNoPromiseOrNoOtherFamilyIsRefused) {
@@ -136,9 +136,9 @@ TEST(TransferOutput, CellsAndCountsOfTheOthers) {
   result.families[2].choice.setting = 3;
   const SettingCount none{100, 0, 0, 100, 0}, many{100, 90, 0, 10, 0}, some{100, 30, 0, 70, 0};
   result.verified = {{none, none, none, none}, {many, many, many, many}, {none, some, none, none}};
-  const std::string table = TransferAsTable(plan, result);
+  const std::string table = MakeTransferResult(plan, MakeTunedSettings(plan), result).text;
   EXPECT_NE(table.find("none: out of reach"), std::string::npos) << table;
-  const auto json = nlohmann::json::parse(TransferAsJson(plan, MakeTunedSettings(plan), result));
+  const auto json = nlohmann::json::parse(MakeTransferResult(plan, MakeTunedSettings(plan), result).json);
   ASSERT_EQ(json["cells"].size(), 6u);  // of two families
   EXPECT_EQ(json["cells"][1]["verified_on"], 1);
   EXPECT_EQ(json["cells"][1]["verdict"], "does not hold");

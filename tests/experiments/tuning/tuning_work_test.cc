@@ -28,6 +28,8 @@ std::string Bytes(const StudyPlan& plan, const TuneResult& result, const std::ve
   return TuneAsTable(plan, result, rocs) + TuneAsJson(plan, MakeTunedSettings(plan), result, rocs);
 }
 
+std::string Bytes(const CommandResult& result) { return result.text + result.json; }
+
 class TuneParts : public testing::Test {
  protected:
   MissingItems Part(const TuningWork& work, const WorkResults& merged, const Shard& shard,
@@ -96,14 +98,14 @@ TEST_F(TuneParts, OfAnyNumberInAnyOrderGiveTheBytesOfOneMachine) {
 
 TEST_F(TuneParts, OfATransferGiveTheBytesOfOneMachine) {
   const TransferResult one = MeasureTransferInMemory(plan_, settings_, "", 2);
-  const std::string whole = TransferAsTable(plan_, one) + TransferAsJson(plan_, settings_, one);
+  const std::string whole = Bytes(MakeTransferResult(plan_, settings_, one));
   const TuningWork work = PlanTransferWork(plan_);
   for (const std::uint32_t count : {1, 7, 64}) {
     const WorkResults merged = MergeParts(work.items, ListParts(work, count));
     EXPECT_EQ(FindMissingIn(work.items, merged, 0, work.num_first).num_items, 0);
     const TransferResult result =
         MeasureTransfer(plan_, settings_, "", CountsIn(plan_, settings_, work, merged));
-    EXPECT_EQ(TransferAsTable(plan_, result) + TransferAsJson(plan_, settings_, result), whole);
+    EXPECT_EQ(Bytes(MakeTransferResult(plan_, settings_, result)), whole);
   }
 }
 

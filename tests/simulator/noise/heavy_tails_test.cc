@@ -5,8 +5,8 @@
 
 #include "simulator/noise/noise_laws.h"
 #include "stats/distributions.h"
-#include "stats/goodness_of_fit.h"
 #include "tests/simulator/noise/noise_sample.h"
+#include "tests/test_support/kolmogorov_smirnov.h"
 
 namespace rcme {
 namespace {

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "simulator/outliers/outlier_laws.h"
-#include "stats/goodness_of_fit.h"
 #include "tests/simulator/outliers/wrong_matches.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/kolmogorov_smirnov.h"
 
 namespace rcme {
 namespace {

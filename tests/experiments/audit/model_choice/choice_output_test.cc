@@ -22,7 +22,7 @@ ChoiceCounts SomeCounts() {
 
 // Clopper-Pearson of 7 of 10 is [0.3475, 0.9333], of 0 of 10 [0, 0.3085].
 TEST(ChoiceOutput, TableHasARowForEachTruthThereIs) {
-  const std::string table = ChoicesAsTable(MakePlan(SmallStudy()), SomeCounts());
+  const std::string table = MakeChoiceResult(MakePlan(SmallStudy()), SomeCounts()).text;
   EXPECT_NE(table.find("outlier_ratio = 0.3"), std::string::npos) << table;
   EXPECT_NE(table.find("70.0 % [34.8, 93.3]"), std::string::npos) << table;
   EXPECT_NE(table.find("0.0 % [0.0, 30.8]"), std::string::npos) << table;
@@ -31,7 +31,7 @@ TEST(ChoiceOutput, TableHasARowForEachTruthThereIs) {
 }
 
 TEST(ChoiceOutput, CsvHasARowForEachCell) {
-  const std::string csv = RenderCsv(MakeChoiceFileTable(MakePlan(SmallStudy()), SomeCounts()));
+  const std::string csv = RenderCsv(MakeChoiceResult(MakePlan(SmallStudy()), SomeCounts()).rows);
   EXPECT_EQ(csv.find("study,condition,outlier_ratio,truth,verdict,estimator,quantity,kind,value,lower,upper,"
                      "standard_error,n,count\n"),
             0u);

@@ -195,12 +195,13 @@ TEST_F(PaperTableOfARun, OutcomesStandSideBySideAtEachBound) {
   EXPECT_EQ(outcomes[1].success.num_events, 1);
   EXPECT_EQ(outcomes[1].refusal.num_events, 1);
   EXPECT_NEAR(outcomes[1].area.value, (1.0 - 0.1 / 5.0) / 3.0, 1e-12);
-  const std::string text = PaperTableAsText(table), csv = RenderCsv(MakePaperFileTable(table));
+  const CommandResult result = MakePaperResult(table);
+  const std::string &text = result.text, csv = RenderCsv(result.rows);
   EXPECT_NE(text.find("Outcomes at 5 deg"), std::string::npos) << text;
   EXPECT_NE(csv.find("\nrun,kitti_a,standard,failure_5_deg,rate,0.33333333,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\nrun,kitti_a,standard,auc_5_deg,score,0.32666667,"), std::string::npos) << csv;
   EXPECT_EQ(csv.find("in_doubt"), std::string::npos) << csv;
-  const std::string as_before = PaperTableAsText(MakePaperTable(run, {}, TableClusters::kImages));
+  const std::string as_before = MakePaperResult(MakePaperTable(run, {}, TableClusters::kImages)).text;
   EXPECT_EQ(as_before.find("Outcomes"), std::string::npos);
   EXPECT_EQ(as_before.find("in doubt"), std::string::npos);
 }
@@ -214,7 +215,8 @@ TEST_F(PaperTableOfARun, APairInDoubtIsListedAndInNoOtherColumn) {
   EXPECT_EQ(table.rows[0].cells[0].true_failure.n, 2);
   EXPECT_EQ(table.rows[0].cells[0].true_failure.num_events, 0);
   EXPECT_EQ(table.rows[0].cells[0].outcomes[0].success.n, 2);
-  const std::string text = PaperTableAsText(table), csv = RenderCsv(MakePaperFileTable(table));
+  const CommandResult result = MakePaperResult(table);
+  const std::string &text = result.text, csv = RenderCsv(result.rows);
   EXPECT_NE(text.find("in doubt"), std::string::npos) << text;
   EXPECT_NE(csv.find("\nrun,kitti_a,,truth_in_doubt,rate,0.33333333,,,3,1,"), std::string::npos) << csv;
 }
@@ -222,13 +224,14 @@ TEST_F(PaperTableOfARun, APairInDoubtIsListedAndInNoOtherColumn) {
 TEST_F(PaperTableOfARun, IsWrittenForPeopleAndPrograms) {
   const PaperTable table =
       MakePaperTable(Run("run.sqlite"), {ParseSceneGroup("mine=room,kit*")}, TableClusters::kImages);
-  const std::string text = PaperTableAsText(table), csv = RenderCsv(MakePaperFileTable(table));
+  const CommandResult result = MakePaperResult(table);
+  const std::string &text = result.text, csv = RenderCsv(result.rows);
   for (const char* part : {"Detect-fail %", "= mine", "EuRoC/V1_03", "8.33 [", "not significant", "1 of 1"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
   EXPECT_NE(csv.find("run,kitti_a,standard,kappa_failure,rate,0.66666667,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("paper,indoor,Standard,kappa_failure,rate,0.0143520"), std::string::npos) << csv;
   EXPECT_EQ(csv.find("run,room,standard,true_failure"), std::string::npos) << csv;
-  const auto json = nlohmann::json::parse(PaperTableAsJson(table));
+  const auto json = nlohmann::json::parse(result.json);
   EXPECT_EQ(json["format"], "rcme paper table 1");
   const auto num_rows = static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n'));
   EXPECT_EQ(json["rates"].size() + json["printed"].size() + 1, num_rows);

@@ -58,13 +58,14 @@ TEST_F(CheckTruthTest, FindsTheWrongOne) {
 
 TEST_F(CheckTruthTest, IsWrittenForPeopleProgramsAndStudies) {
   const std::vector<CheckedPair> pairs = Check({first_.path()});
-  const std::string text = TruthCheckAsText(pairs, {}), csv = RenderCsv(MakeTruthCheckResult(pairs, {}).rows);
+  const CommandResult result = MakeTruthCheckResult(pairs, {});
+  const std::string &text = result.text, csv = RenderCsv(result.rows);
   EXPECT_THAT(text,
               HasSubstr("The truth of 1 of 3 pairs is in doubt; of 0 the matches say too little, and 1"));
   EXPECT_THAT(text, HasSubstr("a_001"));
   EXPECT_THAT(text, testing::Not(HasSubstr("a_000")));
   EXPECT_THAT(csv, testing::StartsWith("scene,pair_id,front_end,pair_verdict,verdict,matches,by_truth,"));
-  const auto json = nlohmann::json::parse(TruthCheckAsJson(pairs, {}));
+  const auto json = nlohmann::json::parse(result.json);
   EXPECT_EQ(json["format"], "rcme truth check 1");
   EXPECT_EQ(json["scenes"][0]["in_doubt"], 1);
   EXPECT_EQ(json["scenes"][0]["no_truth"], 1);

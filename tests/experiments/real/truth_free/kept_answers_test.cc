@@ -56,7 +56,7 @@ std::string TwinText(const std::function<std::unique_ptr<MotionEstimator>()>& ma
   const StudyPlan plan = SmallPlan();
   const std::unique_ptr<MotionEstimator> estimator = make();
   const TwinSource source = AnswerScene("made", *plan.conditions[0].source, {}, *estimator, 1, steps);
-  return TwinsAsJson({MakeTwinReport(source, *estimator, "pairs", 0.5, 1, 1, steps)});
+  return MakeTwinsResult({MakeTwinReport(source, *estimator, "pairs", 0.5, 1, 1, steps)}).json;
 }
 
 using AnswerAsText = std::string (*)(const std::function<std::unique_ptr<MotionEstimator>()>&, KeptSteps*);

@@ -60,7 +60,7 @@ TwinReport TwinReportByHand() {
 
 // Runs of spaces and line ends as one: what is said, whatever the widths.
 std::string TextOfTwins(const TwinReport& report) {
-  return std::regex_replace(TwinsAsText({report}), std::regex("\\s+"), " ");
+  return std::regex_replace(MakeTwinsResult({report}).text, std::regex("\\s+"), " ");
 }
 
 TEST(MakeTwinsResult, HasARowOfEveryComparison) {
@@ -72,7 +72,7 @@ TEST(MakeTwinsResult, HasARowOfEveryComparison) {
             "\"fountain, east\",12,simulated,sigma_px,mean,yes,0.5,0.3,0.7,9,0.75,no\n");
 }
 
-TEST(TwinsAsText, SaysWhatWasFitted) {
+TEST(TwinsResult, SaysWhatWasFitted) {
   EXPECT_THAT(TextOfTwins(TwinReportByHand()),
               testing::StartsWith(
                   "fountain, east: 12 pairs, 11 with a geometry to resemble"
@@ -84,7 +84,7 @@ TEST(TwinsAsText, SaysWhatWasFitted) {
 }
 
 // Shares below half of a per cent are none.
-TEST(TwinsAsText, LeavesOutNoiseThatIsNotShared) {
+TEST(TwinsResult, LeavesOutNoiseThatIsNotShared) {
   TwinReport report = TwinReportByHand();
   report.fit.noise = {};
   report.fit.noise.noise_px = 0.5;
@@ -92,7 +92,7 @@ TEST(TwinsAsText, LeavesOutNoiseThatIsNotShared) {
   EXPECT_THAT(TextOfTwins(report), HasSubstr(" noise 0.5 px, normal "));
 }
 
-TEST(TwinsAsText, HasARowOfEveryQuantity) {
+TEST(TwinsResult, HasARowOfEveryQuantity) {
   const std::string text = TextOfTwins(TwinReportByHand());
   EXPECT_THAT(text, HasSubstr(" refusal 12 0.5 0.25 [0.1, 0.4] no no "));
   EXPECT_THAT(text, HasSubstr(" stated_failure 3 0.25 0.125 no yes "));
@@ -108,7 +108,7 @@ TEST(TwinsAsText, HasARowOfEveryQuantity) {
 }
 
 // Means of a semi-real twin are paired with those of the pairs: it may have fewer than the simulated one.
-TEST(TwinsAsText, SaysTheNumberOfPairsOfEachTwin) {
+TEST(TwinsResult, SaysTheNumberOfPairsOfEachTwin) {
   TwinReport report = TwinReportByHand();
   report.comparisons[1].n = 8;
   EXPECT_THAT(TextOfTwins(report), HasSubstr(" sigma_px 8 0.45 "));
@@ -116,7 +116,7 @@ TEST(TwinsAsText, SaysTheNumberOfPairsOfEachTwin) {
 }
 
 // Of the semi-real twin alone; whether it was fitted says what it means.
-TEST(TwinsAsText, SaysWhatSimulationLacks) {
+TEST(TwinsResult, SaysWhatSimulationLacks) {
   TwinReport report = TwinReportByHand();
   EXPECT_THAT(TextOfTwins(report), HasSubstr(" not explained: no motion, of all pairs: scenes near what the "
                                              "estimator refuses: planes, little parallax "));
@@ -128,7 +128,7 @@ TEST(TwinsAsText, SaysWhatSimulationLacks) {
                                              "mean: noise that differs from pair to pair "));
 }
 
-TEST(TwinsAsText, SaysWhyNothingIsSimulated) {
+TEST(TwinsResult, SaysWhyNothingIsSimulated) {
   TwinReport report = TwinReportByHand();
   report.simulated.clear();
   report.why_not_simulated = "the views overlap too little";
@@ -139,8 +139,8 @@ TEST(TwinsAsText, SaysWhyNothingIsSimulated) {
   EXPECT_THAT(text, Not(HasSubstr("simulated observed")));
 }
 
-TEST(TwinsAsJson, HasEveryNumber) {
-  const auto json = nlohmann::ordered_json::parse(TwinsAsJson({TwinReportByHand()}));
+TEST(TwinsResult, HasEveryNumber) {
+  const auto json = nlohmann::ordered_json::parse(MakeTwinsResult({TwinReportByHand()}).json);
   EXPECT_EQ(json.begin().key(), "format");
   EXPECT_EQ(json["format"], "rcme twin 1");
   ASSERT_EQ(json["scenes"].size(), 1u);

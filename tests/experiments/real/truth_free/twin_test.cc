@@ -320,8 +320,10 @@ TEST(TwinReport, ResemblesTailsOfRealLength) {
   for (const char* twin : {"semi_real", "simulated"}) {
     EXPECT_TRUE(Found(report, "tail_share", twin).is_fitted);
     EXPECT_FALSE(Found(report, "inlier_test", twin).is_fitted);
-    EXPECT_GE(report.NumWithin(twin, false), report.NumCompared(twin, false) - 1) << TwinsAsText({report});
-    EXPECT_GE(report.NumWithin(twin, true), report.NumCompared(twin, true) - 1) << TwinsAsText({report});
+    EXPECT_GE(report.NumWithin(twin, false), report.NumCompared(twin, false) - 1)
+        << MakeTwinsResult({report}).text;
+    EXPECT_GE(report.NumWithin(twin, true), report.NumCompared(twin, true) - 1)
+        << MakeTwinsResult({report}).text;
   }
 }
 
@@ -335,15 +337,17 @@ TEST(TwinReport, SaysWhatSimulationExplains) {
   EXPECT_GE(own.NumCompared("semi_real", false), 7);
   EXPECT_GE(own.NumCompared("semi_real", true), 4);
   // The fit of a simulated twin has the noise of its own draws, some per cent of sigma.
-  EXPECT_GE(own.NumWithin("semi_real", false), own.NumCompared("semi_real", false) - 1) << TwinsAsText({own});
-  EXPECT_GE(own.NumWithin("simulated", false), own.NumCompared("simulated", false) - 2) << TwinsAsText({own});
+  EXPECT_GE(own.NumWithin("semi_real", false), own.NumCompared("semi_real", false) - 1)
+      << MakeTwinsResult({own}).text;
+  EXPECT_GE(own.NumWithin("simulated", false), own.NumCompared("simulated", false) - 2)
+      << MakeTwinsResult({own}).text;
   for (const char* twin : {"semi_real", "simulated"})
-    EXPECT_GE(own.NumWithin(twin, true), own.NumCompared(twin, true) - 1) << TwinsAsText({own});
+    EXPECT_GE(own.NumWithin(twin, true), own.NumCompared(twin, true) - 1) << MakeTwinsResult({own}).text;
 
   const TwinReport bent = MakeTwinReport(MakeTwinSource({{"distortion_k1", "0.2"}}, 12, *estimator),
                                          *estimator, "pairs", 0.5, 1, 2);
-  EXPECT_FALSE(Found(bent, "spatial_halves", "semi_real").IsWithin()) << TwinsAsText({bent});
-  EXPECT_THAT(TwinsAsText({bent}), testing::HasSubstr("not explained: left/right"));
+  EXPECT_FALSE(Found(bent, "spatial_halves", "semi_real").IsWithin()) << MakeTwinsResult({bent}).text;
+  EXPECT_THAT(MakeTwinsResult({bent}).text, testing::HasSubstr("not explained: left/right"));
   EXPECT_THAT(RenderCsv(MakeTwinsResult({bent}).rows),
               testing::HasSubstr("made,12,semi_real,spatial_halves,rate,no,"));
 }
