@@ -49,7 +49,7 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
   if (source.path.empty() && source.text.empty()) {
     options.seed = source.seed < 0 ? 1 : static_cast<std::uint64_t>(source.seed);
     options.conditions = ResolveCaseSettings({});
-    return RunStoppable([&] { return AuditAsJson(AuditInMemory(AllClaims(EstimatorRegistry()), options)); });
+    return RunStoppable([&] { return MakeAuditResult(AuditInMemory(AllClaims(EstimatorRegistry()), options)).json; });
   }
   const Study study = LoadSourceStudy(AddFunctions(source, functions));
   RequireCases(study);
@@ -58,7 +58,7 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
   options.study = plan.study.name;
   options.study_identity = plan.identity;
   options.conditions = plan.study.data;
-  return RunStoppable([&] { return AuditAsJson(AuditInMemory(StudyClaims(plan), options)); });
+  return RunStoppable([&] { return MakeAuditResult(AuditInMemory(StudyClaims(plan), options)).json; });
 }
 
 // The report of a calibration as JSON, and the file: empty for a check of the file `check`.

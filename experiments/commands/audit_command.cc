@@ -5,6 +5,7 @@
 
 #include "estimator/estimator_registry.h"
 #include "experiments/audit/claims/audit_output.h"
+#include "experiments/audit/claims/audit_page.h"
 #include "experiments/audit/claims/audit_work.h"
 #include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/claim_table.h"

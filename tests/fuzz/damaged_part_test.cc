@@ -128,7 +128,8 @@ class DamagedParts : public testing::Test {
     const auto tables = [paths] {
       const MergedAudit merged = MergeAuditParts(Claims(), {}, paths);
       if (merged.missing.num_items > 0) throw InputError("blocks are missing");
-      return AuditAsJson(merged.audit) + AuditAsTable(merged.audit);
+      const CommandResult result = MakeAuditResult(merged.audit);
+      return result.json + result.text;
     };
     return {"audit", paths, tables};
   }
@@ -197,7 +198,8 @@ class DamagedParts : public testing::Test {
   DividedTables AuditChecks() const {
     return Checkpoint("checks", PlanAuditChecks(PlanAudit(Claims(), {})), [](Runner* runner) {
       const rcme::Audit audit = RunAudit(Claims(), {}, runner);
-      return AuditAsJson(audit) + AuditAsTable(audit);
+      const CommandResult result = MakeAuditResult(audit);
+      return result.json + result.text;
     });
   }
 

@@ -1,4 +1,3 @@
-// The audit for people and for programs.
 #pragma once
 
 #include <string>
@@ -13,17 +12,9 @@ namespace rcme {
 // that is found with probability 0.9. Of a claim with several checks the first.
 CommandResult MakePlanResult(const Audit& plan);
 
-// One row per claim: its verdict and the number that decided it, with interval and n; on a study one per
-// claim and condition.
-std::string AuditAsTable(const Audit& audit);
-
-// Everything: claims, conditions, targets, intervals, verdicts. plots/audit.py draws it. Unknown or unbounded
-// numbers are null.
-std::string AuditAsJson(const Audit& audit);
-
-// The audit as a page: verdict table, and per family its figure, the sentences and every measured number.
-std::string AuditAsMarkdown(const Audit& audit);
-
+// For people one row per claim: its verdict and the number that decided it, with interval and n; on a study
+// one per claim and condition. In files a row per claimed or measured number; in JSON also what audit_json.h
+// has.
 CommandResult MakeAuditResult(const Audit& audit);
 
 }  // namespace rcme

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "experiments/audit/claims/audit_output.h"
+#include "experiments/audit/claims/audit_page.h"
 #include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/claim_table.h"
 #include "experiments/audit/claims/design.h"
@@ -71,11 +72,11 @@ TEST(Audit, ACorrectGaussianEstimatorPassesAtTheStatedErrorRate) {
 TEST(Audit, IsTheSameBytesForAnyNumberOfThreads) {
   AuditOptions one, three;
   one.num_threads = 1, three.num_threads = 3;
-  const std::string json = AuditAsJson(RunAuditInMemory(GaussianClaims(), one));
-  EXPECT_EQ(AuditAsJson(RunAuditInMemory(GaussianClaims(), three)), json);
+  const std::string json = MakeAuditResult(RunAuditInMemory(GaussianClaims(), one)).json;
+  EXPECT_EQ(MakeAuditResult(RunAuditInMemory(GaussianClaims(), three)).json, json);
   AuditOptions other_seed = one;
   other_seed.seed = 2;
-  EXPECT_NE(AuditAsJson(RunAuditInMemory(GaussianClaims(), other_seed)), json);
+  EXPECT_NE(MakeAuditResult(RunAuditInMemory(GaussianClaims(), other_seed)).json, json);
 }
 
 TEST(Audit, AClaimsResultDoesNotDependOnTheOthersThatAreRun) {
@@ -106,7 +107,7 @@ TEST(AuditOutput, SaysEverythingOfAClaim) {
   AuditOptions options;
   options.only = {"gauss.a1"};
   const Audit audit = RunAuditInMemory(GaussianClaims(), options);
-  const auto json = nlohmann::json::parse(AuditAsJson(audit));
+  const auto json = nlohmann::json::parse(MakeAuditResult(audit).json);
   EXPECT_EQ(json["format"], "rcme audit 1");
   EXPECT_EQ(json["num_targets"], 36);
   const auto& claim = json["claims"].at(0);
@@ -124,7 +125,7 @@ TEST(AuditOutput, SaysEverythingOfAClaim) {
   EXPECT_GT(target["power"]["holds_at_nominal"], 0.9);
   EXPECT_LT(target["power"]["found_outside"].at(0), target["low"]);
   EXPECT_GT(claim["holds_at_nominal"], 0.9);
-  EXPECT_NE(AuditAsTable(audit).find("gauss.a1"), std::string::npos);
+  EXPECT_NE(MakeAuditResult(audit).text.find("gauss.a1"), std::string::npos);
   EXPECT_NE(AuditAsMarkdown(audit).find("| gauss.a1 |"), std::string::npos);
 }
 

@@ -15,6 +15,7 @@
 #include <set>
 
 #include "experiments/audit/claims/audit_output.h"
+#include "experiments/audit/claims/audit_page.h"
 #include "experiments/audit/claims/outcomes_json.h"
 #include "experiments/audit/claims/trial_blocks.h"
 #include "experiments/core/files/file_output.h"
@@ -93,7 +94,8 @@ AuditOptions Options() {
 }
 
 std::string Bytes(const Audit& audit) {
-  return AuditAsJson(audit) + AuditAsTable(audit) + AuditAsMarkdown(audit);
+  const CommandResult result = MakeAuditResult(audit);
+  return result.json + result.text + AuditAsMarkdown(audit);
 }
 
 class AuditParts : public testing::Test {
