@@ -8,6 +8,7 @@
 #include "experiments/ask/answer_output.h"
 #include "experiments/ask/question.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
@@ -154,11 +155,7 @@ Examples:
   AddFormatOption(command, &arguments->format);
   command->add_option("-o,--out", arguments->out, "folder for study.yaml and run.sqlite, created if missing")
       ->capture_default_str();
-  command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The answer depends on them by the "
-                   "number of trials alone")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads, "The answer depends on them by the number of trials alone");
   command->callback([arguments] { RunAsk(*arguments); });
 }
 

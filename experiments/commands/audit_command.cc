@@ -11,6 +11,7 @@
 #include "experiments/audit/claims/claim_table.h"
 #include "experiments/audit/claims/study_claims.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
@@ -180,10 +181,7 @@ code 75 (docs/many_machines.md):
   shards.merge->excludes(plan);
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
-  command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. Results do not depend on it, except for measured times")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads, "Results do not depend on it, except for measured times");
   command->callback([arguments] { RunAuditCommand(*arguments); });
 }
 

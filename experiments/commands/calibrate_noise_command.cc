@@ -3,9 +3,9 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/real/camera_noise/calibrate_noise_output.h"
@@ -81,20 +81,11 @@ Examples:
   rcme estimate PAIRS --noise noise.yaml)");
   auto arguments = std::make_shared<CalibrateNoiseArguments>();
   command->add_option("pairs", arguments->pairs, "folder of match files")->required();
-  CLI::Option* estimator =
-      command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
-          ->capture_default_str();
-  AddEstimatorOptions(command, estimator, &arguments->estimator);
+  AddEstimatorOptions(command, &arguments->estimator);
   command->add_option("-o,--out", arguments->out, "noise file (YAML)");
   command->add_option("--scene", arguments->scene, "only this scene");
-  command
-      ->add_option("--sigma", arguments->sigma_px,
-                   "standard deviation of the noise that the estimator assumes, px")
-      ->transform(NumberIn({1e-9, 1000.0}))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "seed of the random samples")
-      ->transform(WholeNumberIn(0))
-      ->capture_default_str();
+  AddSigmaOption(command, &arguments->sigma_px);
+  AddSeedOption(command, &arguments->seed);
   AddFormatOption(command, &arguments->format);
   command->callback([arguments] { RunCalibrateNoise(*arguments); });
 }

@@ -6,6 +6,7 @@
 
 #include "experiments/audit/contract/estimator_contract.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
 #include "parameters/input_error.h"
@@ -116,9 +117,7 @@ Examples:
       ->add_option("--problem", arguments->problem,
                    "only the problem with this name, as printed by a failed check")
       ->needs(only);
-  command->add_option("--seed", arguments->seed, "seed of the problems and of the random samples")
-      ->transform(WholeNumberIn(0))
-      ->capture_default_str();
+  AddSeedOption(command, &arguments->seed, "the problems and of the random samples");
   command
       ->add_option("--seconds-per-call", arguments->seconds_per_call,
                    "a call that takes longer counts as hanging, s")

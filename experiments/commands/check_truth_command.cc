@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/failure_bounds_option.h"
 #include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/twin_commands.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
@@ -68,25 +68,16 @@ Examples:
       --set truth_in_doubt=checked/truth_in_doubt.csv --out run.sqlite)");
   auto arguments = std::make_shared<CheckTruthArguments>();
   command->add_option("pairs", arguments->folders, "folders of match files, one per front end")->required();
-  CLI::Option* estimator =
-      command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
-          ->capture_default_str();
-  AddEstimatorOptions(command, estimator, &arguments->estimator);
+  AddEstimatorOptions(command, &arguments->estimator);
   command->add_option("-o,--out", arguments->out, "folder for the tables and the list, created if missing");
   command
       ->add_option("--bounds", arguments->bounds,
                    "R,D: a motion is another one if its rotation is off by more than R deg or its direction "
                    "by more than D deg")
       ->capture_default_str();
-  command->add_option("--sigma", arguments->sigma_px, "standard deviation of the noise per coordinate, px")
-      ->transform(NumberIn({1e-9, 1000.0}))
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "seed of the random samples")
-      ->transform(WholeNumberIn(0))
-      ->capture_default_str();
-  command->add_option("--threads", arguments->threads, "0: one per core. The result does not depend on it")
-      ->transform(WholeNumberIn(0, 1024))
-      ->capture_default_str();
+  AddSigmaOption(command, &arguments->sigma_px);
+  AddSeedOption(command, &arguments->seed);
+  AddThreadsOption(command, &arguments->threads);
   AddFormatOption(command, &arguments->format);
   command->callback([arguments] { RunCheckTruth(*arguments); });
 }

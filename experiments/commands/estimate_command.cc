@@ -9,6 +9,7 @@
 
 #include "estimator/loop_inspection.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/failure_bounds_option.h"
 #include "experiments/commands/format_option.h"
@@ -343,21 +344,14 @@ matches, all matches on a line).)");
           "COLMAP with its parameters, such as OPENCV,fx,fy,cx,cy,k1,k2,p1,p2; give it twice if the "
           "images differ")
       ->allow_extra_args(false);
-  CLI::Option* estimator =
-      command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
-          ->capture_default_str();
-  AddEstimatorOptions(command, estimator, &arguments->estimator);
-  command->add_option("--sigma", arguments->sigma_px, "standard deviation of the noise per coordinate, px")
-      ->transform(NumberIn({1e-9, 1000.0}))
-      ->capture_default_str();
+  AddEstimatorOptions(command, &arguments->estimator);
+  AddSigmaOption(command, &arguments->sigma_px);
   command
       ->add_option("--noise", arguments->noise,
                    "a file of `rcme calibrate-noise`: its sigma in place of --sigma, its corrections of the "
                    "camera, and covariances for what it says is shared")
       ->excludes("--sigma");
-  command->add_option("--seed", arguments->seed, "seed of the random samples")
-      ->transform(WholeNumberIn(0))
-      ->capture_default_str();
+  AddSeedOption(command, &arguments->seed);
   command
       ->add_option("--bounds", arguments->bounds,
                    "R,D: also state the probability that the rotation is off by more than R deg or the "

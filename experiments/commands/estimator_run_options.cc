@@ -1,5 +1,6 @@
 #include "experiments/commands/estimator_run_options.h"
 
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 
@@ -21,10 +22,7 @@ void AddRunOptions(CLI::App* command, EstimatorRunArguments* arguments) {
   AddStudyOptions(command, &arguments->changes);
   AddShardOptions(command, "trials", &arguments->shards);
   AddProcessOption(command, &arguments->changes.allow_process);
-  command
-      ->add_option("--threads", arguments->threads,
-                   "threads; 0: one per core. The result does not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
 }
 
 }  // namespace rcme

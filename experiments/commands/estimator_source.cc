@@ -12,6 +12,13 @@
 
 namespace rcme {
 
+void AddEstimatorOptions(CLI::App* command, EstimatorChoice* choice) {
+  AddEstimatorOptions(
+      command,
+      command->add_option("--estimator", choice->name, "see `rcme list estimators`")->capture_default_str(),
+      choice);
+}
+
 void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice) {
   command
       ->add_option("--estimator-file", choice->file,

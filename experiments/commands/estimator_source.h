@@ -17,8 +17,9 @@ struct EstimatorChoice {
   bool allow_process = false;          // the command of the file
 };
 
-// The options --estimator-file, --conform, --set and --allow-process; `name` is the command's own option for
-// the name.
+// The options --estimator, --estimator-file, --conform, --set and --allow-process.
+void AddEstimatorOptions(CLI::App* command, EstimatorChoice* choice);
+// The same where `name`, the command's own option or argument, stands in the place of --estimator.
 void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice);
 
 // Throws InputError (estimator_file.h, estimator_spec.h). Says which command it allows.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/lock_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
@@ -117,10 +118,7 @@ Examples:
   python3 mine.py < problems/problems.jsonl > answers.jsonl
   rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite)");
   auto arguments = std::make_shared<ExportArguments>();
-  command
-      ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
-      ->required();
+  AddStudyArgument(command, &arguments->study);
   command->add_option("-o,--out", arguments->out, "folder to write, created if missing")->required();
   AddStudyOptions(command, &arguments->changes);
   AddLockOptions(command, &arguments->lock);

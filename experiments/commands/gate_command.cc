@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
@@ -287,11 +288,8 @@ Examples:
       ->capture_default_str();
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
-  command
-      ->add_option(
-          "--threads", arguments->threads,
-          "threads; 0: one per core. Only times, and how far the time limit lets it come, depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads,
+                   "Only times, and how far the time limit lets it come, depend on it");
   command->callback([arguments, of] {
     arguments->is_of_given = of->count() > 0;
     RunGate(*arguments);

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/lock_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/stop_request.h"
@@ -100,9 +100,7 @@ Examples:
       ->required()
       ->allow_extra_args(false);
   command->add_option("-o,--out", arguments->out, "result file (SQLite)")->required();
-  command
-      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
   AddProcessOption(command, &arguments->allow_process);
   AddLockOptions(command, &arguments->lock);
   command->callback([arguments] { Import(*arguments); });

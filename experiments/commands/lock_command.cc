@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/lock_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
@@ -61,10 +62,7 @@ Examples:
   rcme run study.yaml --trials 500 --despite-lock "the intervals were too wide" --out more.sqlite
   rcme summarize run.sqlite)");
   auto arguments = std::make_shared<LockCommandArguments>();
-  command
-      ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
-      ->required();
+  AddStudyArgument(command, &arguments->study);
   command->add_option("-o,--out", arguments->out, "lock file to write; default: STUDY.lock beside the study");
   command->callback([arguments] { Lock(*arguments); });
 }

@@ -8,6 +8,7 @@
 #include "experiments/audit/validity/map_work.h"
 #include "experiments/audit/validity/study_samples.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/plan_of_cases.h"
@@ -156,9 +157,7 @@ Examples:
       ->transform(WholeNumberIn(1, 100'000'000))
       ->capture_default_str();
   AddStudyOptions(command, &arguments->changes);
-  command
-      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
   command->callback([arguments] { Map(*arguments); });
 }
 

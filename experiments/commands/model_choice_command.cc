@@ -5,6 +5,7 @@
 
 #include "experiments/audit/model_choice/choice_output.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
@@ -65,10 +66,7 @@ Examples:
   rcme plot heat_map choice/model_choice.csv --x verdict --y truth --quantities share \
       --where outlier_ratio=0.2 --out matrix)");
   auto arguments = std::make_shared<ModelChoiceArguments>();
-  command
-      ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
-      ->required();
+  AddStudyArgument(command, &arguments->study);
   command
       ->add_option("-o,--out", arguments->out,
                    "folder for model_choice.txt, .csv and .json, created if missing")
@@ -82,9 +80,7 @@ Examples:
       ->transform(WholeNumberIn(1, 100'000'000));
   AddTimeLimit(command, "blocks of trials", &arguments->max_time);
   AddStudyOptions(command, &arguments->changes);
-  command
-      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
   command->callback([arguments] { RunModelChoice(*arguments); });
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
@@ -102,10 +103,7 @@ Examples:
   rcme rare STUDY --event misleading_direction --risk 1e-5 --out misleading
   rcme rare STUDY --method stratified --trials 1000000 --out strata)");
   auto arguments = std::make_shared<RareArguments>();
-  command
-      ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
-      ->required();
+  AddStudyArgument(command, &arguments->study);
   command->add_option("-o,--out", arguments->out, "folder for rare.txt, .csv and .json, created if missing")
       ->required();
   AddFormatOption(command, &arguments->format);
@@ -139,9 +137,7 @@ Examples:
       ->add_option("--kept-share", arguments->splitting.splitting.kept_share,
                    "splitting: share of the particles beyond each level (default: 0.2)")
       ->transform(NumberIn({0.02, 0.9}));
-  command
-      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
   command->callback([arguments] { RunRare(*arguments); });
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/lock_option.h"
 #include "experiments/commands/number_option.h"
@@ -202,10 +203,7 @@ Examples:
   rcme run study.yaml --shard 3/64 --out part_3.sqlite       one share; then rcme merge
   rcme summarize run.sqlite)");
   auto arguments = std::make_shared<RunArguments>();
-  command
-      ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
-      ->required();
+  AddStudyArgument(command, &arguments->study);
   command
       ->add_option("-o,--out", arguments->out,
                    "result file (SQLite); resumes an unfinished run, refuses a file of another study")
@@ -276,9 +274,7 @@ Examples:
       ->check(MakeChoiceValidator(NamesOfMissingAnswers()))
       ->excludes(until);
   AddTimeLimit(command, "trials", &arguments->max_time);
-  command
-      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
   command->callback([arguments] { Run(*arguments); });
 }
 

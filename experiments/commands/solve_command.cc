@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
@@ -108,10 +109,7 @@ Examples:
   rcme solve STUDY --over num_matches --from 10 --to 200 --falling --at 0.01 --out few
   rcme plot crossings few/crossings.json --x scene --out few/crossings)");
   auto arguments = std::make_shared<SolveArguments>();
-  command
-      ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
-      ->required();
+  AddStudyArgument(command, &arguments->study);
   command
       ->add_option(
           "--over", arguments->question.setting,
@@ -145,9 +143,7 @@ Examples:
   AddTimeLimit(command, "batches of trials", &arguments->max_time);
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
-  command
-      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
   command->callback([arguments, from, to] { Solve(*arguments, *from, *to); });
 }
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
@@ -25,9 +25,7 @@ void AddTuningOptions(CLI::App* command, TuningArguments* arguments) {
           "key=value of the block `tune`, repeatable: target=false_refusal, at_most=0.02, delta=0.1, "
           "calibrate=1000, ...")
       ->allow_extra_args(false);
-  command
-      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
 }
 
 StudyPlan MakeTuningPlan(const TuningArguments& arguments) {

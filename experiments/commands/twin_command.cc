@@ -4,6 +4,7 @@
 #include <memory>
 #include <set>
 
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
@@ -173,29 +174,20 @@ Examples:
   rcme twin PAIRS --scene kitti00 --out kitti00.yaml && rcme run kitti00.yaml --out run.sqlite)");
   auto arguments = std::make_shared<TwinArguments>();
   command->add_option("pairs", arguments->pairs, "folder of match files")->required();
-  CLI::Option* estimator =
-      command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
-          ->capture_default_str();
-  AddEstimatorOptions(command, estimator, &arguments->estimator);
+  AddEstimatorOptions(command, &arguments->estimator);
   command
       ->add_option("-o,--out", arguments->out,
                    "for one scene STUDY.yaml, with STUDY_simulated.yaml and STUDY_pairs/ beside it; "
                    "otherwise a folder for those of every scene, twin.txt, .csv and .json")
       ->required();
   command->add_option("--scene", arguments->scene, "only this scene");
-  command
-      ->add_option("--sigma", arguments->sigma_px,
-                   "standard deviation of the noise that the estimator assumes, px")
-      ->transform(NumberIn({1e-9, 1000.0}))
-      ->capture_default_str();
+  AddSigmaOption(command, &arguments->sigma_px);
   command->add_option("--twins", arguments->num_twins, "number of twins of each kind per pair")
       ->transform(WholeNumberIn(1, 100))
       ->capture_default_str();
   AddTimeLimit(command, "pairs", &arguments->max_time);
   AddFormatOption(command, &arguments->format);
-  command->add_option("--seed", arguments->seed, "seed of samples, halves and twins")
-      ->transform(WholeNumberIn(0))
-      ->capture_default_str();
+  AddSeedOption(command, &arguments->seed, "samples, halves and twins");
   command->callback([arguments] { RunTwin(*arguments); });
 }
 

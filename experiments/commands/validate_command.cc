@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/format_option.h"
@@ -214,19 +215,12 @@ Examples:
   rcme validate PAIRS --plant focal_length=0.01 --no-advice   would these pairs show it?)");
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("pairs", arguments->pairs, "folders of match files, or study files (YAML)")->required();
-  CLI::Option* estimator =
-      command->add_option("--estimator", arguments->estimator.name, "see `rcme list estimators`")
-          ->capture_default_str();
-  AddEstimatorOptions(command, estimator, &arguments->estimator);
+  AddEstimatorOptions(command, &arguments->estimator);
   command->add_option("-o,--out", arguments->out,
                       "folder for validation.txt, .csv, .json and the figure, created if missing");
   AddFormatOption(command, &arguments->format);
   command->add_option("--scene", arguments->scene, "only this scene, or this condition of a study");
-  command
-      ->add_option("--sigma", arguments->sigma_px,
-                   "standard deviation of the noise, for pairs of a folder, px")
-      ->transform(NumberIn({1e-9, 1000.0}))
-      ->capture_default_str();
+  AddSigmaOption(command, &arguments->sigma_px);
   command
       ->add_option("--noise", arguments->noise,
                    "a file of `rcme calibrate-noise`: its sigma in place of --sigma, its corrections of the "
@@ -248,9 +242,7 @@ Examples:
   command->add_option("--twins", arguments->num_twins, "simulated twins of each pair")
       ->transform(WholeNumberIn(1, 100))
       ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "seed of samples, random halves and twins")
-      ->transform(WholeNumberIn(0))
-      ->capture_default_str();
+  AddSeedOption(command, &arguments->seed, "samples, random halves and twins");
   command
       ->add_option("--plant", arguments->planted,
                    "NAME=VALUE, repeatable: plant a fault first, to see whether these pairs reveal it. "

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
@@ -132,10 +133,7 @@ Examples:
   rcme worst any_condition --estimator opencv_magsac --against standard_five_point \
       --quantity difference --minutes 10 --out difference)");
   auto arguments = std::make_shared<WorstArguments>();
-  command
-      ->add_option("study", arguments->study,
-                   "study file (YAML), or the name of an installed one (`rcme list studies`)")
-      ->required();
+  AddStudyArgument(command, &arguments->study);
   command->add_option("--estimator", arguments->estimator, "its label")->required();
   command->add_option("--against", arguments->against, "label of the estimator that a difference is from");
   command->add_option("--quantity", arguments->quantity, "failure, sure_failure, coverage or difference")
@@ -164,9 +162,7 @@ Examples:
   AddFormatOption(command, &arguments->format);
   AddStudyOptions(command, &arguments->changes);
   AddProcessOption(command, &arguments->changes.allow_process);
-  command
-      ->add_option("--threads", arguments->threads, "threads; 0: one per core. Results do not depend on it")
-      ->transform(WholeNumberIn(0, 1024));
+  AddThreadsOption(command, &arguments->threads);
   command->callback([arguments] { FindWorst(*arguments); });
 }
 

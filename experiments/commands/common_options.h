@@ -1,0 +1,24 @@
+// Options that several commands have.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+namespace rcme {
+
+// The required argument: a study file, or the name of an installed study.
+CLI::Option* AddStudyArgument(CLI::App* command, std::string* study);
+
+// --threads, from 0 (one per core) to 1024. `what` says how the result depends on it.
+CLI::Option* AddThreadsOption(CLI::App* command, int* threads,
+                              const std::string& what = "Results do not depend on it");
+
+// --seed, at least 0, with its default in the help. `of`: "the random samples"
+CLI::Option* AddSeedOption(CLI::App* command, std::int64_t* seed,
+                           const std::string& of = "the random samples");
+
+// --sigma in px, with its default in the help: the noise that an estimator assumes.
+CLI::Option* AddSigmaOption(CLI::App* command, double* sigma_px);
+
+}  // namespace rcme
