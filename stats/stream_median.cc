@@ -24,17 +24,22 @@ double CutOff(double x) {
 
 void StreamMedian::Add(double x) {
   if (std::isnan(x)) throw std::invalid_argument("median: a value is NaN");
-  const auto [at, is_new] = cells_.try_emplace(CutOff(x), Cell{0, x, x});
-  Cell& cell = at->second;
+  Cell& cell = FindOrMakeCell(CutOff(x), x, x);
   ++cell.count;
   cell.least = std::min(cell.least, x);
   cell.greatest = std::max(cell.greatest, x);
   ++n_;
 }
 
+StreamMedian::Cell& StreamMedian::FindOrMakeCell(double number, double least, double greatest) {
+  const auto at = std::ranges::lower_bound(cells_, number, {}, &Cell::number);
+  if (at != cells_.end() && at->number == number) return *at;
+  return *cells_.insert(at, {number, 0, least, greatest});
+}
+
 void StreamMedian::Merge(const StreamMedian& other) {
-  for (const auto& [number, cell] : other.cells_) {
-    Cell& here = cells_.try_emplace(number, Cell{0, cell.least, cell.greatest}).first->second;
+  for (const Cell& cell : other.cells_) {
+    Cell& here = FindOrMakeCell(cell.number, cell.least, cell.greatest);
     here.count += cell.count;
     here.least = std::min(here.least, cell.least);
     here.greatest = std::max(here.greatest, cell.greatest);
@@ -45,7 +50,7 @@ void StreamMedian::Merge(const StreamMedian& other) {
 std::string StreamMedian::Text() const {
   std::string text;
   char cell_text[100];
-  for (const auto& [number, cell] : cells_) {
+  for (const Cell& cell : cells_) {
     std::snprintf(cell_text, sizeof(cell_text), "%s%lld:%a:%a", text.empty() ? "" : " ",
                   static_cast<long long>(cell.count), cell.least, cell.greatest);
     text += cell_text;
@@ -66,8 +71,10 @@ StreamMedian StreamMedian::FromText(const std::string& text) {
     const bool is_cell = num_read == 3 && static_cast<size_t>(length) == word.size() && count > 0 &&
                          cell.least <= cell.greatest && CutOff(cell.least) == CutOff(cell.greatest);
     const bool is_countable = count <= std::numeric_limits<std::int64_t>::max() - median.n_;
-    if (!is_cell || !is_countable || !median.cells_.emplace(CutOff(cell.least), cell).second)
-      throw std::invalid_argument("median: not a cell: " + word);
+    cell.number = CutOff(cell.least);
+    const bool is_next = median.cells_.empty() || cell.number > median.cells_.back().number;
+    if (!is_cell || !is_countable || !is_next) throw std::invalid_argument("median: not a cell: " + word);
+    median.cells_.push_back(cell);
     median.n_ += count;
   }
   return median;
@@ -75,15 +82,15 @@ StreamMedian StreamMedian::FromText(const std::string& text) {
 
 const StreamMedian::Cell& StreamMedian::FindCell(std::int64_t rank) const {
   auto at = cells_.begin();
-  for (std::int64_t below = at->second.count; below < rank; below += at->second.count) ++at;
-  return at->second;
+  for (std::int64_t below = at->count; below < rank; below += at->count) ++at;
+  return *at;
 }
 
 std::int64_t StreamMedian::CountUpTo(double x) const {
   std::int64_t count = 0;
   const double cut_off = CutOff(x);
-  for (const auto& [number, cell] : cells_) {
-    if (cell.least <= x || number == cut_off) count += cell.count;
+  for (const Cell& cell : cells_) {
+    if (cell.least <= x || cell.number == cut_off) count += cell.count;
   }
   return count;
 }

@@ -85,7 +85,7 @@ TEST(StreamMedian, InGroupsAndAsText) {
   EXPECT_EQ(merged.interval().upper, whole.interval().upper);
   EXPECT_EQ(StreamMedian::FromText("").n(), 0);
   for (const char* other : {"1", "1:2", "1:0x1p+0:0x1p+1", "0:0x1p+0:0x1p+0", "1:0x1p+0:0x1p+0x", "1:nan:nan",
-                            "1:0x1p+0:0x1p+0 2:0x1p+0:0x1p+0",
+                            "1:0x1p+0:0x1p+0 2:0x1p+0:0x1p+0", "1:0x1p+1:0x1p+1 1:0x1p+0:0x1p+0",
                             // Together 2^63 - 3, if the sum of the counts wraps around.
                             "9223372036854775807:1:1 9223372036854775807:2:2 9223372036854775807:4:4"})
     EXPECT_THROW(StreamMedian::FromText(other), std::invalid_argument) << other;
