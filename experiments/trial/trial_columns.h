@@ -24,22 +24,20 @@ concept IsRecord = std::is_same_v<std::remove_const_t<Record>, Wanted>;
 
 template <IsRecord<StatedDensity> Density, typename Visitor>
 void VisitDensityColumns(Density& density, Visitor&& visit) {
-  visit(
-      StoredColumn{"density", "",
-                   "of the stated covariance: 0 none is stated, 1 it has a density, 2 it is singular and has "
-                   "none, so that there is no log_score"},
-      density.kind);
+  visit(StoredColumn{"density", "",
+                     "density of the stated covariance: 0 no covariance, 1 it has one, 2 it is singular and "
+                     "has none, hence no log_score"},
+        density.kind);
   visit(StoredColumn{"rotation_sd_deg", "deg",
                      "stated by the covariance: root of the trace of the rotation's block; NULL: none stated",
                      kNotNegative},
         density.rotation_sd_deg);
-  visit(StoredColumn{"direction_sd_deg", "deg", "the same of the direction of translation", kNotNegative},
+  visit(StoredColumn{"direction_sd_deg", "deg", "the same for the direction of translation", kNotNegative},
         density.direction_sd_deg);
-  visit(
-      StoredColumn{"sd_over_crb", "",
-                   "geometric mean of the two over their Cramer-Rao bounds; NULL likewise, or without bounds",
-                   kNotNegative},
-      density.sd_over_crb);
+  visit(StoredColumn{"sd_over_crb", "",
+                     "geometric mean of both over their Cramer-Rao bounds; NULL: none stated, or no bounds",
+                     kNotNegative},
+        density.sd_over_crb);
   visit(
       StoredColumn{"log_det_cov", "", "ln det of the stated covariance (5x5, rad); NULL: none, or singular"},
       density.log_det_cov);
@@ -52,11 +50,11 @@ void VisitDensityColumns(Density& density, Visitor&& visit) {
                      "singular, or no truth"},
         density.log_score);
   visit(StoredColumn{"rotation_level_deg", "deg",
-                     "protection level at the risk 0.01: what the rotation error exceeds with at most this "
-                     "probability, as stated; NULL: no covariance",
+                     "stated protection level: the rotation error exceeds it with probability at most 0.01; "
+                     "NULL: no covariance",
                      kNotNegative},
         density.rotation_level_deg);
-  visit(StoredColumn{"direction_level_deg", "deg", "the same of the direction of translation", kNotNegative},
+  visit(StoredColumn{"direction_level_deg", "deg", "the same for the direction of translation", kNotNegative},
         density.direction_level_deg);
 }
 
@@ -66,22 +64,23 @@ void VisitColumns(Record& record, Visitor&& visit) {
   visit(kConditionColumn, record.condition);
   visit(kTrialColumn, record.trial);
   visit(kEstimatorColumn, record.estimator);
-  visit(StoredColumn{"status", "", "`ok`, the reason of a refusal, or what is not valid about the answer"},
+  visit(StoredColumn{"status", "", "`ok`, the reason of a refusal, or what makes the answer invalid"},
         record.status);
   visit(StoredColumn{"rotation_error_deg", "deg",
                      "error of the rotation; NULL without a rotation or its truth", kNotNegative},
         record.rotation_error_deg);
-  visit(StoredColumn{"direction_error_deg", "deg", "error of the direction of translation; NULL likewise",
+  visit(StoredColumn{"direction_error_deg", "deg",
+                     "error of the direction of translation; NULL without a motion or its true direction",
                      kNotNegative},
         record.direction_error_deg);
-  visit(
-      StoredColumn{"nees", "",
-                   "normalised estimation error squared, 5 degrees of freedom; infinite: nothing is covered"},
-      record.nees);
+  visit(StoredColumn{"nees", "",
+                     "normalised estimation error squared, 5 degrees of freedom; infinite if nothing is "
+                     "covered, as for an invalid answer"},
+        record.nees);
   visit(StoredColumn{"num_matches", "matches", "matches of the problem", kNotNegative}, record.num_matches);
   visit(StoredColumn{"num_inliers", "matches", "final inliers", kNotNegative}, record.num_inliers);
   visit(StoredColumn{"inlier_precision", "share",
-                     "true ones among the final inliers, undetectable wrong ones left aside", kFromZeroToOne},
+                     "true matches among the final inliers, without undetectable wrong ones", kFromZeroToOne},
         record.inlier_precision);
   // Beyond 1 for an estimator that names a match twice.
   visit(StoredColumn{"inlier_recall", "share", "final inliers among the true matches", kNotNegative},
@@ -92,18 +91,19 @@ void VisitColumns(Record& record, Visitor&& visit) {
   visit(StoredColumn{"z_statistic", "", "Z_j of the selected hypothesis; NULL without one"},
         record.z_statistic);
   visit(StoredColumn{"num_consistent_before", "matches",
-                     "n_I: consistent with the motion before its refinement"},
+                     "n_I: matches consistent with the motion before its refinement"},
         record.num_consistent_before);
-  visit(StoredColumn{"num_consistent_after", "matches", "n*_I: the same after it"},
+  visit(StoredColumn{"num_consistent_after", "matches",
+                     "n*_I: matches consistent with it after the refinement"},
         record.num_consistent_after);
   visit(StoredColumn{"failed_by_kappa", "0 or 1", "the paper's failure flag: n*_I / n_I <= kappa"},
         record.failed_by_kappa);
   visit(StoredColumn{"num_explained", "matches", "matches that agree with the refined motion"},
         record.num_explained);
   visit(StoredColumn{"num_hypotheses", "", "minimal samples drawn"}, record.counts.num_hypotheses);
-  visit(StoredColumn{"num_degenerate_samples", "", "of these without a motion"},
+  visit(StoredColumn{"num_degenerate_samples", "", "minimal samples without a motion"},
         record.counts.num_degenerate_samples);
-  visit(StoredColumn{"num_inconsistent_samples", "", "of these refused by the sample test"},
+  visit(StoredColumn{"num_inconsistent_samples", "", "minimal samples that the sample test refused"},
         record.counts.num_inconsistent_samples);
   visit(StoredColumn{"num_poor_inlier_sets", "", "hypotheses whose mean entropy exceeded mu"},
         record.counts.num_poor_inlier_sets);
@@ -112,35 +112,30 @@ void VisitColumns(Record& record, Visitor&& visit) {
   visit(StoredColumn{"num_candidates", "", "hypotheses that passed every test"},
         record.counts.num_candidates);
   visit(StoredColumn{"failure_probability", "",
-                     "probability that the motion is beyond the bounds, as the estimator states it; NULL: it "
-                     "states none",
+                     "stated probability that the motion is beyond the bounds; NULL: none stated",
                      kFromZeroToOne},
         record.failure_probability);
   visit(StoredColumn{"sigma_estimated_px", "px",
-                     "noise per coordinate, estimated from the residuals; NULL likewise", kNotNegative},
+                     "noise per coordinate, estimated from the residuals; NULL: none stated", kNotNegative},
         record.sigma_estimated_px);
   visit(StoredColumn{"sigma_estimated_sd_px", "px",
-                     "its standard deviation, as the estimator states it; NULL likewise", kNotNegative},
+                     "stated standard deviation of this noise; NULL: none stated", kNotNegative},
         record.sigma_estimated_sd_px);
   visit(StoredColumn{"inlier_brier", "",
-                     "mean squared error of the inlier probabilities, undetectable wrong matches left aside",
+                     "mean squared error of the inlier probabilities, without undetectable wrong matches",
                      kFromZeroToOne},
         record.inlier_brier);
   VisitDensityColumns(record.density, visit);
-  visit(
-      StoredColumn{
-          "doubt", "",
-          "what makes the motion uncertain: 0 nothing, 1 another motion, 2 a plane, 3 few influential "
-          "matches, 4 the opposite direction, 5 low parallax, 6 few matches, 7 matches that are not as its "
-          "model has them"},
-      record.doubt);
-  visit(
-      StoredColumn{
-          "seconds", "s",
-          "processor time of the call on its thread, and the time that it took in another process; the only "
-          "number that another run does not repeat",
-          kFiniteAndKnown, StoredColumn::Role::kTime},
-      record.seconds);
+  visit(StoredColumn{"doubt", "",
+                     "what makes the motion uncertain: 0 nothing, 1 another motion, 2 a plane, 3 few "
+                     "influential matches, 4 the opposite direction, 5 low parallax, 6 few matches, 7 "
+                     "matches that contradict the estimator's model"},
+        record.doubt);
+  visit(StoredColumn{"seconds", "s",
+                     "processor time of the call on its thread, plus its time in another process; the only "
+                     "number that another run does not repeat",
+                     kFiniteAndKnown, StoredColumn::Role::kTime},
+        record.seconds);
 }
 
 template <IsRecord<ProblemRecord> Record, typename Visitor>
@@ -148,7 +143,8 @@ void VisitColumns(Record& record, Visitor&& visit) {
   visit(kConditionColumn, record.condition);
   visit(kTrialColumn, record.trial);
   visit(StoredColumn{"weight", "",
-                     "of the trial: 1, unless its number of outliers was drawn by importance (`tilted_to`)",
+                     "weight of the trial: 1, unless its number of outliers was drawn by importance sampling "
+                     "(`tilted_to`)",
                      kFiniteAndKnown},
         record.weight);
   visit(StoredColumn{"num_inliers_true", "matches", "true matches; NULL for real pairs", kFiniteOrUnknown},

@@ -51,8 +51,8 @@ ResultColumn KeyColumn(const StoredColumn& column) {
 
 std::vector<ResultColumn> ProblemColumns() {
   std::vector<ResultColumn> columns = RecordColumns<ProblemRecord>();
-  columns.push_back({"checksum", "INTEGER", "",
-                     "CRC-32 of the problem and its trials, begun with that of the study's identity"});
+  columns.push_back(
+      {"checksum", "INTEGER", "", "CRC-32 of the study's identity, the problem and its trials"});
   return columns;
 }
 
@@ -61,74 +61,68 @@ std::vector<ResultColumn> ProblemColumns() {
 const std::vector<ResultTable>& ResultTables() {
   static const std::vector<ResultTable> tables = {
       {"run",
-       "What is known of the run as a whole; the rows are below.",
+       "The run as a whole, a row for each key of the list below.",
        {{"key", "TEXT", "", "one of the keys below"}, {"value", "TEXT", "", "its value as text"}},
        {"key"}},
       {"factors",
-       "What the study varies. For a folder of real pairs the last one is `pair_scene`, which the folder "
-       "brings.",
+       "The factors of the study. A folder of real pairs adds `pair_scene` as the last one.",
        {{"factor", "INTEGER", "", "number of the factor, from 0"},
-        {"name", "TEXT", "", "the data key that it varies; the key's name has its unit"}},
+        {"name", "TEXT", "", "the data key that it varies; its name includes the unit"}},
        {"factor"}},
       {"conditions",
-       "The conditions of the study: one combination of levels each.",
+       "The conditions of the study, each a combination of levels.",
        {KeyColumn(kConditionColumn),
-        {"num_trials", "INTEGER", "trials", "trials asked for, by whichever run asked for most"}},
+        {"num_trials", "INTEGER", "trials", "the most trials that any run requested"}},
        {"condition"}},
       {"levels",
        "The level of every factor in every condition.",
        {KeyColumn(kConditionColumn),
         {"factor", "INTEGER", "", "number of the factor, from 0"},
-        {"level", "TEXT", "of the factor", "its level, as the study has it"}},
+        {"level", "TEXT", "of the factor", "its level, as in the study"}},
        {"condition", "factor"}},
       {"estimators",
        "The estimators of the study.",
        {KeyColumn(kEstimatorColumn),
-        {"label", "TEXT", "", "what tables and figures call it; unique"},
-        {"name", "TEXT", "", "what `rcme list estimators` calls it"},
-        {"effort", "TEXT", "", "what limits the work of a call, in words; empty: unknown"}},
+        {"label", "TEXT", "", "its name in tables and figures; unique"},
+        {"name", "TEXT", "", "its name in `rcme list estimators`"},
+        {"effort", "TEXT", "", "the limit of a call's work, in words; empty: unknown"}},
        {"estimator"}},
       {"options",
-       "Every option of every estimator, defaults included; the program that reads need not know them.",
+       "Every option of every estimator, including defaults.",
        {KeyColumn(kEstimatorColumn),
         {"name", "TEXT", "", "name of the option"},
         {"value", "TEXT", "of the option", "its value as text"}},
        {"estimator", "name"}},
       {"totals",
-       "What the file holds of every condition, written together with the trials: lost trials are noticed.",
+       "The trials in the file per condition, written together with them, so that a loss is noticed.",
        {KeyColumn(kConditionColumn),
         {"num_trials", "INTEGER", "trials", "trials in the file"},
         {"checksum", "INTEGER", "", "sum of their checksums"}},
        {"condition"}},
       {"counted",
-       "Which trials the counts are of; empty unless the run keeps counts.",
+       "The trials that the counts cover; empty unless the run keeps counts.",
        {KeyColumn(kConditionColumn),
-        {"shard", "TEXT", "", "the shard that has them, as `3/64`; empty: all trials"},
+        {"shard", "TEXT", "", "their shard, such as `3/64`; empty: all trials"},
         {"places", "TEXT", "", "their places in the shard, from 0: `0-499,600`"},
-        {"checksum", "INTEGER", "", "CRC-32 of the row, begun with that of the study's identity"}},
+        {"checksum", "INTEGER", "", "CRC-32 of the study's identity and the row"}},
        {"condition", "shard"}},
       {"counts",
-       "What the summary needs of all trials, exactly; empty unless the run keeps counts. A sum is a "
-       "hexadecimal "
+       "The exact sums that the summary needs; empty unless the run keeps counts. A sum is a hexadecimal "
        "whole number and a power of two, `-1a3p-20`.",
        {KeyColumn(kConditionColumn),
-        {"estimator", "INTEGER", "", "number of the estimator; the one after the last: the problems"},
+        {"estimator", "INTEGER", "", "number of the estimator; the number after the last: the problems"},
         {"quantity", "TEXT", "", "its name (`rcme list quantities`)"},
-        {"n", "INTEGER", "trials", "trials that give it a number"},
-        {"sum", "TEXT", "of the quantity", "their sum; of a rate in decimal digits; empty for a median"},
-        {"sum_squares", "TEXT", "", "the sum of their squares; empty for a rate and a median"},
+        {"n", "INTEGER", "trials", "trials with a value"},
+        {"sum", "TEXT", "of the quantity", "sum of the values, decimal for a rate; empty for a median"},
+        {"sum_squares", "TEXT", "", "sum of their squares; empty for a rate and a median"},
         {"cells", "TEXT", "",
-         "of a median how many, the least and the greatest of its cells (`stats/stream_median.h`), of a "
-         "score "
-         "its parts on a grid (`stats/exact_scores.h`); else empty"},
-        {"checksum", "INTEGER", "", "CRC-32 of the row, begun with that of the study's identity"}},
+         "median: count, least and greatest value of each cell (`stats/stream_median.h`); score: its parts "
+         "on a grid (`stats/exact_scores.h`); otherwise empty"},
+        {"checksum", "INTEGER", "", "CRC-32 of the study's identity and the row"}},
        {"condition", "estimator", "quantity"}},
-      {"problems",
-       "One row per trial: the problem, whoever solves it.",
-       ProblemColumns(),
-       {"condition", "trial"}},
+      {"problems", "One row per trial: its problem.", ProblemColumns(), {"condition", "trial"}},
       {"trials",
-       "One row per trial and estimator: what became of the call.",
+       "One row per trial and estimator: the answer.",
        RecordColumns<TrialRecord>(),
        {"condition", "trial", "estimator"}}};
   return tables;
@@ -138,45 +132,38 @@ const std::vector<RunKey>& RunKeys() {
   static const std::vector<RunKey> keys = {
       {"format", "the format of the file"},
       {"name", "the name of the study"},
-      {"description", "the study in its own words"},
-      {"ademp_aims",
-       "the study's aims, in its own words; this and the next four empty without an ADEMP block"},
-      {"ademp_data", "how its data come about"},
+      {"description", "the study's description"},
+      {"ademp_aims", "the study's aims; this and the next four are empty without an ADEMP block"},
+      {"ademp_data", "how its data are made"},
       {"ademp_estimands", "what is estimated"},
       {"ademp_methods", "what is compared"},
       {"ademp_performance", "what is measured"},
       {"seed", "the seed of all random streams"},
-      {"trials",
-       "trials per condition that were asked for; for a folder of real pairs, passes over each pair"},
-      {"repeats_per_scene",
-       "trials of each scene, one after the other: trial k is of scene k / repeats_per_scene"},
+      {"trials", "requested trials per condition; for a folder of real pairs, passes over each pair"},
+      {"repeats_per_scene", "consecutive trials of each scene: trial k has scene k / repeats_per_scene"},
       {"max_rotation_error_deg", "failure bound: a motion with a greater rotation error has failed"},
       {"max_direction_error_deg", "failure bound: a motion with a greater error of the direction has failed"},
-      {"stopping_rule", "not empty: the number of trials depended on their outcomes, in these words"},
+      {"stopping_rule", "how the number of trials depended on their outcomes; empty: it did not"},
       {"stopping_rule_checksum",
-       "CRC-32 of identity and stopping_rule: which kind of interval holds is known although other rows are "
-       "damaged"},
-      {"until_options", "options of `rcme run` that alone gave `until_trials` trials; empty: none"},
-      {"until_trials", "how many trials those gave in all conditions"},
+       "CRC-32 of identity and stopping_rule: the kind of interval is known even if other rows are damaged"},
+      {"until_options", "the options of `rcme run --until` if these alone made the trials; otherwise empty"},
+      {"until_trials", "the number of trials that they made in all conditions"},
       {"retried_trials",
-       "how many trials were run again because an answer from outside the program was missing (`rcme run "
-       "--retry`), each time counted; a file of an earlier version has no such row"},
+       "number of repeated trials (`rcme run --retry`), each time counted; a file of an earlier version has "
+       "no such row"},
       {"lock",
-       "the lock file that the run was begun with (`rcme lock`), with the locked study and its SHA-256; "
-       "empty: "
-       "none; a file of an earlier version has neither this row nor the next"},
-      {"despite_lock", "why the study departs from its lock (`rcme run --despite-lock`), a reason a line"},
+       "the lock file of the run (`rcme lock`), with the locked study and its SHA-256; empty: none; a file "
+       "of an earlier version has neither this row nor the next"},
+      {"despite_lock",
+       "why the study departs from its lock (`rcme run --despite-lock`), one reason per line"},
       {"shard",
-       "which shards of the study the file is of: `3/64`, or merged ones that are complete, `1-3,7/64` or "
-       "`none/64`; empty: the whole study"},
-      {"keep",
-       "`all`: every trial is in the file; `counts`: what the summary needs of all, a few trials as they "
-       "are"},
-      {"program",
-       "programs that computed trials, with their versions; separated by commas, empty: not known"},
-      {"instruction_set", "instruction sets they used, likewise"},
+       "the shards in the file: `3/64`, or the complete ones of a merged file, `1-3,7/64` or `none/64`; "
+       "empty: the whole study"},
+      {"keep", "`all`: every trial; `counts`: the sums that the summary needs, and a few trials"},
+      {"program", "programs that computed trials, with versions, separated by commas; empty: unknown"},
+      {"instruction_set", "instruction sets that they used, likewise"},
       {"study", "the study in full (YAML), for `rcme run`, `rcme replay` and `rcme show`"},
-      {"identity", "what two runs must have in common to share a file: study, seed, digest of real data"},
+      {"identity", "what runs must have in common to share a file: study, seed, digest of real data"},
       {"checksum",
        "CRC-32 of all rows of the tables "
        "run, factors, conditions, levels, estimators and options but this one"}};
