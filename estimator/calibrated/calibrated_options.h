@@ -7,19 +7,19 @@
 
 namespace rcme {
 
-// What is known of the noise level before the residuals are seen.
+// How well the noise level is known beforehand.
 enum class SigmaKnowledge {
-  kEstimated,  // the assumed sigma is a guess, good to a factor of about four; one that is far off raises P
-  kAssumed,    // it is right
+  kEstimated,  // the assumed sigma may be wrong by a factor of about four; a large correction raises P
+  kAssumed,    // the assumed sigma is exact
 };
 
 enum class CovarianceKind {
   kInformation,  // the inverse of the likelihood's Hessian
-  kSandwich,     // HC3: the residuals themselves give their variances
-  kRobust,       // the sandwich, for errors that are not independent (robust_covariance.h)
+  kSandwich,     // HC3: variances from the residuals themselves
+  kRobust,       // a sandwich for dependent errors (robust_covariance.h)
 };
 
-// Steps that can be left out, to see what they are worth.
+// A step to leave out in an ablation.
 enum class CalibratedStep {
   kNone,
   kSplit,
@@ -35,27 +35,26 @@ enum class CalibratedStep {
 // Options of rcme_calibrated.
 struct CalibratedOptions {
   int min_samples = 64, max_samples = 10000;
-  int num_candidates = 16;  // refined a little
-  int num_modes = 4;        // of these to the optimum
+  int num_candidates = 16;  // hypotheses refined by a few steps
+  int num_modes = 4;        // how many of them are refined to the optimum
 
-  // The motion is wrong if its rotation or its direction is further off.
+  // The failure bounds: a motion counts as wrong if either error exceeds its bound.
   double max_rotation_error_deg = 3.0, max_direction_error_deg = 15.0;
-  double max_failure_probability = 1.0;  // greater: refused
+  double max_failure_probability = 1.0;  // a motion with a greater probability is refused
 
   SigmaKnowledge sigma = SigmaKnowledge::kEstimated;
   CovarianceKind covariance = CovarianceKind::kSandwich;
-  // Odds that a second motion which explains as many matches as the answer is the camera's; see
-  // mode_weights.h.
+  // Odds that a second motion is the camera's if it explains as many matches as the answer (mode_weights.h).
   double second_motion_odds = 0.6;
   CalibratedStep leave_out = CalibratedStep::kNone;
-  CalibrationPrior calibration;    // its effect is added to the covariance
-  RobustCovarianceOptions robust;  // of kRobust; its calibration is the one above
+  CalibrationPrior calibration;    // uncertainty of the intrinsics, added to the covariance
+  RobustCovarianceOptions robust;  // for kRobust; its calibration is taken from the field above
 };
 
-// The fields by name; valid as long as `options` lives.
+// The fields by name. They point into `options`, which must outlive them.
 std::vector<Parameter> Parameters(CalibratedOptions& options);
 
-// Throws InputError where two options contradict each other.
+// Throws InputError if two options contradict each other.
 void Validate(const CalibratedOptions& options);
 
 }  // namespace rcme

@@ -12,16 +12,16 @@ namespace rcme {
 namespace {
 
 constexpr int kFewSteps = 3, kCandidateSteps = 18;
-constexpr int kMatchesOfCandidates = 192;  // that refine and rank the candidates; a whole number of blocks
-constexpr int kScaleMatches = 128;         // that a first scale is estimated from
-constexpr int kCheiralityBlocks = 32;      // of matches: decide on which side the cameras are
+constexpr int kMatchesOfCandidates = 192;  // used to refine and rank candidates; a whole number of blocks
+constexpr int kScaleMatches = 128;         // used to estimate a first scale
+constexpr int kCheiralityBlocks = 32;      // blocks of matches that decide the cheirality
 
 void SortByLikelihood(std::vector<Mode>* modes) {
   std::stable_sort(modes->begin(), modes->end(),
                    [](const Mode& a, const Mode& b) { return a.log_likelihood > b.log_likelihood; });
 }
 
-// Those that are not the same as a more likely one, at most `count`.
+// At most `count` modes, most likely first, without those that equal a more likely one.
 std::vector<Mode> Distinct(std::vector<Mode> modes, size_t count) {
   SortByLikelihood(&modes);
   std::vector<Mode> distinct;
@@ -34,8 +34,8 @@ std::vector<Mode> Distinct(std::vector<Mode> modes, size_t count) {
   return distinct;
 }
 
-// Of some scales the one that explains the matches best at the mode's motion, by their first kScaleMatches.
-// From a scale that is too wide, a fit may end in a compromise between two motions.
+// The scale out of six that maximises the likelihood of the first kScaleMatches at the mode's motion. A fit
+// that starts at too wide a scale may end in a compromise between two motions.
 double StartScale(const MatchBlocks& matches, const Mode& mode) {
   MatchTermLists terms;
   EvaluateTerms(matches, mode.pose, &terms);
@@ -64,7 +64,7 @@ RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E) {
   const std::array<RelativePose, 4> poses = PosesFromEssential(ProjectToEssential(E));
   RelativePose best = poses[0];
   double clearest = -1.0;
-  for (const size_t i : {size_t{0}, size_t{2}}) {  // the other two go the opposite way
+  for (const size_t i : {size_t{0}, size_t{2}}) {  // poses 1 and 3 have the opposite translation
     const double sum = SumCheirality(matches, kCheiralityBlocks, poses[i], kSoftScale);
     if (!(std::abs(sum) > clearest)) continue;
     clearest = std::abs(sum);
@@ -87,8 +87,8 @@ MatchMask MatchesOfCandidates(const MatchBlocks& matches) {
   return mask;
 }
 
-// Of every candidate that does not become the same as one before it a mode after a few steps at a fixed
-// scale, by some of the matches.
+// Each candidate after a few steps at a fixed wide scale, on the first matches. A candidate that becomes the
+// same as an earlier one is dropped.
 std::vector<Mode> RefineALittle(const MatchBlocks& matches, const MixturePrior& prior,
                                 const std::vector<ScoredEssential>& candidates) {
   std::vector<Mode> modes;
@@ -123,8 +123,8 @@ std::vector<Mode> AtScale(const MatchBlocks& matches, const MixturePrior& prior,
   return modes;
 }
 
-// Adds the optimum from `mode` by all matches, unless it is known; whether it is often shows after a step or
-// two.
+// Adds the optimum reached from `mode` on all matches, unless it is already in the list. Most duplicates show
+// within the first steps, where the fit is then stopped.
 void AddOptimum(const MatchBlocks& matches, const MixturePrior& prior, Mode mode, std::vector<Mode>* optima) {
   const auto is_known = [&] {
     return std::ranges::any_of(*optima, [&](const Mode& other) {
@@ -153,7 +153,7 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
     mode.mixture.scale = StartScale(matches, mode);
     AddOptimum(matches, prior, std::move(mode), &optima);
   }
-  // Where c(z) pushes a fit back at every step there is no optimum: the best motion after a few steps.
+  // There may be no optimum, because c(z) can reject every step. Then take the best motion after a few steps.
   for (Mode& mode : Distinct(refined, optima.empty() ? 1 : 0)) {
     mode.used = matches.All();
     mode.mixture.scale = prior.estimates_scale ? StartScale(matches, mode) : assumed_scale;

@@ -8,24 +8,26 @@
 
 namespace rcme {
 
-// The pose of an essential matrix for which the matches lie most clearly in front of both cameras
-// (SumCheirality).
+// The one of the four poses of E that puts the matches most clearly in front of both cameras (SumCheirality).
 RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E);
 
-// Every candidate is refined by a few steps at a wide scale on the first matches. The best distinct ones go
-// to their optimum by all matches, half of them as ranked at the assumed scale, half (where sigma is
-// estimated) as ranked at the wide one and begun at the scale that suits them; one that reaches a known mode
-// is dropped. Returned are at most `num_modes`, the most likely first; where none has an optimum, the best
-// after a few steps; none where no Hessian can be inverted.
+// Refines the candidates to modes and returns at most `num_modes` of them, most likely first:
+// 1. Each candidate is refined by a few steps at a wide scale on the first matches.
+// 2. The best distinct ones are refined to their optimum on all matches. Half of them are ranked at the
+//    assumed scale. If sigma is estimated, the other half are ranked at the wide scale and start at the scale
+//    that fits them best. A fit that reaches a known mode is dropped.
+//
+// If no candidate has an optimum, returns the best one after a few steps; if no Hessian can be inverted,
+// returns nothing.
 std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,
                             const std::vector<ScoredEssential>& candidates, size_t num_modes);
 
-// The optima that are reached from these motions by all matches, begun at the assumed scale and (where sigma
-// is estimated) at the scale that suits them; each once.
+// The optima reached from these motions on all matches, without duplicates. Each fit starts at the assumed
+// scale and, if sigma is estimated, also at the scale that fits its start best.
 std::vector<Mode> ModesFrom(const MatchBlocks& matches, const MixturePrior& prior,
                             const std::vector<RelativePose>& starts);
 
-// Whether two modes are one: within so many standard deviations of the first, by its information.
+// Whether b lies within this many standard deviations of a, by the Hessian of a.
 bool IsSameMode(const Mode& a, const Mode& b, double standard_deviations = 5.0);
 
 }  // namespace rcme

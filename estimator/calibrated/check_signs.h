@@ -1,5 +1,5 @@
-// The signs that the check of rcme_calibrated's model goes by. The fit chooses among them; to leave one out,
-// take its line away here and run scripts/fit_calibrated.
+// The indicators from which the model check of rcme_calibrated computes its corrections. The fit selects
+// among them. To leave one out, delete its line here and run scripts/fit_calibrated.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 namespace rcme {
 
 struct CheckSign {
-  const char* name;  // as fitted_constants.h has it
+  const char* name;  // as in fitted_constants.h
   double (*value)(const ModelCheck& check);
 };
 
-// x_j: of the probability of failure.
+// x_j, for the probability of failure.
 inline constexpr auto kCheckSigns = std::to_array<CheckSign>({
     {"log_noise_ratio", [](const ModelCheck& c) { return c.log_noise_ratio; }},
     {"neighbour_root_z",
@@ -36,7 +36,7 @@ inline constexpr auto kCheckSigns = std::to_array<CheckSign>({
     {"greatest_rival", [](const ModelCheck& c) { return c.greatest_rival; }},
 });
 
-// y_k: of the covariance. Up to the value that is taken away they are what independent noise gives.
+// y_k, for the covariance. The subtracted values, 1.1 and 0.6, are usual for independent noise.
 inline constexpr auto kCovarianceSigns = std::to_array<CheckSign>({
     {"constant", [](const ModelCheck&) { return 1.0; }},
     {"neighbour_root_z_above",

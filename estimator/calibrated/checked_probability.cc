@@ -13,12 +13,12 @@
 namespace rcme {
 namespace {
 
-constexpr double kMostLogOdds = 11.5;  // of the posterior: what lies beyond is not told apart
+constexpr double kMostLogOdds = 11.5;  // the posterior's log-odds are clipped to +-this
 constexpr double kLeastSlope = 0.02;
 constexpr size_t kNumSigns = kCheckSigns.size();
 using Signs = std::array<double, kNumSigns>;
 
-// At compile time: a name that is not there is an error there.
+// Evaluated at compile time, so that a missing name is a compile error.
 template <typename Named>
 constexpr const Named& FindByName(std::span<const Named> all, std::string_view name) {
   for (const Named& one : all) {
@@ -30,7 +30,7 @@ constexpr size_t FindSign(std::string_view name) {
   return static_cast<size_t>(&FindByName<CheckSign>(kCheckSigns, name) - kCheckSigns.data());
 }
 
-// The constants of the signs, in their order.
+// The range of each indicator, in the order of kCheckSigns.
 constexpr std::array<FittedRange, kNumSigns> FindRanges() {
   std::array<FittedRange, kNumSigns> ranges;
   for (size_t j = 0; j < kNumSigns; ++j)
@@ -40,7 +40,7 @@ constexpr std::array<FittedRange, kNumSigns> FindRanges() {
 constexpr auto kRanges = FindRanges();
 constexpr FittedRange kPosteriorRange = FindByName<FittedRange>(kSignRanges, "posterior_log_odds");
 
-// The products, with the places of their signs.
+// The indices of a product's signs in kCheckSigns.
 struct Product {
   size_t first = 0, second = 0;
 };

@@ -1,17 +1,19 @@
-// What the check of the model makes of the posterior's probability of failure and of the covariance.
+// Corrects the posterior's probability of failure and the covariance by the model check.
 //
 //   logit P = b_0 + max(b_1 + sum_k c_k h_k(x), 0.02) l + b_2 p + sum_m d_m h_m(x),   l = logit p
 //
-// p is the probability by the modes, x the signs of the check (check_signs.h), each cut to the range that it
-// had in the trials of the fit. h is max(s (x_i - t), 0), s = 1 or -1, or the product of two of these:
-// multivariate adaptive regression splines (Friedman 1991, Annals of Statistics 19:1). The first sum tempers
-// the log-odds: evidence of matches whose errors go together, or on which few decide, is worth less than its
-// nats. The other terms are what may be wrong although the modes do not know it. The covariance of a mode,
-// where it is a sandwich, grows by exp(sum a_k y_k) where that exceeds 1.
+// Here p is the probability of failure according to the modes and x the indicators (check_signs.h), each
+// clipped to its range in the trials of the fit. A term h is a hinge max(s (x_i - t), 0) with s = 1 or -1, or
+// the product of two hinges: multivariate adaptive regression splines (Friedman 1991, Annals of Statistics
+// 19:1).
 //
-// The products are chosen, and their weights found, by a logistic regression of failure, a by a regression of
-// the 0.95 quantile of NEES, on trials of a population of conditions and of the families;
-// scripts/fit_calibrated makes both (fitted_constants.h).
+// The first sum tempers the log-odds: if the errors of matches depend on each other, or if a few matches
+// decide the motion, evidence is worth less than its nats. The other terms describe errors that the modes
+// cannot see. The covariance of a mode, if it is a sandwich, is multiplied by max(exp(sum a_k y_k), 1).
+//
+// scripts/fit_calibrated makes the constants (fitted_constants.h) on trials of a population of conditions and
+// of families of scenes. A logistic regression of failure selects the terms h and finds their weights; a
+// regression of the 0.95 quantile of NEES finds a.
 #pragma once
 
 #include <string>
@@ -21,7 +23,7 @@
 
 namespace rcme {
 
-// What the fit sees of an answer.
+// An input of the fit.
 struct FitTerm {
   std::string name;
   double value;
@@ -29,12 +31,12 @@ struct FitTerm {
 std::vector<FitTerm> ListCheckSigns(const ModelCheck& check);       // x
 std::vector<FitTerm> ListCovarianceSigns(const ModelCheck& check);  // y
 
-// Of the default failure bounds, 3 and 15 deg. Grows with `posterior` whatever the check says.
+// P for the default failure bounds, 3 and 15 deg. It increases with `posterior` for every result of the
+// check.
 double CheckedFailureProbability(double posterior, const ModelCheck& check);
-// Whether every sign lies where it did in all but the lowest and the highest 0.5 % of the trials that the
-// constants were fitted to, and the posterior as well.
+// Whether the posterior and every indicator lie within the central 99 % of the trials of the fit.
 bool IsInDomain(double posterior, const ModelCheck& check);
-// At least 1.
+// The factor of the covariance, at least 1.
 double CovarianceFactor(const ModelCheck& check);
 
 }  // namespace rcme

@@ -8,8 +8,8 @@ namespace {
 
 constexpr int kShareSteps = 8;
 
-// The share of right matches among `set` at which its likelihood is greatest, by expectation-maximisation,
-// with half a match of prior on either side.
+// The maximum-likelihood share of inliers in `set`, by expectation-maximisation. The prior counts as half an
+// inlier and half an outlier.
 double ShareAmong(const std::vector<size_t>& set, const Explanation& mode, double background) {
   double share = 0.5;
   for (int step = 0; step < kShareSteps; ++step) {

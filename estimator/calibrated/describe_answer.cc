@@ -9,7 +9,7 @@
 namespace rcme {
 namespace {
 
-constexpr double kLowDepth = 6.0;        // standard deviations of its noise, of the usual match
+constexpr double kLowDepth = 6.0;        // standard deviations of the parallax's noise
 constexpr double kRandomPartners = 2.0;  // standard deviations
 
 Doubt DoubtOfOrigin(const ExplainedMode& mode, bool is_second_motion) {
@@ -35,7 +35,7 @@ Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weig
   const auto consider = [&](double part, Doubt reason) {
     if (part > greatest) greatest = part, doubt = reason;
   };
-  // Where the check lowers the probability, it lowers each part of it.
+  // If the check lowers the probability, all parts are lowered in proportion.
   const double share =
       verdict.failure_probability < verdict.by_modes ? verdict.failure_probability / verdict.by_modes : 1.0;
   consider(share * verdict.mass_beyond, Doubt::kLowParallax);
@@ -50,7 +50,7 @@ Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weig
 
 namespace {
 
-// The first of the check's signs that stands out.
+// Names the first indicator of the check that is out of its usual range.
 std::string ModelDoubt(const ModelCheck& check) {
   const double noise = std::exp(check.log_noise_ratio);
   if (check.partner_dependence.greater_z() < kRandomPartners)

@@ -1,4 +1,4 @@
-// An answer of rcme_calibrated in words: what makes it uncertain first of all.
+// Describes an answer of rcme_calibrated in words: the main cause of its uncertainty comes first.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace rcme {
 
-// The greatest part of the probability of failure, where that is more than a hundredth.
+// The cause of the largest part of the probability of failure, or kNone if no part exceeds 0.01.
 Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weights, const Verdict& verdict);
 
-// One sentence; `estimate` has all but its message.
+// One sentence. `estimate` needs all fields but its message.
 std::string DescribeAnswer(const MotionEstimate& estimate, const ModelCheck& check);
 
 }  // namespace rcme

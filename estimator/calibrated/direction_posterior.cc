@@ -15,31 +15,33 @@ namespace rcme {
 namespace {
 
 constexpr size_t kMostMatches = 256;
-// Axes about a centre: rings from 0 to 90 deg, with an edge at the bound.
+// Axes about a centre: rings from 0 to 90 deg, with a border at the failure bound.
 constexpr int kInnerRings = 4, kOuterRings = 6, kAzimuths = 10;
 constexpr int kSteps = 3;
 constexpr double kShareWrong = 0.02;                    // of the matches that the mode explains
 constexpr double kFirstNear = 0.1, kLeastNear = 0.005;  // share of matches with a parallax of any size
-constexpr double kBand = 6.0;  // standard deviations across that a mode's matches lie within
+constexpr double kBand = 6.0;  // half width, in standard deviations across, of the band of a mode's matches
 constexpr double kRootTwoPi = 2.5066282746310002;
 
 struct Displacement {
-  size_t match;           // its index
-  Eigen::Vector3d a, d;   // unit ray of camera 1 in camera 2's frame; that of camera 2 less it, across a
-  double noise_variance;  // s^2 of this match (noise_scale) over the weight of its residual, rad^2
+  size_t match;  // index of the match
+  // unit ray of camera 1 in camera 2's frame; (b - a) projected onto the plane normal to a
+  Eigen::Vector3d a, d;
+  // s^2 of this match, with its noise_scale, divided by the weight of its residual, rad^2
+  double noise_variance;
 };
 
 struct DisplacementSet {
   std::vector<Displacement> matches;
-  double all_over_used = 1.0;  // of the matches
-  double image_rad = 1.0;      // extent of image 2, which a wrong match's displacement is uniform over
-  // What a prior says of w, x = (w, m): cost |r + J w|^2 / 2, r and J at the mode's rotation; nothing without
-  // one. And what it says of the direction.
+  double all_over_used = 1.0;  // explained matches per match in `matches`
+  double image_rad = 1.0;      // extent of image 2, over which the displacement of an outlier is uniform
+  // The prior of w, if there is one: cost |r + J w|^2 / 2, with r and J at the mode's rotation. And the prior
+  // of the direction.
   std::optional<PriorResiduals> of_rotation = {};
   std::optional<DirectionPrior> of_direction = {};
 };
 
-// The prior of the problem; its direction aside, at the mode's rotation.
+// Adds the problem's prior: the direction by itself, all else linearised at the mode's rotation.
 void AddPrior(const MotionProblem& problem, const RelativePose& pose, DisplacementSet* set) {
   if (!problem.prior) return;
   MotionPrior prior = *problem.prior;
@@ -48,7 +50,7 @@ void AddPrior(const MotionProblem& problem, const RelativePose& pose, Displaceme
   if (CountPriorFreedom(prior) > 0) set->of_rotation = ComputePriorResiduals(prior, pose);
 }
 
-// Of a direction by the prior, over its greatest value.
+// The prior density of a direction, relative to its maximum.
 double PriorDensity(const Eigen::Vector3d& direction, const DisplacementSet& set) {
   const double away = AngleBetween(direction, set.of_direction->t) / set.of_direction->sd_rad;
   return std::exp(-0.5 * away * away);
@@ -77,7 +79,7 @@ DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode&
   return set;
 }
 
-// A displacement's parts along and across the epipolar line of a direction.
+// The components of a displacement along and across the epipolar line of a direction.
 struct Parts {
   Eigen::Vector3d unit_along, unit_across;
   double sin, along, across;
@@ -98,7 +100,7 @@ double UpperQuantile(double share, std::vector<double>* values) {
   return ValueOfRank(static_cast<size_t>(share * static_cast<double>(values->size())), values);
 }
 
-// The logarithm of a product of factors of at least one, without a logarithm of each.
+// The logarithm of a product of factors >= 1. It needs few calls of log.
 class LogProduct {
  public:
   void MultiplyBy(double factor) {
@@ -120,10 +122,10 @@ struct AxisFit {
   double near = kFirstNear;
   double log_likelihood = -std::numeric_limits<double>::infinity();
   double mean_in_sd = 0.0;                                // m / sd
-  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();  // of x, from the matches that are looked at
+  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();  // of x, from the matches in the set
 };
 
-// m by the median, v by the median deviation.
+// First values: m is the median and v comes from the median absolute deviation.
 AxisFit FirstFit(const std::vector<Parts>& parts) {
   AxisFit fit;
   std::vector<double> values;
@@ -134,8 +136,9 @@ AxisFit FirstFit(const std::vector<Parts>& parts) {
   return fit;
 }
 
-// A displacement under a fit: what is left of it along the line, and its density if its inverse depth is of
-// the most (far), if it is of any size (near) and if the match is wrong; sum to the density of all.
+// A displacement under a fit: its residual along the line, and three densities, which sum to that of the
+// mixture: the match is an inlier with an inverse depth of the common law (far), an inlier of any depth
+// (near), or an outlier (wrong).
 struct Rest {
   double along, along_variance, far, near, wrong;
   double All() const { return far + near + wrong; }
@@ -182,7 +185,7 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
   }
   double prior_cost = 0.0;
   if (set.of_rotation) {
-    // As much of the prior as of the matches: all_over_used multiplies both, below.
+    // Divided by all_over_used, which multiplies the sums over the matches below.
     const auto J = set.of_rotation->jacobian.leftCols<3>();
     const auto& r = set.of_rotation->residual;
     information.topLeftCorner<3, 3>() += J.transpose() * J / set.all_over_used;
@@ -202,7 +205,7 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
   return fit;
 }
 
-// The model of the header at one direction, with a share of wrong matches, whose displacements are uniform.
+// Fits the model of the header at one direction.
 AxisFit FitAxis(const DisplacementSet& set, const Eigen::Vector3d& direction) {
   std::vector<Parts> parts;
   parts.reserve(set.matches.size());
@@ -215,7 +218,7 @@ AxisFit FitAxis(const DisplacementSet& set, const Eigen::Vector3d& direction) {
 
 double NormalCdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-// What a weight of an axis is for its direction, for the opposite one, and in all.
+// The weight of an axis, divided between its direction (ahead) and the opposite one (behind), and their sum.
 struct TwoWays {
   double ahead, behind, both;
 };
@@ -228,8 +231,8 @@ TwoWays DivideWeight(double weight, const AxisFit& fit, const DisplacementSet& s
 
 struct WeightedAxis {
   double angle;               // from the centre to the axis, rad, at most pi / 2
-  double low, high, azimuth;  // of its part of the sphere, rad
-  double log_area;            // of its part of the sphere
+  double low, high, azimuth;  // its cell of the sphere, rad
+  double log_area;            // log of the cell's area, up to a constant
   AxisFit fit;
 };
 
@@ -254,7 +257,8 @@ std::vector<WeightedAxis> FitAxes(const DisplacementSet& set, const Eigen::Vecto
   return axes;
 }
 
-// Of the rings, so that the angle is an edge of them or of those about the opposite direction.
+// The border between the inner and the outer rings: at the angle, or at its supplement, which is the same
+// border about the opposite direction.
 double EdgeAt(double angle_rad) {
   constexpr double kHalfPi = 0.5 * std::numbers::pi;
   const double edge = angle_rad < kHalfPi ? angle_rad : std::max(std::numbers::pi - angle_rad, 1e-3);
@@ -316,7 +320,7 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
     total += ways.both;
     if (axis.angle <= angle_rad) within += ways.ahead;
     if (std::numbers::pi - axis.angle <= angle_rad) within += ways.behind;
-    // With a prior of the direction the most likely of both ways of all axes.
+    // A prior of the direction may prefer another axis: take the most likely direction of all axes.
     const TwoWays densities = DivideWeight(density, axis.fit, set);
     if (!set.of_direction || !(std::max(densities.ahead, densities.behind) > most)) continue;
     most = std::max(densities.ahead, densities.behind);
