@@ -12,15 +12,14 @@ namespace rcme {
 namespace {
 
 constexpr double kWrong = 0.5;
-// Where the motion follows so few matches, a large influence is nothing unusual.
+// With fewer explained matches a large influence is nothing unusual.
 constexpr int kLeastExplained = 30;
 constexpr int kMostRounds = 3, kStepsWithout = 8;
 constexpr int kStepsToCompare = 3, kStepsToConverge = 20;
-// Of a mode's right matches near one plane: its other motion is looked at.
+// Least share of a mode's inliers near one plane for which the other motion of the plane is tried.
 constexpr double kPlanarShare = 0.6;
 
-// Takes the matches that are more likely wrong than right from those that the mode uses; whether there were
-// any.
+// Stops using the matches that are more likely wrong than right. Returns whether there were any.
 bool LeaveOutWrong(const std::vector<double>& wrong, Mode* mode) {
   bool has_changed = false;
   for (size_t i = 0; i < wrong.size(); ++i) {
@@ -52,8 +51,8 @@ class ModeList {
     }
     return notable;
   }
-  // Fits the mode anew without the matches that their influence shows to be wrong, as long as there are any;
-  // whether there were.
+  // Refits the mode without the matches that their influence shows to be outliers, and again while there are
+  // any, at most three times. Returns whether the mode changed.
   bool LeaveOutInfluential(Mode* mode, Explanation* explanation) const {
     int round = 0;
     for (; round < kMostRounds && explanation->num_explained >= kLeastExplained; ++round) {
@@ -73,7 +72,7 @@ class ModeList {
         leave_out_ != CalibratedStep::kInfluence && 2 * explanation.num_explained >= most_explained_;
     if (is_pruned && LeaveOutInfluential(&mode, &explanation) && Knows(mode, 1.0)) return;
     most_explained_ = std::max(most_explained_, explanation.num_explained);
-    if (explanation.num_explained <= 5) return;  // as many follow any motion through them
+    if (explanation.num_explained <= 5) return;  // any motion through five matches explains them
     modes_.push_back({std::move(mode), std::move(explanation)});
   }
   void AddBranches(size_t i) {
@@ -94,9 +93,10 @@ class ModeList {
     if (Knows(mode)) return;
     if (FitMode(matches_, prior_, kStepsToConverge, &mode) && !Knows(mode)) Add(std::move(mode));
   }
-  // The likelihood's optimum for the other sign of t is not sought: only c(z) tells the two apart.
+  // Takes a single step: an optimum for -t is not sought, because only c(z) distinguishes the two motions.
   void AddOppositeWay(size_t i) {
-    // Of the right matches more than a quarter by more than their noise: no.
+    // The sign of t is clear if, net of those behind, more than a quarter of the inliers lie clearly in
+    // front.
     const double ahead = SumCheirality(matches_, matches_.num_blocks(), modes_[i].mode.pose, kSoftScale);
     if (ahead > 10.0 + 0.25 * modes_[i].explanation.num_explained) return;
     Mode mode = modes_[i].mode;

@@ -1,4 +1,5 @@
-// Steps 3 and 4 of rcme_calibrated: the modes that the samples found, and those that follow from them.
+// Steps 3 and 4 of rcme_calibrated: refits the modes that the samples found and adds the modes that follow
+// from them.
 #pragma once
 
 #include <vector>
@@ -15,10 +16,10 @@ struct ExplainedMode {
   Explanation explanation;
 };
 
-// Every mode, fitted anew without the matches that their influence shows to be wrong (influence.h), with what
-// it says of the matches. Three kinds are then added in turn, each for the modes so far that explain at least
-// half as many matches as the one that explains the most: leverage branches, the other motion of a plane, and
-// the other way along t. Only modes that explain more than five matches are kept.
+// Refits every mode without the matches that their influence shows to be outliers (influence.h), and explains
+// the matches by it. Then adds three kinds of modes in turn: leverage branches, the other motion of a plane,
+// and the opposite translation. Each kind is derived from the modes so far that explain at least half as many
+// matches as the best one. Modes that explain five matches or fewer are dropped.
 std::vector<ExplainedMode> ExplainMatches(const MotionProblem& problem, const MatchBlocks& matches,
                                           const MixturePrior& prior, const CalibratedOptions& options,
                                           std::vector<Mode> modes);

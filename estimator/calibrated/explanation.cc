@@ -40,7 +40,7 @@ Explanation Explain(const MatchBlocks& matches, const Mode& mode) {
     for (size_t k = 0; k < 5; ++k) J(static_cast<Eigen::Index>(k)) = e.terms.derivative[k][i];
     const double information = e.probability[i] * NoiseWeight(m.noise, u) / (m.scale * m.scale);
     const double a = information * J.dot(mode.inverse_hessian * J);
-    // Of a match that the fit does not use: what it would have if it did.
+    // A match that the fit does not use has the leverage that it would have if it were used.
     const double h = e.leverage[i] = is_used ? std::min(a, 1.0) : a / (1.0 + a);
     const double left = std::sqrt(std::max(1.0 - h, 1e-4));
     e.left_out_density[i] = NoiseDensity(m.noise, is_used ? u / left : u * left) * left * in_front;

@@ -1,4 +1,5 @@
-// What a mode says of every match: the density of its residual, whether it is right, and its influence.
+// How a mode explains each match: the density of its residual, the probability that it is an inlier, and its
+// leverage.
 #pragma once
 
 #include <vector>
@@ -8,32 +9,32 @@
 
 namespace rcme {
 
-// Residuals are r', and densities those of r' (mixture_parameters.h).
+// Residuals are r', and densities are those of r' (mixture_parameters.h). Every list has one entry per match.
 struct Explanation {
   MatchTermLists terms;
   std::vector<double> inlier_density;  // f(r / s) c(z / s) / s
-  std::vector<double> probability;     // that the match is right
-  // a = p v J H^-1 J' / s^2, at most 1: the share of a match's residual that the motion follows; a / (1 + a),
-  // what it would be, of a match that the mode does not use.
+  std::vector<double> probability;     // that the match is an inlier
+  // The share of a match's residual that the motion follows: min(a, 1) with a = p v J H^-1 J' / s^2. For a
+  // match that the mode does not use: a / (1 + a), the leverage that it would have.
   std::vector<double> leverage;
-  // The density of the residual r' that the motion fitted without the match leaves, whose standard deviation
-  // is s / sqrt(1 - h): r' = r / (1 - h), or r where the mode does not use the match.
+  // The density of the residual r' that the match has under the motion fitted without it, whose standard
+  // deviation is s / sqrt(1 - h). There r' = r / (1 - h), or r if the mode does not use the match.
   std::vector<double> left_out_density;
-  std::vector<double> noise_scale;  // w_i (mixture_parameters.h); empty: all matches are alike
-  int num_explained = 0;            // matches that are right with a probability of more than one half
+  std::vector<double> noise_scale;  // w_i (mixture_parameters.h); empty if all are 1
+  int num_explained = 0;            // matches whose probability exceeds one half
 };
 
-// The density of r' of match i if it is wrong, `per_sigma` that of r.
+// The density of r' of match i if it is an outlier; `per_sigma` is that of r.
 inline double WrongDensity(const Explanation& explanation, size_t i, double per_sigma) {
   return explanation.noise_scale.empty() ? per_sigma : per_sigma * explanation.noise_scale[i];
 }
 
-// One entry per match.
+// Explains the matches by the mode.
 Explanation Explain(const MatchBlocks& matches, const Mode& mode);
 
-// f(u) of the noise law.
+// The density f(u).
 double NoiseDensity(const NoiseLaw& noise, double u);
-// v = 2k / (2k - 1 + u^2)
+// The weight v = 2k / (2k - 1 + u^2).
 double NoiseWeight(const NoiseLaw& noise, double u);
 
 }  // namespace rcme

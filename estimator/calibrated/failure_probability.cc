@@ -8,7 +8,7 @@ namespace rcme {
 namespace {
 
 constexpr int kPairs = 64;
-constexpr double kPlain = 6.0;  // standard deviations
+constexpr double kPlain = 6.0;  // standard deviations; beyond them no draw is needed
 
 }  // namespace
 

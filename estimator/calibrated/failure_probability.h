@@ -10,9 +10,9 @@ struct MotionBounds {
   double rotation_rad, direction_rad;
 };
 
-// Of a motion distributed as N(mean, covariance) in the tangent at `mean`: the probability that it lies
-// within the bounds around `answer`; by 128 antithetic draws of `rng`, or 1 or 0 without a draw where the
-// bounds are beyond six standard deviations.
+// The probability that a motion, distributed as N(mean, covariance) in the tangent at `mean`, lies within the
+// bounds around `answer`. Uses 64 antithetic pairs of draws of `rng`. If the bounds are more than six
+// standard deviations away, returns 1 or 0 without a draw.
 double MassWithin(const RelativePose& answer, const MotionBounds& bounds, const RelativePose& mean,
                   const Matrix5d& covariance, RandomStream& rng);
 

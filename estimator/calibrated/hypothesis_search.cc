@@ -11,12 +11,12 @@ namespace rcme {
 namespace {
 
 constexpr int kFirstMatches = 64;
-constexpr int kModelsOfSample = 5;       // about, to reserve room for
-constexpr size_t kLeastFullScores = 40;  // of a round; a quarter of it where that is more
-// Two hypotheses are the same motion, or near to each other, by |<E_a, E_b>| / 2.
+constexpr int kModelsOfSample = 5;       // a rough figure, to reserve memory
+constexpr size_t kLeastFullScores = 40;  // of a round: this many or a quarter of it, whichever is more
+// Above these values of |<E_a, E_b>| / 2, two hypotheses are the same motion or near to each other.
 constexpr double kSame = 0.9999, kNear = 0.98;
-// Of the motion of a minimal sample, per coordinate of the tangent; and the tail of the prior below which it
-// is not near.
+// Standard deviation of a minimal sample's motion, per coordinate of the tangent; and the tail probability of
+// the prior below which it is not near.
 constexpr double kSampleSdRad = 3.0 * kRadPerDeg, kLeastTail = 1e-3;
 
 struct RankedModel {
@@ -24,14 +24,14 @@ struct RankedModel {
   double first_score, score;
 };
 
-// The samples that are needed when a share `w` of the matches is right: 1 - (1 - w^5)^N >= 0.999.
+// The least N with 1 - (1 - w^5)^N >= 0.999: the samples needed if a share `w` of the matches are inliers.
 double SamplesNeeded(double w) {
   const double all_right = std::pow(std::clamp(w, 1e-3, 0.999), 5);
   return std::log(1e-3) / std::log1p(-all_right);
 }
 
-// The share of right matches that a score shows: a right match counts about 0.88, if the motion is exact; it
-// is not, so that more samples are drawn than needed.
+// The share of inliers that a score indicates. Under the exact motion an inlier scores about 0.88. Hypotheses
+// are less exact, so that the share is too small and more samples than needed are drawn.
 double InlierShare(double score, int num_matches) { return score / (0.88 * num_matches); }
 
 class Rounds {
@@ -39,7 +39,7 @@ class Rounds {
   Rounds(const MatchBlocks& matches, const ScoreMatches& score_matches, double soft_scale, RandomStream& rng)
       : matches_(matches), scores_(score_matches), soft_scale_(soft_scale), rng_(rng) {}
 
-  // Draws until `num_samples` are drawn in all, scores their models.
+  // Draws until `num_samples` samples have been drawn in all, and scores their models.
   void Draw(int num_samples) {
     const int first_end = std::min(kFirstMatches, scores_.num_matches());
     fresh_.reserve(static_cast<size_t>(kModelsOfSample * std::max(num_samples - num_drawn_, 0)));
@@ -65,7 +65,7 @@ class Rounds {
   const LoopCounts& counts() const { return counts_; }
 
  private:
-  // The best of the fresh models on the rest of the matches.
+  // Scores the best of the fresh models on the rest of the matches.
   void ScoreBest(int first_end) {
     const size_t count = std::min(std::max(kLeastFullScores, fresh_.size() / 4), fresh_.size());
     std::partial_sort(
@@ -93,7 +93,7 @@ class Rounds {
   LoopCounts counts_;
 };
 
-// E of an F in whitened coordinates, Frobenius norm sqrt(2).
+// The E of an F in whitened coordinates, Frobenius norm sqrt(2).
 Eigen::Matrix3d EssentialFromWhitened(const double* F, const RayScale& scale) {
   Eigen::Matrix3d E;
   const double left[3] = {scale.x2, scale.y2, 1.0}, right[3] = {scale.x1, scale.y1, 1.0};
@@ -105,7 +105,8 @@ double Likeness(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return 0.5 * std::abs(a.cwiseProduct(b).sum());
 }
 
-// The best distinct ones, then those far from all that were taken.
+// Selects half of `count` as the best distinct ones, then fills up with those far from all selected, then
+// adds those near the prior.
 std::vector<ScoredEssential> SelectDistinct(const std::vector<RankedModel>& models, const RayScale& scale,
                                             size_t count, const MotionPrior* prior) {
   std::vector<const RankedModel*> order;

@@ -13,32 +13,34 @@
 
 namespace rcme {
 
-// Scale of the soft score in units of the assumed sigma. Little depends on it, so that a sigma assumed
-// wrongly by four does little harm.
+// Scale of the soft score in units of the assumed sigma. The results depend little on it, so that an assumed
+// sigma wrong by a factor of four does little harm.
 inline constexpr double kSoftScale = 2.5;
 
 struct ScoredEssential {
-  Eigen::Matrix3d E = Eigen::Matrix3d::Zero();  // in rays, Frobenius norm sqrt(2), up to its sign
-  double score = 0.0;                           // of all matches
+  Eigen::Matrix3d E = Eigen::Matrix3d::Zero();  // for rays, Frobenius norm sqrt(2), sign arbitrary
+  double score = 0.0;                           // sum over all matches
 };
 
 struct HypothesisSearch {
-  std::vector<ScoredEssential> candidates;  // the best first
+  std::vector<ScoredEssential> candidates;  // best first
   LoopCounts counts;
 };
 
-// Draws between options.min_samples and options.max_samples samples, in rounds that double: as many as give a
-// sample of right matches alone with probability 0.999. Every hypothesis is scored on the first kFirstMatches
-// matches, whose order must not mean anything, and the best of a round on all. Returned are the best
-// `options.num_candidates` distinct ones, half of them far from all others. Where a prior is given, half as
-// many more: the best that are near it (IsNearPrior), as the camera's motion may explain fewer matches than
-// another one. The samples are the same with it and without.
+// Draws between options.min_samples and options.max_samples minimal samples, in rounds that double their
+// number. Stops as soon as at least one sample consists of inliers with probability 0.999. Every hypothesis
+// is scored on the first 64 matches, whose order must be random; the best of a round are scored on all.
+//
+// Returns the best `options.num_candidates` distinct hypotheses; the second half of them also lie far from
+// all others. With a prior, returns half as many more: the best that are near it (IsNearPrior), because the
+// camera's motion may explain fewer matches than another one. The samples are the same with and without a
+// prior.
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
                                   const CalibratedOptions& options, RandomStream& rng,
                                   double soft_scale = kSoftScale, const MotionPrior* prior = nullptr);
 
-// Whether one of the poses of E is where the prior has the motion, as far as the motion of a minimal sample
-// shows that: it is off by some degrees.
+// Whether one of the poses of E agrees with the prior. The motion of a minimal sample is taken to be off by 3
+// deg in each coordinate.
 bool IsNearPrior(const MotionPrior& prior, const Eigen::Matrix3d& E);
 
 }  // namespace rcme

@@ -1,5 +1,5 @@
-// Step 3 of rcme_calibrated: one wrong match with a large apparent parallax may own a fit. For every match of
-// large influence, the fit without it is a mode of its own.
+// Step 3 of rcme_calibrated: one outlier with a large apparent parallax may determine a fit. So the fit
+// without a match of large leverage is a mode of its own.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,8 @@ namespace rcme {
 inline constexpr double kLargeLeverage = 0.25;
 inline constexpr size_t kMostBranches = 3;
 
-// The converged fits without the matches of leverage above kLargeLeverage: each of the kMostBranches largest,
-// then all of these together.
+// The converged fits without matches of leverage above kLargeLeverage: one fit without each of the
+// kMostBranches largest, then one without all of these.
 std::vector<Mode> LeverageBranches(const MatchBlocks& matches, const MixturePrior& prior, const Mode& mode,
                                    const Explanation& explanation);
 

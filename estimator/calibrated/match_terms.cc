@@ -9,7 +9,7 @@
 namespace rcme {
 namespace {
 
-// Variance of the angle between two rays, rad^2: the noise of both, about the mean of their focal lengths.
+// Variance of the angle between two rays, rad^2: the noise of both, averaged over fx and fy.
 double AngleVariance(const MotionProblem& problem) {
   double sum = 0.0;
   for (const Camera& camera : {problem.camera1, problem.camera2}) {
@@ -18,7 +18,7 @@ double AngleVariance(const MotionProblem& problem) {
   return 0.5 * sum;
 }
 
-// Of the parallax a x b its part within the epipolar plane of `ray`, rad.
+// The component of the parallax a x b within the epipolar plane of `ray`, rad.
 double ParallaxWithin(const Eigen::Vector3d& ray, const Eigen::Vector3d& t, const Eigen::Vector3d& a,
                       const Eigen::Vector3d& b) {
   return ray.cross(t).normalized().dot(a.cross(b)) / (a.norm() * b.norm());

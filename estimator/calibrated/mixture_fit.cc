@@ -7,15 +7,16 @@
 namespace rcme {
 namespace {
 
-// The assumed sigma counts as so many matches: enough that five matches, which every motion through them fits
-// exactly, do not drive the scale to zero; few enough that a sigma assumed wrongly by four does little harm.
+// Weight of the assumed sigma, in matches. With fewer, five matches, which every motion through them fits
+// exactly, would drive the scale to zero. With more, an assumed sigma wrong by a factor of four would do
+// harm.
 constexpr double kPriorMatches = 2.0;
 constexpr double kScaleRange = 8.0;  // s stays within this factor of 1
-// A step may lower the likelihood by so much, nats: c(z) is not in the gradient, and may fall for a match
-// near an epipole.
+// Tolerated decrease of the likelihood in a step, nats. The gradient does not include c(z), which may
+// decrease for a match near an epipole.
 constexpr double kTolerance = 1.0;
 constexpr double kNegligibleDecrement = 4e-4, kSmallDecrement = 1.0;  // twice the gain of a full step, nats
-constexpr double kPriorWrongNear = 5.0;  // wrong matches that the prior of q counts for
+constexpr double kPriorWrongNear = 5.0;  // weight of the prior of q, in outliers with small residuals
 
 // One step of expectation-maximisation. The motion takes five degrees of freedom of the residuals.
 MixtureParameters Updated(const MixtureParameters& old, const MixtureSums& sums, int num_used,
@@ -73,8 +74,8 @@ bool ModeFit::Step() {
   const MixtureSums there = SumPosterior(matches_, mode_->used, prior_, pose, mixture);
   if (!std::isfinite(there.log_likelihood)) return false;
   if (there.log_likelihood < at_.log_likelihood - kTolerance) {
-    // The motion's step or the mixture's? The density of wrong matches has no normalisation, so that its
-    // update may lower the likelihood.
+    // Was it the motion or the mixture? The density of outliers is not normalised, so that its update may
+    // lower the likelihood: keep the mixture and compare again.
     mode_->mixture = mixture;
     at_ = SumPosterior(matches_, mode_->used, prior_, mode_->pose, mode_->mixture);
     if (there.log_likelihood < at_.log_likelihood - kTolerance) {

@@ -1,6 +1,6 @@
-// Step 2 of rcme_calibrated: a motion and its mixture at the optimum of the likelihood, by
-// Levenberg-Marquardt steps of the motion between expectation-maximisation steps of the scale, the share and
-// the density of wrong matches.
+// Step 2 of rcme_calibrated: maximises the likelihood over the motion and the mixture. Levenberg-Marquardt
+// steps of the motion alternate with expectation-maximisation steps of the scale, the share and the density
+// of outliers.
 #pragma once
 
 #include <limits>
@@ -11,34 +11,37 @@
 
 namespace rcme {
 
-// What is known beside the matches.
+// Knowledge besides the matches.
 struct MixturePrior {
-  double uniform_density = 1e-3;  // 1 / L, L half the diagonal of image 2 in units of the assumed sigma
+  // 1 / L, where L is half the diagonal of image 2 in units of the assumed sigma
+  double uniform_density = 1e-3;
   bool estimates_scale = true;
-  const MotionPrior* motion = nullptr;  // null: nothing is known of the motion
+  const MotionPrior* motion = nullptr;  // null: no prior of the motion
 };
 
-// SumMixture of the matches, and what is known of the motion: log_likelihood, gradient and hessian have the
-// part of the motion's prior, where there is one.
+// SumMixture over the matches. If there is a prior of the motion, it is included in log_likelihood, gradient
+// and hessian.
 MixtureSums SumPosterior(const MatchBlocks& matches, const MatchMask& mask, const MixturePrior& prior,
                          const RelativePose& pose, const MixtureParameters& parameters);
 
-// What a fit may change beside the motion: what the prior says, or nothing.
+// Whether a fit changes the mixture, too (its scale only if MixturePrior::estimates_scale).
 enum class MixtureUpdate { kNone, kAll };
 
 MixtureParameters FirstGuess(const MixturePrior& prior, double scale, double inlier_ratio);
 
-// A fit step by step. The mode's motion and mixture follow; its likelihood and Hessian only with Finish.
+// A fit, step by step. Each step updates the motion and the mixture of the mode; only Finish updates its
+// likelihood and Hessian.
 class ModeFit {
  public:
   ModeFit(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode,
           MixtureUpdate update = MixtureUpdate::kAll);
-  // False: no further step can be taken, and the mode is not to be used.
+  // Returns false if no further step is possible; then the mode must not be used.
   bool Step();
-  // The last step was negligible: below 0.02 standard deviations of the motion and 0.2 % of the scale.
+  // Whether the last step was negligible: below 0.02 standard deviations of the motion and 0.2 % of the
+  // scale.
   bool is_converged() const { return is_converged_; }
-  // Whether the last step was below a standard deviation; a mode whose Hessian cannot be inverted does not
-  // converge.
+  // Returns whether the fit converged: the last step was below one standard deviation, and the Hessian can be
+  // inverted.
   bool Finish();
 
  private:
@@ -53,15 +56,16 @@ class ModeFit {
   bool is_converged_ = false;
 };
 
-// At most `max_steps` steps; fewer where one is negligible. Returns what Finish does.
+// Takes steps until one is negligible, at most `max_steps`. Returns false if a step fails, else what Finish
+// returns.
 bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,
              MixtureUpdate update = MixtureUpdate::kAll);
 
-// The share and the density of wrong matches among all matches, whichever the mode uses, at its motion and
-// scale.
+// Fits the share of inliers and the density of outliers at the mode's motion and scale, on all matches, used
+// by the mode or not.
 void FitShares(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode);
 
-// Of all matches under a motion that stays: the mixture after so many steps of expectation-maximisation.
+// The mixture of all matches under a fixed motion after `num_steps` steps of expectation-maximisation.
 MixtureParameters FitMixture(const MatchBlocks& matches, const MixturePrior& prior, const RelativePose& pose,
                              MixtureParameters start, int num_steps);
 

@@ -9,10 +9,11 @@
 namespace rcme {
 namespace {
 
-// Of the observed curvature over that without the residuals' second derivatives. Less is noise: there the
-// likelihood has no optimum along that direction.
+// Lower bound of the ratio of the observed curvature to that without the residuals' second derivatives. A
+// smaller ratio is noise: the likelihood has no optimum along that direction.
 constexpr double kLeastCurvature = 0.1;
-// Of ProbabilityWrong, which is twice too great for the many matches of a few percent.
+// Factor of ProbabilityWrong, which is twice too great for the many matches whose probability is a few
+// percent.
 constexpr double kDoubt = 0.5;
 constexpr double kFew = 30.0;
 
@@ -22,7 +23,7 @@ Vector5d ReadDerivative(const MatchTermLists& terms, size_t i) {
   return J;
 }
 
-// The least matrix that is as great as both along every direction in which they are compared.
+// The least matrix that is no smaller than a or b along any direction in which they are compared.
 Matrix5d ComputeLeastUpperBound(const Matrix5d& a, const Matrix5d& b) {
   const Eigen::LLT<Matrix5d> llt(b);
   if (llt.info() != Eigen::Success) return a;
@@ -34,9 +35,9 @@ Matrix5d ComputeLeastUpperBound(const Matrix5d& a, const Matrix5d& b) {
   return root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose();
 }
 
-// Along each principal axis of the covariance root root' times k / (k - 2), k the effective number of matches
-// that it rests on where these are fewer than kFew, else the degrees of freedom of the whole. By its root, so
-// that rounding does not make it indefinite.
+// Widens the covariance root root' along each principal axis by k / (k - 2). k is the effective number of
+// matches of the axis if that is below kFew, else the degrees of freedom of the whole. It works on the root,
+// so that rounding cannot make the result indefinite.
 Matrix5d WidenedForFew(const Matrix5d& root, const Matrix5d& inverse, const Mode& mode, const Explanation& e,
                        double freedom) {
   const Matrix5d axes =
@@ -106,8 +107,8 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
   const double freedom = std::max(num_right - 5.0, 1.0);
   const Matrix5d equal = sum_squares / freedom * geometry;
   scores = ComputeLeastUpperBound(scores, equal) + doubt;
-  // From a root of the middle: few matches leave a direction so uncertain that rounding would make the
-  // product indefinite.
+  // From a root of the middle factor: a few matches leave a direction so uncertain that rounding would make
+  // the product indefinite.
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(scores);
   const Matrix5d root =
       inverse * eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();

@@ -1,4 +1,4 @@
-// Step 8 of rcme_calibrated: the covariance of a mode.
+// Step 8 of rcme_calibrated: the covariance of a mode, 5x5 [rotation, direction], rad^2.
 #pragma once
 
 #include "estimator/calibrated/calibrated_options.h"
@@ -8,39 +8,44 @@
 
 namespace rcme {
 
-// H^-1, H the Hessian of the likelihood at the optimum by central differences of its gradient, a tenth of a
-// standard deviation either way. Where the parallax is small the noise seems to determine the direction
-// (observability.h); the residuals' second derivatives, which this Hessian has, take that away again. Of the
-// posterior where the motion has a prior: H has its part.
+// H^-1, where H is the Hessian of the likelihood at the optimum by central differences of its gradient, with
+// steps of a tenth of a standard deviation. With little parallax, noise seems to determine the direction
+// (observability.h). The second derivatives of the residuals, which this Hessian includes, correct this. With
+// a prior of the motion, H is the Hessian of the posterior.
 Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode, const MixturePrior& prior = {});
 
-// Along each column of `axes` (H^-1 times a unit vector), how many matches the variance rests on: (sum c)^2 /
-// sum c^2, c the part of it that a match has (Kish 1965).
+// For each column of `axes` (H^-1 times a unit vector), the number of matches on which the variance along
+// this axis rests: (sum c)^2 / sum c^2, where c is the contribution of a match (Kish 1965).
 Vector5d EffectiveMatches(const Mode& mode, const Explanation& explanation, const Matrix5d& axes);
 
-// H^-1 S H^-1 with S = sum (p psi / ((1 - h) s))^2 J'J, psi = v u: the residuals give their own variances,
-// and a residual with leverage h is smaller than its error by 1 - h (HC3, MacKinnon and White 1985). Where
-// along some direction the mean variance of all residuals gives a greater S, that one: few matches, that
-// decide, have a poor estimate of their own variance. Beside this what a match in doubt adds: that it is
-// wrong, with probability w (influence.h), moves the motion by H^-1 J' psi / ((1 - h) s) and takes its
-// information away, so that by the law of total variance S grows by w (psi^2 / (1 - h)^2 + p v / (1 - h)) /
-// s^2 J'J. Along each principal axis times k / (k - 2), as the variance is estimated: k the effective number
-// of matches of the axis where these are fewer than thirty, else the degrees of freedom. 5x5 [rotation,
-// direction], rad^2. The mode's inverse information where the result is not finite. Where the motion has a
-// prior this is what the noise of the matches makes of the covariance; PriorCovariance is the other part.
+// The sandwich H^-1 S H^-1. S is a sum over the matches, with psi = v u:
+// - S = sum (p psi / ((1 - h) s))^2 J'J. Each residual gives its own variance. A residual with leverage h is
+//   smaller than its error by a factor of 1 - h (HC3, MacKinnon and White 1985).
+// - Along a direction in which the mean variance of all residuals gives a greater S, S is that one: a few
+//   matches that decide a direction estimate their own variance poorly.
+// - A match is an outlier with probability w (influence.h). It would have moved the motion by H^-1 J' psi /
+//   ((1 - h) s), and without it its information is missing. By the law of total variance S grows by w (psi^2
+//   / (1 - h)^2 + p v / (1 - h)) / s^2 J'J.
+// - The variance along each principal axis is multiplied by k / (k - 2), because the variance is estimated. k
+//   is the effective number of matches of the axis if that is below thirty, else the degrees of freedom.
+//
+// Returns the mode's inverse information if the result is not finite. With a prior of the motion this is the
+// part of the covariance that the noise of the matches causes; PriorCovariance is the other part.
 Matrix5d SandwichCovariance(const Mode& mode, const Explanation& explanation,
                             const Matrix5d& inverse_of_observed);
 
-// What the noise of the prior's measurements adds: their score J' r (motion_prior.h) has the variance J' J,
-// as r is N(0, I), and moves the motion by H^-1 J' r, so that this is H^-1 J' J H^-1. Zero without a prior.
+// The part of the covariance that the noise of the prior's measurements causes. As r is N(0, I), their score
+// J' r (motion_prior.h) has the variance J' J and moves the motion by H^-1 J' r, so that this part is H^-1 J'
+// J H^-1. Zero without a prior.
 Matrix5d PriorCovariance(const Mode& mode, const MixturePrior& prior, const Matrix5d& inverse_of_observed);
 
-// Of a covariance of the optimum of the matches alone, of whatever kind, what it is of the optimum with the
-// prior: H^-1 (M C M + J' J) H^-1, M the information of the matches; the same without a prior.
+// Converts a covariance C of the optimum of the matches alone, of any kind, into that of the optimum with the
+// prior: H^-1 (M C M + J' J) H^-1, where M is the information of the matches. Unchanged without a prior.
 Matrix5d CovarianceWithPrior(const Matrix5d& covariance_of_matches, const Mode& mode,
                              const MixturePrior& prior);
 
-// What uncertain intrinsics add (uncertainty/calibration_prior.h), of the mixture's likelihood.
+// The covariance that uncertain intrinsics add (uncertainty/calibration_prior.h), by the mixture's
+// likelihood.
 Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,
                               const Mode& mode, const Matrix5d& inverse_of_observed);
 

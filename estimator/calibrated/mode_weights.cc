@@ -50,7 +50,8 @@ Matrix5d FindMatchInformation(const MotionPrior* prior, const Mode& mode) {
   if (prior == nullptr) return mode.hessian;
   const Matrix5d of_matches = mode.hessian - EvaluatePrior(*prior, mode.pose).hessian;
   if (Eigen::LLT<Matrix5d>(of_matches).info() == Eigen::Success) return of_matches;
-  // A difference of nearly equal ones: what the prior alone determines counts as hardly determined.
+  // The difference of nearly equal matrices may be indefinite. A direction that the prior alone determines
+  // gets a small positive information.
   constexpr double kLeastShare = 1e-9;
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(of_matches);
   const double least = kLeastShare * mode.hessian.trace();

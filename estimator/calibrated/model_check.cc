@@ -18,13 +18,14 @@ namespace {
 constexpr size_t kMostCompared = 128;
 constexpr double kCut = 3.0;            // of residuals, standard deviations
 constexpr double kPlaneBound = 4.0;     // standard deviations of a match
-constexpr double kApart = 0.5;          // of two displacements, per distance
+constexpr double kApart = 0.5;          // of two displacements, relative to the distance
 constexpr double kLeastDistance = 1.0;  // px; nearer ones are the same key point
-constexpr double kLeastKept = 0.05;     // of the information along a direction, without a block
+// share of the information along a direction that is kept without a block
+constexpr double kLeastKept = 0.05;
 
 double LogWithin(double x, double least, double most) { return std::log(std::clamp(x, least, most)); }
 
-// The matches that the answer explains, and the others, in their order.
+// The indices of the matches that the answer explains and of the others, in their order.
 struct Split {
   std::vector<size_t> right, wrong;
 };
@@ -35,8 +36,8 @@ Split SplitMatches(const Explanation& explanation) {
   return split;
 }
 
-// For each of the first kMostCompared of `some` the place of its nearest neighbour among them in image 1, at
-// least `least_px` away in both images; its own place where there is none. Every pair is looked at once.
+// The nearest neighbour in image 1 of each of the first kMostCompared of `some`, as an index into `some`; its
+// own index if it has none. Neighbours are at least `least_px` apart in both images.
 std::vector<size_t> NearestNeighbours(const MotionProblem& problem, const std::vector<size_t>& some,
                                       double least_px) {
   const size_t n = std::min(some.size(), kMostCompared);
@@ -111,7 +112,7 @@ double PlanarShare(const MotionProblem& problem, const Split& split, const Expla
   return num_near / static_cast<double>(n);
 }
 
-// det of the scatter of some matches' points in image 1, px^4.
+// Determinant of the scatter of some matches' points in image 1, px^4.
 double ScatterDeterminant(const MotionProblem& problem, const std::vector<size_t>& some) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const size_t i : some) mean += problem.matches[i].x1_px;
@@ -133,7 +134,7 @@ void CheckSpread(const MotionProblem& problem, const Split& split, ModelCheck* c
       std::clamp(0.25 * std::log(of_right / (ScatterDeterminant(problem, all) + 1.0)), -2.0, 1.0);
 }
 
-// Of the right matches in a block of image 1.
+// Sums over the right matches in a block of image 1.
 struct BlockSums {
   double num_matches = 0.0;
   Vector5d score = Vector5d::Zero();
@@ -178,8 +179,9 @@ Blocks SumBlocks(const MotionProblem& problem, const Split& split, const Explain
   return blocks;
 }
 
-// Of `per_side` x `per_side` blocks, 4 or 2 of them. With the information of all matches as the identity, a
-// block's score moves the motion by (1.05 I - A)^-1 s where it is left out: at most twenty times.
+// ln of the design effect of `per_side` x `per_side` blocks; per_side is 2 or 4. Scores and information are
+// whitened by the information of all matches. Leaving out a block with score s and information A moves the
+// motion by (1.05 I - A)^-1 s, so at most twenty times the score.
 double LogDesignEffect(const Blocks& blocks, int per_side) {
   std::array<BlockSums, kPerSide * kPerSide> joined;
   BlockSums all;

@@ -13,12 +13,12 @@
 namespace rcme {
 namespace {
 
-// The most likely component of the answer has so many directions, and of the rivals; others fewer by their
-// weight.
+// Number of directions for the most likely component of the answer, and for that of the rivals. Other
+// components get fewer, in proportion to their weight.
 constexpr size_t kDirections = 512, kDirectionsOfRival = 128, kLeastDirections = 16;
 constexpr size_t kPointsOfCells = 6000, kLeastOfCell = 4;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Of the radius: the points are at the medians of these parts.
+// Probabilities that divide the law of the radius; there is a point at the median of each part.
 constexpr std::array kRadiusLevels = {0.0,  0.05, 0.15, 0.25,  0.35, 0.45,  0.55,  0.65,   0.75,
                                       0.85, 0.9,  0.95, 0.975, 0.99, 0.997, 0.999, 0.9999, 1.0};
 constexpr size_t kRadii = kRadiusLevels.size() - 1;
@@ -35,8 +35,8 @@ std::array<RadiusPoint, kRadii> MakeRadii() {
   return radii;
 }
 
-// Normal vectors that fill space evenly: of an additive recurrence whose steps are powers of the root of
-// x^(d + 1) = x + 1, d the dimension, the generalised golden ratio.
+// Evenly spread normal vectors, from an additive recurrence. Its steps are powers of the root of x^(d + 1) =
+// x + 1 (the generalised golden ratio), d the dimension.
 template <int kSize, size_t kNumber>
 std::array<Eigen::Matrix<double, kSize, 1>, kNumber> MakeNormals() {
   double ratio = 2.0;
@@ -63,7 +63,7 @@ struct PosePoint {
   bool is_answer;
 };
 
-// `share`: its weight over the greatest of the answer's, or of the rivals'.
+// `share`: its weight relative to the greatest weight of the answer's components, or of the rivals.
 void AddPoints(const MotionComponent& component, double share, std::vector<PosePoint>* points) {
   static const auto normals = MakeNormals<5, kDirections>();
   static const std::array<RadiusPoint, kRadii> radii = MakeRadii();
@@ -78,7 +78,8 @@ void AddPoints(const MotionComponent& component, double share, std::vector<PoseP
   }
 }
 
-// At shares of the cell's area below the angle, and of its azimuths.
+// The direction in the cell that has the share `area` of the cell's area nearer to the centre and the share
+// `azimuth` of its azimuths below it.
 Eigen::Vector3d DirectionIn(const DirectionCell& cell, const Eigen::Vector3d& centre, double area,
                             double azimuth) {
   const Eigen::Vector3d u = centre.unitOrthogonal(), v = centre.cross(u);
@@ -88,8 +89,7 @@ Eigen::Vector3d DirectionIn(const DirectionCell& cell, const Eigen::Vector3d& ce
   return (cosine * centre + sine * (std::cos(turn) * u + std::sin(turn) * v)).normalized();
 }
 
-// A motion of the cell; the place, of independent normal numbers, is that in the area, the azimuth and the
-// rotation.
+// A motion of the cell. `place` holds independent normal numbers: for the area, the azimuth and the rotation.
 RelativePose MotionIn(const DirectionCell& cell, const Eigen::Matrix3d& root_of_rotation_cov,
                       const RelativePose& answer, const Vector5d& place) {
   const Eigen::Vector3d turn = cell.rotation + root_of_rotation_cov * place.tail<3>();
@@ -97,7 +97,7 @@ RelativePose MotionIn(const DirectionCell& cell, const Eigen::Matrix3d& root_of_
           DirectionIn(cell, answer.t, NormalCdf(place(0)), NormalCdf(place(1)))};
 }
 
-// `share`: its weight over that of all cells.
+// `share`: its weight relative to that of all cells.
 void AddPoints(const MotionPosterior& posterior, const DirectionCell& cell, double share,
                std::vector<PosePoint>* points) {
   static const auto places = MakeNormals<5, kPointsOfCells + kLeastOfCell>();
@@ -108,7 +108,7 @@ void AddPoints(const MotionPosterior& posterior, const DirectionCell& cell, doub
         {MotionIn(cell, root, posterior.answer, places[k]), cell.weight / static_cast<double>(number), true});
 }
 
-// How many there are of each part depends on shares alone, not on the weight of the whole.
+// The number of points of a component or cell depends on its share alone, not on its absolute weight.
 std::vector<PosePoint> MakePosePoints(const MotionPosterior& posterior) {
   std::vector<PosePoint> points;
   double greatest[2] = {0.0, 0.0}, of_cells = 0.0;
@@ -144,7 +144,7 @@ double SumWeight(bool is_answer, const MotionPosterior& posterior) {
   return weight;
 }
 
-// With a weight of one of the answer in all.
+// Narrows the answer by `factor` and scales its weights to a sum of one.
 MotionPosterior Narrowed(MotionPosterior posterior, double factor, const MotionBounds& bounds) {
   posterior.narrowed = factor;
   for (MotionComponent& component : posterior.components)
@@ -164,7 +164,7 @@ double BeyondOfAnswer(MotionPosterior posterior, const MotionBounds& bounds) {
   return PosteriorDistances(posterior, posterior.answer).ComputeBeyond(true, bounds);
 }
 
-// The widest of whose answer no more than `most` lies beyond the bounds.
+// The widest posterior whose answer has no more than the mass `most` beyond the bounds.
 MotionPosterior NarrowedTo(double most, const MotionPosterior& posterior, const MotionBounds& bounds) {
   constexpr int kHalvings = 12;
   MotionPosterior within = Narrowed(posterior, 1.0, bounds);
@@ -181,8 +181,8 @@ MotionPosterior NarrowedTo(double most, const MotionPosterior& posterior, const 
   return within;
 }
 
-// The next of Weiszfeld's steps: from `steps` to the points, the mean of those by the inverse of their
-// lengths.
+// A step of Weiszfeld's iteration: the mean of `steps`, which lead to the points, weighted by weight over
+// length.
 template <typename Steps>
 auto MedianStep(const Steps& steps, const std::vector<PosePoint>& points) {
   typename Steps::value_type sum = Steps::value_type::Zero();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr size_t kMostExplained = 64, kMostPartners = 128;
 
-// Of matches, in their order.
+// One entry per match.
 struct Cosines {
   std::vector<double> a, b;
 };
@@ -30,8 +30,8 @@ Cosines ComputeCosines(const MotionProblem& problem, const RelativePose& pose, s
 
 double Sign(double x) { return static_cast<double>(x > 0.0) - static_cast<double>(x < 0.0); }
 
-// At b_k, the a_j of the matches that could have had it, a_j < b_k <= b_j, are in a random order, so that the
-// sum of the signs of a_j - a_k has the variance of a uniform rank.
+// At b_k, consider the matches that could have had it: a_j < b_k <= b_j. Their a_j are in a random order, so
+// that the sum of the signs of a_j - a_k has the variance of a uniform rank.
 double TestOrder(const Cosines& c) {
   double sum = 0.0, variance = 0.0;
   for (size_t k = 0; k < c.a.size(); ++k) {
@@ -47,8 +47,8 @@ double TestOrder(const Cosines& c) {
   return variance > 0.0 ? sum / std::sqrt(variance) : 0.0;
 }
 
-// Among the partners, b of any match in ascending order, that are greater than a_i, b_i has a uniform rank;
-// equal ones share theirs.
+// `partners` holds the b of all matches in ascending order. Among those greater than a_i, b_i has a uniform
+// rank; equal ones share theirs.
 double TestRank(const Cosines& c, const std::vector<double>& partners) {
   double sum = 0.0, variance = 0.0;
   for (size_t i = 0; i < c.a.size(); ++i) {

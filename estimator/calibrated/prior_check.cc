@@ -5,7 +5,7 @@
 namespace rcme {
 namespace {
 
-constexpr double kNotableWeight = 1e-4;  // of a motion that the matches leave
+constexpr double kNotableWeight = 1e-4;  // of a motion according to the matches
 
 }  // namespace
 

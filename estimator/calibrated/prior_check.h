@@ -1,20 +1,20 @@
-// Whether a prior of the motion (motion_prior.h) can be right, given the matches.
+// Tests whether a prior of the motion (motion_prior.h) is compatible with the matches.
 //
-// The matches alone may leave several motions, and it is the prior's part to choose among them: a prior that
-// is far from the most likely one is wrong only if it is as far from all the others that they leave. So the
-// answer of the matches alone gives a list of motions, and the prior's p value is the greatest of
+// The matches alone may leave several motions, among which the prior is to choose. A prior far from the most
+// likely motion is wrong only if it is as far from all others. So the answer of the matches alone gives a
+// list of motions, and the prior's p value is the greatest of
 //
 //   P(chi-square > d^2),   d^2 = r' (I + J C J')^-1 r   (ComputePriorTail)
 //
-// over those that have a notable weight; C is the covariance of the motion by the matches. Of a right prior,
-// where the camera's motion is among them and C is right, the p value is below a level with at most the
-// probability of that level.
+// over those with a notable weight; C is the covariance of the motion by the matches. If the prior and C are
+// right and the list contains the camera's motion, the p value is below a level with at most the probability
+// of that level.
 //
-// The level is 1e-3. A false alarm costs what the prior would have added: the answer is then that of the
-// matches alone, no worse than without a prior, so that one in a thousand is cheap. A wrong prior that goes
-// unnoticed is within about four standard deviations of both (chi-square of 16.3 with three degrees of
-// freedom), and the answer's covariance has that distance in its tails. Where the matches leave much open, C
-// is large, and the prior cannot be contradicted by them.
+// The level is 1e-3. After a false alarm the answer is that of the matches alone, no worse than without a
+// prior. This cost is small enough for one in a thousand. A wrong prior that is not detected is within about
+// four standard deviations of prior and matches combined (chi-square of 16.3 with three degrees of freedom),
+// so that the covariance of the answer has that distance in its tails. If the matches leave much open, C is
+// large, and they cannot contradict the prior.
 #pragma once
 
 #include <span>
@@ -25,14 +25,14 @@ namespace rcme {
 
 inline constexpr double kPriorLevel = 1e-3;
 
-// A motion by the matches alone.
+// A motion that the matches alone suggest.
 struct MotionBelief {
   RelativePose pose;
   Matrix5d covariance = Matrix5d::Zero();  // [rotation, direction], rad^2
   double weight = 0.0;
 };
 
-// The p value of the header; 1 without a motion of notable weight.
+// The p value above; 1 if no motion has a notable weight.
 double ComputePriorPValue(const MotionPrior& prior, std::span<const MotionBelief> beliefs);
 
 }  // namespace rcme

@@ -6,8 +6,8 @@ namespace {
 constexpr double kLowParallax = 6.0, kSettled = 0.8;
 constexpr int kDirectionSteps = 15;
 
-// The mode at its optimum from the most likely direction; nothing where it explains no more matches than any
-// motion through them.
+// The mode at the optimum reached from the most likely direction; nullopt if it explains no more than five
+// matches, which any motion through them explains.
 std::optional<ExplainedMode> MovedTo(const MatchBlocks& matches, const MixturePrior& prior, Mode mode) {
   if (!FitMode(matches, prior, kDirectionSteps, &mode)) return std::nullopt;
   ExplainedMode moved{mode, Explain(matches, mode)};

@@ -13,9 +13,10 @@ namespace rcme {
 namespace {
 
 constexpr int kSplitSteps = 15, kSplitShareSteps = 6, kSplitSamples = 512, kCandidates = 8;
-constexpr double kTightScale = 1.5;   // of the soft score, in units of the assumed sigma
-constexpr double kWideScale = 1.15;   // of the noise level of one motion: it may be a compromise between two
-constexpr size_t kLeastMatches = 12;  // of a second motion
+constexpr double kTightScale = 1.5;  // of the soft score, in units of the assumed sigma
+// relative to one motion's noise level; above, a mode may be a compromise
+constexpr double kWideScale = 1.15;
+constexpr size_t kLeastMatches = 12;  // of the second motion
 constexpr double kLeastSplitGain =
     40.0;  // nats: the search for the second motion, its five parameters, a margin
 
@@ -33,8 +34,8 @@ void Leave(const std::vector<size_t>& only, MatchMask* mask) {
   for (const size_t i : only) (*mask)[i / kBlockSize] |= static_cast<std::uint8_t>(1u << (i % kBlockSize));
 }
 
-// The best motion of some of the matches at the assumed scale. Neither the samples are ranked nor the
-// candidates refined at a wider one, where a compromise between two motions would win.
+// The best motion of some of the matches at the assumed scale. Samples are ranked and candidates refined at
+// this scale, too: at a wider one, a compromise between two motions would win.
 std::optional<Mode> SearchMotion(const MotionProblem& problem, const MatchBlocks& matches,
                                  const MixturePrior& fixed, const std::vector<size_t>& some,
                                  RandomStream& rng) {
@@ -61,7 +62,8 @@ struct TwoMotions {
   std::vector<size_t> not_of_first, not_of_second;  // matches that the other explains better
 };
 
-// Both with shares of their own, by expectation-maximisation, beside wrong matches of density q.
+// The mixture of both motions, each with its own share by expectation-maximisation, and of outliers of
+// density q.
 TwoMotions Mix(const Explanation& a, const Explanation& b, double q) {
   const size_t n = a.inlier_density.size();
   double share_a = 0.4, share_b = 0.3;

@@ -1,5 +1,5 @@
-// Step 2 of rcme_calibrated: a mode with a noise level far above the assumed one may be a compromise between
-// two motions, the camera's and that of an object, and explain the matches of both.
+// Step 2 of rcme_calibrated: splits a mode that explains the matches of two motions, the camera's and that of
+// an object. Such a compromise shows by a noise level far above the assumed one.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@
 
 namespace rcme {
 
-// Two motions at the assumed noise level, if a mixture of both is more likely than `mode` alone: the first
-// from samples of all matches, the second from samples of those that the first does not explain. Each is at
-// its optimum by the matches that the other does not explain better.
+// Two motions at the assumed noise level, if their mixture is clearly more likely than `mode` alone. The
+// first comes from samples of all matches, the second from samples of those that the first does not explain.
+// Each is at its optimum on the matches that the other does not explain better.
 std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, const MatchBlocks& matches,
                                                const MixturePrior& prior, const Mode& mode,
                                                RandomStream& rng);
 
-// Where the most likely of the modes, the first, has more than 1.15 times the assumed noise level and can be
-// split: the two motions in place of all modes that are as much noisier than these.
+// If the first mode, the most likely one, has more than 1.15 times the assumed noise level and can be split:
+// adds the two motions, and removes all modes whose noise level exceeds theirs by the same factor.
 void SplitCompromise(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
                      std::vector<Mode>* modes, RandomStream& rng);
 

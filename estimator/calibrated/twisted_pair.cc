@@ -12,8 +12,8 @@ namespace rcme {
 namespace {
 
 constexpr int kRefits = 5;
-constexpr size_t kMostSamples = 128;  // matches that the plane is sought in; their order means nothing
-// Standard deviations of the parallax within which a match is of the plane.
+constexpr size_t kMostSamples = 128;  // first matches that the plane is fitted to; their order must be random
+// Standard deviations of the parallax within which a match belongs to the plane.
 constexpr double kTwistPlaneBound = 3.0;
 
 struct DepthSample {
@@ -21,8 +21,7 @@ struct DepthSample {
   double inverse_depth, sd, weight;  // the weight is the probability that the match is right
 };
 
-// d ray2 / d rho of a point at ray1 and inverse depth rho, by differences of the projection: its length is
-// the parallax of one baseline at unit depth.
+// |d ray2 / d rho| of a point at ray1 and inverse depth rho: the parallax of one baseline at unit depth.
 double ParallaxPerInverseDepth(const RelativePose& pose, const Eigen::Vector3d& ray1) {
   const Eigen::Vector3d a = pose.R * ray1;
   return a.cross(pose.t).norm() / a.squaredNorm();
@@ -90,14 +89,15 @@ std::optional<RelativePose> OtherMotionOfPlane(const RelativePose& pose, const E
   std::optional<RelativePose> other;
   double furthest = 0.0;
   for (const double sign : {1.0, -1.0}) {
-    const Eigen::Vector3d u = a * v1 + sign * b * v3;  // kept in length by H
+    const Eigen::Vector3d u = a * v1 + sign * b * v3;  // H keeps its length
     Eigen::Matrix3d U, W;
     U << v2, u, v2.cross(u);
     W << H * v2, H * u, (H * v2).cross(H * u);
     const Eigen::Matrix3d R = W * U.transpose();
     const Eigen::Vector3d normal = v2.cross(u);
     Eigen::Vector3d t = (H - R) * normal;
-    // The plane is n with t n' = H - R, in front of camera 1 as the given one: n is normal or -normal.
+    // The plane n has t n' = H - R and lies in front of camera 1, as the given one does: n is normal or
+    // -normal.
     if (normal.dot(plane) < 0.0) t = -t;
     if (!(t.norm() > 1e-9)) continue;
     const RelativePose found{R, t.normalized()};

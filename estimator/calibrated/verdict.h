@@ -1,4 +1,4 @@
-// What follows from the weights of the modes and the check of their model.
+// The result of the modes' weights and the model check.
 #pragma once
 
 #include "estimator/calibrated/weigh_modes.h"
@@ -6,14 +6,14 @@
 namespace rcme {
 
 struct Verdict {
-  double by_modes = 1.0;             // the probability of failure by the modes alone
-  double failure_probability = 1.0;  // and with the check of their model
-  double mass_beyond = 0.0;          // of the modes within the bounds: what of them lies beyond
+  double by_modes = 1.0;             // probability of failure according to the modes alone
+  double failure_probability = 1.0;  // after the model check
+  double mass_beyond = 0.0;          // weight of the modes within the bounds that lies beyond them
   Matrix5d pose_cov = Matrix5d::Zero();
 };
 
-// The weights after the check: what it adds to the probability of failure is weight of no mode; what it takes
-// away is taken from the rivals and given to the others.
+// Applies the check to the weights. A probability of failure that it adds becomes weight of no motion. One
+// that it removes is taken from the rivals and from no motion, and given to the other modes.
 ModeWeights ReweighModes(ModeWeights weights, const Verdict& verdict);
 
 }  // namespace rcme

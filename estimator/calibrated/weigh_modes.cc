@@ -9,8 +9,8 @@
 namespace rcme {
 namespace {
 
-// Of the information in units of the mode's own noise: how well the geometry of its matches determines the
-// motion.
+// log det of the information without the scale of the mode's noise: how well the geometry of its matches
+// determines the motion.
 double LogDetGeometry(const Mode& mode, const MotionPrior* prior) {
   const Eigen::LLT<Matrix5d> llt(mode.mixture.scale * mode.mixture.scale * FindMatchInformation(prior, mode));
   return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
@@ -55,8 +55,8 @@ class ModeComparison {
 
 constexpr size_t kWeighingRounds = 3;
 
-// Odds of three modes need not be transitive: gone through until no mode is more likely than the answer, at
-// most three times.
+// Passes over the modes until none is more likely than the answer. There are at most three passes, because
+// the odds of three modes need not be transitive.
 size_t ChooseAnswer(const std::vector<ExplainedMode>& modes, const ModeComparison& comparison) {
   size_t answer = 0;
   for (size_t round = 0, num_beaten = 0; round < kWeighingRounds && num_beaten + 1 < modes.size(); ++round) {
@@ -75,12 +75,12 @@ size_t ChooseAnswer(const std::vector<ExplainedMode>& modes, const ModeCompariso
 }
 
 constexpr double kRivalExponent = 2.5;
-// Of no motion against the answer: where the evidence is against a motion altogether, among ten to thirty
-// matches one in five answers was right all the same.
+// Upper bound of the log-odds of no motion against the answer: even with evidence against any motion, one in
+// five answers from ten to thirty matches was right.
 constexpr double kGreatestNoneLogOdds = 2.0;
 
 // Scales the odds of the modes within the bounds around the answer to a sum of one, and those of its rivals
-// to their norm.
+// to their norm with exponent kRivalExponent.
 void ScaleOdds(const std::vector<bool>& is_rival, std::vector<double>* odds) {
   double same = 0.0, rivals = 0.0, powers = 0.0;
   for (size_t i = 0; i < odds->size(); ++i) {

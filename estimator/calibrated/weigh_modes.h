@@ -1,5 +1,5 @@
-// Steps 5 and 6 of rcme_calibrated: which mode is the answer, and how likely each is to be the camera's
-// motion.
+// Steps 5 and 6 of rcme_calibrated: chooses the answer among the modes, and computes how likely each is to be
+// the camera's motion.
 #pragma once
 
 #include <array>
@@ -15,34 +15,35 @@ namespace rcme {
 struct ModeWeights {
   size_t answer = 0;
   std::vector<double> of_modes;        // probability of each; with of_no_motion they sum to one
-  double of_no_motion = 0.0;           // that the matches are wrong altogether
+  double of_no_motion = 0.0;           // that all matches are outliers
   std::vector<bool> is_rival;          // beyond the bounds around the answer
   std::vector<bool> is_second_motion;  // explains many matches that the answer does not; its odds are a prior
 };
 
-// The answer is the mode that no other one is more likely than, by ModeLogOdds or, of two motions of their
-// own (IsSecondMotion), by the number of matches that either explains better; begun at the greatest
-// likelihood. Modes within `bounds` of it are the same motion found more than once: together they weigh as
-// much as it. The others are alike among themselves, too, so that their odds add up to less than their sum:
-// to (sum odds^2.5)^(1/2.5), the exponent from a regression of failure on all rivals of an answer. A prior of
-// the motion adds what it says of each mode (ComputePriorEvidence) to its log-odds, and takes what it says of
-// the answer from those of no motion, of which its measurements would know nothing.
+// The answer is the mode against which no other one has positive log-odds, by ModeLogOdds. Two motions of
+// their own (IsSecondMotion) are compared by the number of matches that either explains better. The search
+// starts at modes[0].
+//
+// Modes within `bounds` of the answer are the same motion found more than once: together they have the weight
+// of one. Rivals resemble each other, too, so that their odds add up to less than their sum: to (sum
+// odds^2.5)^(1/2.5). The exponent comes from a regression of failure on all rivals of an answer. A prior of
+// the motion adds its evidence for each mode (ComputePriorEvidence) to the mode's log-odds. Its evidence for
+// the answer also lowers the odds of no motion, because without a motion its measurements would be unrelated.
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
                        const MixturePrior& prior, const CalibratedOptions& options);
 
-// For each mode whether it is beyond the bounds around the answer: anew where that has moved since the modes
-// were weighed.
+// For each mode, whether it is beyond the bounds around the answer. Call it again after the answer has moved.
 std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t answer,
                              const MotionBounds& bounds);
 
-// Two modes, and what speaks for the first (ComputeModeTerms).
+// Two modes, and the evidence for the first (ComputeModeTerms).
 struct ModePair {
   size_t a = 0, b = 0;
   std::array<double, kNumModeTerms> terms{};
-  bool is_second_motion = false;  // motions of their own, of which the terms do not decide
+  bool is_second_motion = false;  // two motions, whose odds do not depend on the terms
 };
 
-// Every two of the modes once, a < b.
+// All pairs of modes with a < b.
 std::vector<ModePair> ListModePairs(const std::vector<ExplainedMode>& modes);
 
 }  // namespace rcme
