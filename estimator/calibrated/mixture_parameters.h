@@ -12,8 +12,8 @@
 //
 // Match i may be given as w_i times as noisy as the others (MotionProblem::noise_scale). Its residual and its
 // z are then w_i times as noisy, too: an inlier has r ~ w f(r / (w_i s)) c(z / (w_i s)) / (w_i s). An outlier
-// keeps the density q, which does not depend on the precision of key points. With r' = r / w_i and z' = z /
-// w_i, and a factor dr / dr' = w_i for each density,
+// keeps the density q, which does not depend on the precision of key points. With r' = r / w_i and
+// z' = z / w_i, and a factor dr / dr' = w_i for each density,
 //
 //   p(r', z') = w f(r' / s) c(z' / s) / s + (1 - w) q w_i
 //

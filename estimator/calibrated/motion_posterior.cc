@@ -35,8 +35,8 @@ std::array<RadiusPoint, kRadii> MakeRadii() {
   return radii;
 }
 
-// Evenly spread normal vectors, from an additive recurrence. Its steps are powers of the root of x^(d + 1) =
-// x + 1 (the generalised golden ratio), d the dimension.
+// Evenly spread normal vectors, from an additive recurrence. Its steps are powers of the root of
+// x^(d + 1) = x + 1 (the generalised golden ratio), d the dimension.
 template <int kSize, size_t kNumber>
 std::array<Eigen::Matrix<double, kSize, 1>, kNumber> MakeNormals() {
   double ratio = 2.0;

@@ -11,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Behind a camera, with a parallax that is too large to be noise around a point at infinity (6 sigma).
+// Matches behind a camera whose parallax is too large to be the noise of a point at infinity (6 sigma).
 HWY_INLINE Mask AreClearlyBehind(const TwoViewPose& pose, const RayScale& scale, const Matches& matches,
                                  Vec noise2) {
   const Sides sides = EvaluateSides(pose, scale, matches);
@@ -24,7 +24,7 @@ HWY_INLINE Mask AreClearlyBehind(const TwoViewPose& pose, const RayScale& scale,
   return hn::AndNot(are_in_front, hn::Or(y.z <= Set(0.0), is_far));
 }
 
-// Squares of how noisy the matches are beside the others.
+// Squared noise_scale of the matches.
 HWY_INLINE Vec LoadSquaredNoise(const MatchBlocks& matches, int block, int lane) {
   if (matches.noise_scales().empty()) return Set(1.0);
   return Square(Load(matches.noise_scales()[static_cast<size_t>(block)].scale + lane));

@@ -11,15 +11,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Share of the box that the band around the lines of the first points (x, y) takes, as AreaOfBand of
-// motion_chance.cc has it.
+// Share of the box covered by the band around the epipolar line of each first point (x, y), as AreaOfBand of
+// motion_chance.cc.
 HWY_INLINE Vec ShareOfBox(const double* F, const Box& box, double threshold, Vec x, Vec y) {
   const auto f = [&](int i) { return Set(F[i]); };
   const auto line = [&](int i) { return FusedMulAdd(f(i), x, FusedMulAdd(f(i + 1), y, f(i + 2))); };
   const Vec lx = line(0), ly = line(3), lz = line(6);
   const Vec norm2 = FusedMulAdd(lx, lx, ly * ly), inverse = Set(1.0) / norm2, to_foot = hn::Neg(lz * inverse);
   const Vec foot[] = {lx * to_foot, ly * to_foot}, along[] = {hn::Neg(ly), lx};
-  Vec from = Set(0.0), to = Set(0.0);  // of the chord, foot + from * along
+  Vec from = Set(0.0), to = Set(0.0);  // ends of the chord, as foot + from * along
   for (int axis = 0; axis < 2; ++axis) {
     const Vec per_step = Set(1.0) / along[axis];
     const Vec a = (Set(box.low[axis]) - foot[axis]) * per_step,
@@ -37,7 +37,7 @@ HWY_INLINE Vec ShareOfBox(const double* F, const Box& box, double threshold, Vec
   const Vec widths = FusedMulAdd(Set(4.0), width(Set(0.5) * (from + to)), width(from) + width(to));
   const Vec area = widths * Set(1.0 / 6.0) * (to - from) * hn::Sqrt(norm2);
   const Vec share = hn::IfThenElseZero(from < to, Lesser(area * Set(1.0 / box.Area()), Set(1.0)));
-  return hn::IfThenElse(norm2 > Set(0.0), share, Set(1.0));  // else the epipole: any point agrees
+  return hn::IfThenElse(norm2 > Set(0.0), share, Set(1.0));  // x1 is the epipole: every point agrees
 }
 
 double SumShares(const double* F, const Box& box, double threshold, const double* x, const double* y,

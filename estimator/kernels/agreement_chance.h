@@ -1,4 +1,4 @@
-// The many-at-a-time twin of ChanceOfAgreement (motion_chance.h).
+// ChanceOfAgreement (motion_chance.h) for many matches at a time.
 #pragma once
 
 #include "estimator/geometry/pose.h"
@@ -7,7 +7,7 @@
 
 namespace rcme {
 
-// `box`: that of the second points.
+// `box`: the bounding box of the second points.
 double ChanceOfAgreement(const MatchBlocks& matches, const RelativePose& pose, const Box& box,
                          double threshold);
 

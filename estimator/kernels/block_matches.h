@@ -8,7 +8,7 @@
 
 namespace rcme {
 
-// Sets of matches as bits, looked at many at a time; see refine_winner.h. The same decisions as
+// Sets of matches as bits, many matches at a time; see refine_winner.h. Makes the same decisions as
 // ReferenceMatches, to rounding.
 class BlockMatches {
  public:

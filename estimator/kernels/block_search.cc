@@ -36,7 +36,8 @@ BlockSearch<Solver>::BlockSearch(const MotionProblem& problem, const MatchBlocks
   const TestDof dof = DegreesOfFreedom(tests.reading, Solver::kSampleTestDof);
   thresholds_ = Thresholds::For(problem, options, dof.point, dof.sample);
   tests_.tests_sample = tests.tests_sample && Solver::kSampleTestDof > 0;
-  // As printed, h is of a 4-dimensional density in px: 1/2 log((2 pi e)^4 det), det in px^8 (eq. 15).
+  // As printed, h is the entropy of a 4-dimensional density in px: 1/2 log((2 pi e)^4 det), det in px^8
+  // (eq. 15).
   if (tests.reading == BlockReading::kAsPrinted) {
     entropy_offset_ = AsPrintedTest::EntropyOfLogDeterminant(8.0 * std::log(problem.sigma_px));
   }

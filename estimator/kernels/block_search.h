@@ -1,5 +1,5 @@
-// The parts of the hypothesis loop, eight hypotheses and many matches at a time. The same samples, verdicts
-// and scores as reference_search.h, to rounding. For the solvers of block_source.h.
+// The parts of the hypothesis loop, for eight hypotheses and many matches at a time. Gives the same samples,
+// verdicts and scores as reference_search.h, to rounding, for the solvers of block_source.h.
 #pragma once
 
 #include <optional>
@@ -12,11 +12,11 @@
 
 namespace rcme {
 
-// What a decision's PointTest and kTestsSample ask for.
+// The tests that a decision asks for by its PointTest and kTestsSample.
 enum class BlockReading { kKnownPose, kAsPrinted, kRankAware };
 struct BlockTests {
   BlockReading reading = BlockReading::kKnownPose;
-  bool tests_sample = false;  // as far as the solver's sample can be tested
+  bool tests_sample = false;  // only if the solver's sample can be tested
   bool needs_likelihood = false;
 };
 
@@ -30,14 +30,15 @@ class BlockSearch {
   Proposal Next();
   InlierScore Score();
 
-  // The model of a hypothesis in the arithmetic of the reference: what follows the loop goes on from it.
+  // The model of a hypothesis in the arithmetic of the reference, from which the steps after the loop
+  // continue.
   std::optional<Hypothesis<Solver>> FindHypothesis(const HypothesisId& id);
   // The inliers of a hypothesis.
   const MatchMask& FindSupport(const HypothesisId& id);
 
  private:
   RequestedOutputs OutputsOfModels() const;
-  std::uint8_t FindConsistent() const;  // lanes of the block whose sample agrees with its model
+  std::uint8_t FindConsistent() const;  // bits of the hypotheses whose sample agrees with its model
   // The score without the matches `left_out`.
   InlierScore ScoreLane(int lane, const Sample& left_out);
 
@@ -45,13 +46,13 @@ class BlockSearch {
   const MatchBlocks& matches_;
   BlockTests tests_;
   Thresholds thresholds_;
-  double entropy_offset_ = 0.0;  // of h = log(spread) / 2 + offset
+  double entropy_offset_ = 0.0;  // in h = log(spread) / 2 + offset
   RandomStream& rng_;
   BlockSource<Solver> source_;
   ProposalBlock proposals_{};
   HypothesisBlock block_;
   std::uint8_t is_consistent_ = 0;
-  int lane_ = kBlockSize - 1;  // of the last proposal
+  int lane_ = kBlockSize - 1;  // lane of the last proposal
   InlierScan scan_;
 };
 

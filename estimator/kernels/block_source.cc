@@ -57,7 +57,7 @@ void BlockSource<FivePoint>::SolveOne(const MatchBlocks& matches, const Sample& 
   model_ = CountModels(place_);
 }
 
-// Of a sample without a model, to the place where it would be.
+// A sample without a model takes one step, too.
 void BlockSource<FivePoint>::AdvanceToNextModel(const MatchBlocks& matches, RandomStream& rng) {
   if (++model_ < CountModels(place_)) return;
   model_ = 0;

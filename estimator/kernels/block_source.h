@@ -1,18 +1,19 @@
-// Where the fast search gets its hypotheses from, eight at a time: one specialisation per minimal solver that
-// has a fast implementation.
+// The source of hypotheses of the fast search, eight at a time. Each minimal solver with a fast
+// implementation has a specialisation:
 //
 //   template <> class BlockSource<Solver> {
-//     // Fills the block with the next eight hypotheses in the order of reference_search.h: the sample, F and
-//     // what `outputs` asks for, and a bit of is_model for each that is a model. Their ids, and whether each
-//     // is the last of its sample, go to `proposals`.
+//     // Fills the block with the next eight hypotheses in the order of reference_search.h: the sample, F,
+//     // the numbers that `outputs` requests, and a bit of is_model for each that is a model. Writes their
+//     // ids to `proposals`, and whether each is the last of its sample.
 //     void FillNext(matches, outputs, rng, block, proposals);
 //     // Puts one hypothesis into the first lane.
 //     void FillFirst(matches, outputs, id, block);
-//     // The model of a hypothesis in the arithmetic of the reference: what follows the loop goes on from it.
+//     // The model of a hypothesis in the arithmetic of the reference, from which the steps after the loop
+//     // continue.
 //     std::optional<Hypothesis<Solver>> FindHypothesis(problem, matches, id);
 //   };
 //
-// After FillFirst and FindHypothesis the models that were not passed on yet are gone.
+// FillFirst and FindHypothesis discard the models that FillNext has not passed on yet.
 #pragma once
 
 #include <array>
@@ -48,11 +49,11 @@ class BlockSource<EightPoint> {
   std::array<Sample, kBlockSize> samples_{};
 };
 
-// Eight samples at a time are solved; their models, 4.6 a sample on average, pass on in blocks of eight.
+// Solves eight samples at a time. Their models, 4.6 per sample on average, are passed on in blocks of eight.
 //
 // The models of a sample are numbered as those of FivePoint, in descending order of |E_33|. The block solver
-// misses some solutions that nearly coincide (five_point_block.h), so that the numbers of the others may
-// differ from the reference's.
+// misses some solutions that nearly coincide (five_point_block.h), so that the remaining models may have
+// other numbers than in the reference.
 template <>
 class BlockSource<FivePoint> {
  public:
@@ -75,7 +76,7 @@ class BlockSource<FivePoint> {
   std::array<Sample, kBlockSize> samples_{};
   FivePointModels models_{};
   std::array<int, FivePointModels::kCapacity> order_{};  // the numbers in models_, sample by sample
-  size_t place_ = kBlockSize - 1;                        // of the model last passed on
+  size_t place_ = kBlockSize - 1;                        // sample of the last model passed on
   int model_ = 0;
   EssentialBlock essentials_{};
 };

@@ -1,8 +1,8 @@
-// On which side of the cameras the triangulated points lie; see geometry/triangulation.h for the scalar twin.
+// The side of the cameras on which triangulated points lie; see geometry/triangulation.h for the scalar twin.
 //
-// With y = R ray1, the point is y + rho t times the depth, rho = w / q the inverse depth in baselines,
-// w = -(ray2 x y)'(ray2 x t), q = |ray2 x t|^2. Only signs are needed, so nothing is divided: rho > 0 is w >
-// 0, and the depth in camera 2 has the sign of q y_z + w t_z. Turning t over turns w over, and leaves the
+// With y = R ray1, the point is (y + rho t) times the depth. The inverse depth in baselines is rho = w / q
+// with w = -(ray2 x y)'(ray2 x t), q = |ray2 x t|^2. Only signs are needed, so there is no division: rho > 0
+// if w > 0, and the depth in camera 2 has the sign of q y_z + w t_z. Reversing t reverses w and keeps this
 // depth.
 #if defined(RCME_ESTIMATOR_KERNELS_CHEIRALITY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_CHEIRALITY_INL_H_
@@ -19,7 +19,7 @@ namespace rcme::HWY_NAMESPACE {
 
 struct Sides {
   Vec3 ray2, ray1_in_cam2;
-  Vec inverse_depth;  // w, its sign
+  Vec inverse_depth;  // w; only its sign has a meaning
   Mask is_ahead_of_camera2;
 };
 

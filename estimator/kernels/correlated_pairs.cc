@@ -14,19 +14,19 @@ HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
 constexpr int kLengths = kNumCorrelationLengths;
-// Correlations are made for eight points with up to so many blocks of others at a time, and used while they
-// are in the nearest cache (12 kB).
+// Correlations are computed for eight points with up to this many blocks of others at a time, so that they
+// are used while they are in the L1 cache (12 kB).
 constexpr int kTileBlocks = 8;
 struct alignas(64) Tile {
-  double c[kTileBlocks][kBlockSize][kLengths][kBlockSize];  // by block of h, g, length, h
+  double c[kTileBlocks][kBlockSize][kLengths][kBlockSize];  // [block of h][g][length][h]
 };
-// Sums that go to the eight points g of a tile, by lane of h.
+// Sums for the eight points g of a tile, by lane of h.
 struct alignas(64) RowSums {
   double lanes[kBlockSize][kLengths][5][kBlockSize] = {};
 };
 
-// 2^(-d / 8) for d >= 0, beyond 8000 as there: d = k + s with k an integer and |s| <= 1/2, then 2^(-k / 8) is
-// a power of two times one of eight numbers, and 2^(-s / 8) = e^(-s h), h = ln(2) / 8, a polynomial whose
+// 2^(-d / 8) for d >= 0; d is limited to 8000. With d = k + s, k an integer and |s| <= 1/2: 2^(-k / 8) is a
+// power of two times one of eight numbers. 2^(-s / 8) = e^(-s h) with h = ln(2) / 8 is a polynomial whose
 // next term is below 6e-14.
 HWY_INLINE Vec ComputeDecay(Vec d) {
   alignas(64) static constexpr double kPowers[] = {1.0,
@@ -42,7 +42,7 @@ HWY_INLINE Vec ComputeDecay(Vec d) {
       1.0, -h, h2 / 2.0, -h3 / 6.0, h * h3 / 24.0, -h2 * h3 / 120, h3 * h3 / 720.0};
   const Lookup::IndexTag integers;
   d = Lesser(d, Set(8000.0));
-  // 1.5 2^52 - d is rounded to an integer, -k in its low bits.
+  // 1.5 2^52 - d is rounded to an integer with -k in its low bits.
   const Vec big = Set(0x1.8p52), rounded = big - d, s = d + (rounded - big);
   Vec sum = Set(kTaylor[6]);
   for (int j = 6; j-- > 0;) sum = FusedMulAdd(sum, s, Set(kTaylor[j]));
@@ -54,8 +54,8 @@ HWY_INLINE Vec ComputeDecay(Vec d) {
 
 HWY_INLINE Vec ComputeLength(Vec x, Vec y) { return hn::Sqrt(FusedMulAdd(x, x, y * y)); }
 
-// c of the points g of a block and those of blocks `first` to `last` - 1, of which `lane` and the following
-// are looked at; zero where h >= g.
+// Computes c of the points g of a block with the points h of blocks `first` to `last` - 1, in lanes `lane`
+// and following; zero for h >= g.
 HWY_INLINE void FillTile(const CorrelatedBlock* points, int rows, int first, int last, int lane, Tile* tile) {
   const CorrelatedBlock& block = points[rows];
   for (int g = 0; g < kBlockSize; ++g) {
@@ -92,12 +92,12 @@ HWY_INLINE void FillTile(const CorrelatedBlock* points, int rows, int first, int
   }
 }
 
-// The sums over all pairs that are no one's own.
+// The sums over all pairs that do not belong to one point.
 struct alignas(64) WholeSums {
   double squares[6][kBlockSize] = {}, excess[6][kBlockSize] = {}, products[kLengths][kBlockSize] = {};
 };
 
-// Adds c_k c_m over the pairs of a tile, `is_excess`: times the product of both weights less one.
+// Adds c_k c_m over the pairs of a tile; with `is_excess`, times (product of both weights - 1).
 template <bool is_excess>
 HWY_INLINE void AddSquares(const CorrelatedBlock* points, const Tile& tile, int rows, int first, int last,
                            int lane, double (&sums)[6][kBlockSize]) {
@@ -134,7 +134,8 @@ HWY_INLINE void AddProducts(const CorrelatedBlock* points, const Tile& tile, int
   }
 }
 
-// Adds c_gh x_g to each h, and c_gh x_h to each g, x five numbers of a point.
+// Adds c_gh x_g to each h (AddToOthers) and c_gh x_h to each g (AddToRows), where x are five numbers of a
+// point.
 HWY_INLINE void AddToOthers(const double (&x)[5][kBlockSize], const Tile& tile, int b, int lane,
                             double (&smoothed)[kLengths][5][kBlockSize]) {
   for (int k = 0; k < kLengths; ++k) {
@@ -176,7 +177,7 @@ HWY_INLINE void AddRowSums(const RowSums& row_sums, double (&smoothed)[kLengths]
   }
 }
 
-// Blocks from `num_repeated` on have points of one match each: no excess.
+// Points in blocks from `num_repeated` on have one match each and no excess.
 void SumPairs(const CorrelatedBlock* points, int num_blocks, int num_repeated, CorrelatedPairSums* sums) {
   WholeSums whole;
   Tile tile;
@@ -229,7 +230,7 @@ CorrelatedPairSums SumCorrelatedPairs(const std::vector<CorrelatedBlock>& points
   (points.data(), static_cast<int>(points.size()),
    static_cast<int>((num_repeated + kBlockSize - 1) / kBlockSize), &sums);
   for (SmoothedBlock& smoothed : sums.smoothed) {
-    double *mean = &smoothed.mean[0][0][0], *row = &smoothed.row[0][0][0];  // the former has the excess
+    double *mean = &smoothed.mean[0][0][0], *row = &smoothed.row[0][0][0];  // so far, mean holds the excess
     for (int i = 0; i < kNumCorrelationLengths * 5 * kBlockSize; ++i) mean[i] += row[i];
   }
   return sums;

@@ -12,9 +12,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// `F`: the epipolar constraints of the direction t and of its two tangents b1, b2, in whitened coordinates:
-// their gradients are the derivatives of v'm by the noise, m = y x x2. `cov`: [c11, 2 c12, c22] of the
-// direction. Gives n11, n12, n22.
+// `F`: the epipolar constraints of the direction t and of its two tangents b1, b2, in whitened coordinates.
+// Their gradients are the derivatives of v'm by the noise, m = y x x2. `cov`: [c11, 2 c12, c22] of the
+// direction. Writes n11, n12, n22 to `noise`.
 void SumNoise(const MatchBlocks& matches, const MatchMask& mask, const double (&F)[3][9],
               const double (&cov)[3], double max_leverage, double* noise) {
   HWY_ALIGN double sums[3][kBlockSize];

@@ -1,4 +1,4 @@
-// The many-at-a-time twin of SumDirectionNoise (observability.h).
+// SumDirectionNoise (observability.h) for many matches at a time.
 #pragma once
 
 #include "estimator/geometry/pose.h"
@@ -6,7 +6,7 @@
 
 namespace rcme {
 
-// Over the matches of the mask.
+// The sum over the matches of the mask.
 Eigen::Matrix2d SumDirectionNoise(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
                                   const Eigen::Matrix2d& direction_cov);
 

@@ -19,12 +19,13 @@ struct Matches {
 HWY_INLINE Matches LoadMatches(const MatchBlock& block, int lane) {
   return {Load(block.x1 + lane), Load(block.y1 + lane), Load(block.x2 + lane), Load(block.y2 + lane)};
 }
-// Which of the lanes from `first_match` on are matches.
+// Mask of the lanes, from `first_match` on, that hold matches.
 HWY_INLINE Mask AreMatches(int first_match, int num_matches) {
   return hn::FirstN(Tag(), static_cast<size_t>(num_matches > first_match ? num_matches - first_match : 0));
 }
 
-// The sum over a block's places: sum_lanes(lane) gives the partial sums of the vector that begins at a place.
+// The sum over the lanes of a block. sum_lanes(lane) returns the partial sums of the vector that starts
+// there.
 template <typename SumLanes>
 HWY_INLINE double SumOverLanes(const SumLanes& sum_lanes) {
   HWY_ALIGN double sums[kBlockSize];
@@ -37,7 +38,7 @@ struct Constraint {
   Vec g, gradient[4];
 };
 
-// F(i), i = 0..8 row by row, gives the entry as a Vec: one model for all lanes, or one per lane.
+// F(i), i = 0..8 row by row, returns the entry as a Vec: one model for all lanes, or one per lane.
 template <typename Entries>
 HWY_INLINE Constraint EvaluateConstraint(const Entries& F, const Matches& m) {
   Constraint c;

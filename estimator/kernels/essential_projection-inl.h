@@ -1,13 +1,13 @@
-// The essential matrix nearest to a 3x3 matrix (eq::motion_estimate), without iteration.
+// The essential matrix nearest to a 3x3 matrix M (eq::motion_estimate), without iteration.
 //
 // u3, the left singular vector of the smallest singular value, is the eigenvector of the smallest eigenvalue
-// of M M' (closed form of a symmetric 3x3 matrix: Smith 1961). For any orthonormal u1, u2 normal to it, the
+// of M M' (closed form for a symmetric 3x3 matrix: Smith 1961). For any orthonormal u1, u2 normal to it, the
 // rows r_i = u_i' M span the plane normal to v3. In bases of the two planes, M is the 2x2 matrix
 //
 //   B = [[a, 0], [c, d]],   a = |r1|, v1 = r1 / a, c = r2'v1, d = r2'v2 > 0,
 //
-// whose singular values are the larger two of M, and whose nearest rotation is the one by theta with
-// tan theta = c / (a + d). So E = ut1 v1' + ut2 v2' with ut = the u turned by theta; no SVD is needed.
+// whose singular values are the larger two of M. Its nearest rotation is the one by theta with tan
+// theta = c / (a + d). So E = ut1 v1' + ut2 v2', where ut are the u rotated by theta. No SVD is needed.
 #if defined(RCME_ESTIMATOR_KERNELS_ESSENTIAL_PROJECTION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_ESSENTIAL_PROJECTION_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_ESSENTIAL_PROJECTION_INL_H_
@@ -22,13 +22,13 @@ namespace rcme::HWY_NAMESPACE {
 
 struct EssentialBasis {
   Vec3 u[3], v[3];  // E = u1 v1' + u2 v2'; u3 and v3 its null vectors
-  Vec misfit[3];    // M in [u1 v1' - u2 v2', u1 v2' + u2 v1'] / sqrt(2) and u3 v3': what E leaves of it
-  Mask determines_direction;  // the second singular value of M is above 1e-9 of the first
+  Vec misfit[3];    // components of M - E, in [u1 v1' - u2 v2', u1 v2' + u2 v1'] / sqrt(2) and u3 v3'
+  Mask determines_direction;  // the second singular value of M exceeds 1e-9 of the first
 };
 
-// cos(acos(c) / 3) of c in [-1, 1], s = sqrt((1 + c) / 2): with acos(c) = 2 acos(s) it is cos(2/3 acos(s)),
-// analytic but at s = -1. Its Chebyshev interpolant of degree 18 on [0, 1], in powers of w = 2 s - 1, is off
-// by at most 2.7e-17 before rounding.
+// cos(acos(c) / 3) for c in [-1, 1], from s = sqrt((1 + c) / 2). As acos(c) = 2 acos(s), it is cos(2/3
+// acos(s)), which is analytic except at s = -1. The error of its Chebyshev interpolant of degree 18 on [0,
+// 1], in powers of w = 2 s - 1, is at most 2.7e-17 before rounding.
 HWY_INLINE Vec CosineOfThird(Vec s) {
   constexpr double kCoefficients[] = {
       0.766044443118978,       0.2474090663228534,     -0.015509188436485936,   0.0024663528150656285,
@@ -48,8 +48,8 @@ HWY_INLINE Vec3 SmallestEigenvector(const Mat3& S) {
   const Vec a = S.row[0].x - mean, b = S.row[1].y - mean, c = S.row[2].z - mean;
   const Vec off_diagonal = Dot({S.row[0].y, S.row[0].z, S.row[1].z}, {S.row[0].y, S.row[0].z, S.row[1].z});
   const Vec p = hn::Sqrt((Dot({a, b, c}, {a, b, c}) + off_diagonal + off_diagonal) * Set(1.0 / 6.0));
-  // det(S - mean I) / (2 p^3) is the cosine of three times the angle of the eigenvalues; the smallest is mean
-  // + 2 p cos(angle + 2 pi / 3) = mean - 2 p cos(acos(-cosine) / 3).
+  // det(S - mean I) / (2 p^3) is the cosine of three times the angle of the eigenvalues; the smallest is
+  // mean + 2 p cos(angle + 2 pi / 3) = mean - 2 p cos(acos(-cosine) / 3).
   const Vec3 shifted0 = {a, S.row[0].y, S.row[0].z}, shifted1 = {S.row[1].x, b, S.row[1].z},
              shifted2 = {S.row[2].x, S.row[2].y, c};
   const Vec cosine = Dot(shifted0, Cross(shifted1, shifted2)) / (Set(2.0) * p * p * p);
@@ -70,7 +70,7 @@ HWY_INLINE Vec3 SmallestEigenvector(const Mat3& S) {
   return Normalized(best);
 }
 
-// Two unit vectors that complete the unit vector n to a basis (Duff et al. 2017).
+// Completes the unit vector n to an orthonormal basis (Duff et al. 2017).
 HWY_INLINE void CompleteBasis(const Vec3& n, Vec3* first, Vec3* second) {
   const Vec one = Set(1.0), sign = hn::CopySign(one, n.z);
   const Vec a = Set(-1.0) / (sign + n.z), b = n.x * n.y * a;
@@ -78,9 +78,9 @@ HWY_INLINE void CompleteBasis(const Vec3& n, Vec3* first, Vec3* second) {
   *second = {b, FusedMulAdd(n.y, n.y * a, sign), hn::Neg(n.y)};
 }
 
-// One Newton step of the eigenvector of M M'. Where the two smaller singular values are close, a relative gap
-// d apart, the closed form has the angle of a cosine near one and loses eps / d^2; the step, with S = M M' in
-// the basis u1, u2, u, leaves eps / d. No step where S does not separate the two.
+// One Newton step for the eigenvector of M M', with S = M M' in the basis u1, u2, u. If the relative gap d of
+// the two smaller singular values is small, the closed form computes the angle of a cosine near one, with an
+// error of eps / d^2; the step reduces it to eps / d. No step is taken if S does not separate the two.
 HWY_INLINE Vec3 Polish(const Mat3& M, const Vec3& u) {
   Vec3 u1, u2;
   CompleteBasis(u, &u1, &u2);

@@ -10,11 +10,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// In the coordinates y of delta f = T y (T the orthonormal basis of the motions at f, the unit E) the five
-// constraints c_k'f of the sample have the Jacobian H_ki = c_k'T_i, so that noise n moves y by -H^-1 n and
-// Sigma_y = L L' (eq. 5) with L = H^-1 D^(1/2): its root needs no Cholesky factorization.
+// In the coordinates y of delta f = T y (T the orthonormal basis of the motions at f, the unit E), the five
+// constraints c_k'f of the sample have the Jacobian H_ki = c_k'T_i. So noise n moves y by -H^-1 n, and
+// Sigma_y = L L' (eq. 5) with L = H^-1 D^(1/2): the root needs no Cholesky factorization.
 struct Equations {
-  Vec columns[5][5];  // H, column by column; its triangle after Factor
+  Vec columns[5][5];  // H, column by column; after Factor, R
   Vec rhs[5][5];      // D^(1/2), column by column; L after Solve
   Vec smallest_pivot, largest_pivot;
 };
@@ -45,7 +45,7 @@ HWY_INLINE void ReflectFrom(int first, const Vec* v, Vec tau, Vec* b) {
   for (int row = first; row < 5; ++row) b[row] = FusedMulAdd(v[row], weight, b[row]);
 }
 
-// Householder reflections of H and the right-hand sides, H = Q R (null_vector-inl.h has the formulas).
+// Householder reflections of H and of the right-hand sides, H = Q R (formulas: null_vector-inl.h).
 HWY_INLINE void Factor(Equations& e) {
   for (int j = 0; j < 5; ++j) {
     Vec* x = e.columns[j];
@@ -56,7 +56,7 @@ HWY_INLINE void Factor(Equations& e) {
     const Vec tau = Set(1.0) / (alpha * x[j]);
     for (int c = j + 1; c < 5; ++c) ReflectFrom(j, x, tau, e.columns[c]);
     for (int c = 0; c < 5; ++c) ReflectFrom(j, x, tau, e.rhs[c]);
-    x[j] = alpha;  // R_jj; what is below it is not needed any more
+    x[j] = alpha;  // R_jj; the entries below it are not needed any more
     e.smallest_pivot = j == 0 ? norm : Lesser(norm, e.smallest_pivot);
     e.largest_pivot = j == 0 ? norm : Greater(norm, e.largest_pivot);
   }
@@ -73,8 +73,8 @@ HWY_INLINE void Solve(Equations& e) {
   }
 }
 
-// dF of some lanes, along the columns of L, whose L L' is Sigma_p (eq::cov_p) in the basis T; returns where
-// they are finite and the motion is an isolated solution.
+// Fills dF of some lanes along the columns of L, where L L' is Sigma_p (eq::cov_p) in the basis T. Returns
+// the lanes whose dF is finite and whose motion is an isolated solution.
 HWY_INLINE Mask FillDerivatives(const SampleLanes<5>& sample, const EssentialBasis& basis, const Vec* f,
                                 const Whitening& whitening, int lane, HypothesisBlock* block) {
   Equations equations = MakeEquations(sample, whitening, basis, f);
@@ -90,7 +90,7 @@ HWY_INLINE Mask FillDerivatives(const SampleLanes<5>& sample, const EssentialBas
   return hn::And(hn::IsFinite(sum), equations.smallest_pivot > Set(1e-9) * equations.largest_pivot);
 }
 
-// Lanes [lane, lane + kLanes) of the block: the motion of f (eq::motion_estimate), and its spread.
+// Fills lanes [lane, lane + kLanes) of the block: the motion of f (eq::motion_estimate) and its spread.
 template <bool has_spread>
 HWY_INLINE Mask FillLanes(const EssentialBlock& essentials, const Whitening& whitening, int lane,
                           HypothesisBlock* block) {

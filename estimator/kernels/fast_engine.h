@@ -6,7 +6,7 @@
 
 namespace rcme {
 
-// `implementation: fast`, eight hypotheses and many matches at a time. See ransac_estimate.h.
+// The engine of `implementation: fast`: eight hypotheses and many matches at a time. See ransac_estimate.h.
 template <RansacDecision Decision, typename SolverT>
 struct FastEngine {
   using Solver = SolverT;

@@ -23,7 +23,7 @@ HWY_INLINE void StoreRow(const PolynomialRow& row, int lane, BlockPolynomials::R
   for (int c = 0; c < 5; ++c) Store(row.one[c], to[8 + c] + lane);
 }
 
-// Lanes [lane, lane + kLanes), here a sample each.
+// Fills lanes [lane, lane + kLanes), one sample per lane.
 void FillPolynomials(const FivePointSamples& samples, int lane, BlockPolynomials* polynomials,
                      NodeValues* values) {
   NullSpace space;
@@ -35,7 +35,7 @@ void FillPolynomials(const FivePointSamples& samples, int lane, BlockPolynomials
   const PolynomialRow B[3] = {MakeRow(row(4), row(5)), MakeRow(row(6), row(7)), MakeRow(row(8), row(9))};
   Vec p[kDegree + 1];
   Determinant(B, p);
-  for (Vec& c : p) c = hn::IfThenElseZero(space.is_regular, c);  // no sign changes then, and no roots
+  for (Vec& c : p) c = hn::IfThenElseZero(space.is_regular, c);  // zero: no sign changes, so no roots
   EvaluateAtNodes(p, lane, values);
   for (int c = 0; c <= kDegree; ++c) Store(p[c], polynomials->p[c] + lane);
   for (int i = 0; i < 3; ++i) StoreRow(B[i], lane, polynomials->B[i]);
@@ -44,7 +44,7 @@ void FillPolynomials(const FivePointSamples& samples, int lane, BlockPolynomials
   }
 }
 
-// Sorts the models by their samples; roots that are no model are left out.
+// Sorts the models by their samples and leaves out roots that are no models.
 void WriteModels(const RecoveredRoots& roots, const Brackets& brackets, FivePointModels* models) {
   int num_models[kBlockSize] = {}, next[kBlockSize];
   for (int root = 0; root < brackets.count; ++root) num_models[brackets.sample[root]] += roots.is_model[root];

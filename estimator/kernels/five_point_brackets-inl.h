@@ -1,8 +1,9 @@
-// Where polynomials of degree ten have their real roots, eight polynomials side by side: intervals in which
-// the sign changes. The roots lie on the circle of (z : w), infinity included, so p is taken as homogeneous:
-// in the chart z (w = 1) where |z| <= 1, and in the chart u = w / z elsewhere. At fixed nodes around the
-// circle the sign of p tells the roots apart; two roots between the same nodes show as a local minimum of
-// |p|.
+// Brackets of the real roots of polynomials p of degree ten, eight side by side: intervals in which the sign
+// changes.
+//
+// The roots lie on the circle of (z : w), including infinity, so p is used as a homogeneous polynomial: in
+// the chart z (w = 1) if |z| <= 1, else in the chart u = w / z. At fixed nodes around the circle, changes of
+// the sign of p separate the roots. Two roots between the same nodes show as a local minimum of |p|.
 #if defined(RCME_ESTIMATOR_KERNELS_FIVE_POINT_BRACKETS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_FIVE_POINT_BRACKETS_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_FIVE_POINT_BRACKETS_INL_H_
@@ -27,14 +28,14 @@ constexpr int kQuarter = 32, kNumNodes = 4 * kQuarter;
 // Node n, in order around the circle: u = 0, then u down to -1, z = -1 up to 1, u = 1 down to 0 again.
 struct Node {
   double t;         // z or u
-  bool is_inverse;  // u
+  bool is_inverse;  // t is u
 };
 constexpr Node ComputeNode(int n) {
   if (n < kQuarter) return {-static_cast<double>(n) / kQuarter, true};
   if (n <= 3 * kQuarter) return {static_cast<double>(n - 2 * kQuarter) / kQuarter, false};
   return {static_cast<double>(kNumNodes - n) / kQuarter, true};
 }
-// The intervals between node n and the next, each in one chart.
+// The interval between a node and the next one, in one chart.
 struct Interval {
   double begin, end, is_inverse;  // 0 or 1
 };
@@ -51,15 +52,15 @@ inline constexpr std::array<Interval, kNumNodes> kIntervals = MakeIntervals();
 
 // p at the nodes, [node][sample]; bit s of a byte belongs to sample s.
 struct alignas(64) NodeValues {
-  static constexpr int kPad =
+  static constexpr int kPad =  // bytes before node 0 and after the last; these nodes wrap around
       8;  // bytes before node 0; all nodes that fall there or beyond the last wrap around
 
   double p[kNumNodes][kBlockSize];
   std::uint8_t is_negative[kPad + kNumNodes + kPad];
-  std::uint8_t falls[kPad + kNumNodes + kPad];  // |p| is less than at the node before
+  std::uint8_t falls[kPad + kNumNodes + kPad];  // |p| is less than at the previous node
 };
 
-// Values at the nodes of one polynomial per lane, from lane `lane` of the block on.
+// Writes the values at the nodes, one polynomial per lane from lane `lane` of the block on.
 class NodeWriter {
  public:
   NodeWriter(int lane, NodeValues* values) : lane_(lane), values_(values) {}
@@ -84,7 +85,7 @@ class NodeWriter {
   NodeValues* values_;
 };
 
-// p(t) = even(t^2) + t odd(t^2), so that t and -t in both charts take four sums of half the degree.
+// p(t) = even(t^2) + t odd(t^2), so that t and -t in both charts need four sums of half the degree.
 HWY_INLINE void EvaluateAtNodes(const Vec (&p)[kDegree + 1], int lane, NodeValues* values) {
   const NodeWriter writer(lane, values);
   Vec z_plus = p[0], z_minus = p[0], u_plus = p[kDegree], u_minus = p[kDegree];
@@ -115,7 +116,7 @@ HWY_INLINE void EvaluateAtNodes(const Vec (&p)[kDegree + 1], int lane, NodeValue
   }
 }
 
-// The brackets of all samples; those of a sample in the order of the circle, pairs last.
+// The brackets of all samples. A sample's brackets follow the circle; those of close pairs come last.
 struct alignas(64) Brackets {
   static constexpr int kCapacity = FivePointModels::kMaxPerSample * kBlockSize + 2 * kBlockSize;
 
@@ -124,7 +125,7 @@ struct alignas(64) Brackets {
   std::int64_t sample[kCapacity];
   int count = 0, num_of_sample[kBlockSize] = {};
 
-  // A polynomial has no more than ten roots, whatever rounding sees.
+  // Drops further brackets: a polynomial has at most ten roots, but rounding may show more.
   HWY_INLINE void Add(const Interval& interval, double p_begin, double p_end, int of_sample) {
     if (num_of_sample[of_sample] == FivePointModels::kMaxPerSample) return;
     ++num_of_sample[of_sample];
@@ -135,7 +136,7 @@ struct alignas(64) Brackets {
     is_inverse[count] = interval.is_inverse;
     sample[count++] = of_sample;
   }
-  // Whole vectors are read: what lies beyond the last is of no interest, but defined.
+  // Whole vectors are read, so the places beyond the last bracket are set to zero.
   void Close() {
     for (int i = count; i < count + 2 * kBlockSize; ++i) {
       begin[i] = end[i] = at_begin[i] = at_end[i] = is_inverse[i] = 0.0;
@@ -164,8 +165,8 @@ struct Extremum {
   double t, p, curvature;
 };
 
-// Whether p has its other sign there: two roots. Newton's method on p' from the node, until p has changed its
-// sign or the parabola at hand says that it does not.
+// Whether p has the other sign at this extremum, that is, two roots. Takes Newton steps on p' from the node
+// until p has changed its sign, or until the local parabola shows that it does not.
 inline bool FindPair(const BlockPolynomials& polynomials, int sample, int n, Extremum* extremum) {
   const Node node = ComputeNode(n);
   double p[kDegree + 1];
@@ -187,14 +188,14 @@ inline bool FindPair(const BlockPolynomials& polynomials, int sample, int n, Ext
   return false;
 }
 
-// Of nodes n to n + 7.
+// The bytes of nodes n to n + 7.
 inline std::uint64_t LoadEight(const std::uint8_t* bytes, int n) {
   std::uint64_t word;
   std::memcpy(&word, bytes + NodeValues::kPad + n, sizeof(word));
   return word;
 }
 
-// Bytes beyond the ends are those of the other end.
+// Copies the bytes of each end to the padding beyond the other end.
 inline void WrapAround(std::uint8_t* bytes) {
   std::memcpy(bytes, bytes + kNumNodes, NodeValues::kPad);
   std::memcpy(bytes + NodeValues::kPad + kNumNodes, bytes + NodeValues::kPad, NodeValues::kPad);
@@ -224,8 +225,8 @@ inline void AddSignChanges(const NodeValues& values, const SignChanges& changes,
   }
 }
 
-// p is close to a parabola here, extremum.p + curvature / 2 (t - extremum.t)^2, with roots at a distance
-// `half` to both sides; twice as far it is -3 extremum.p.
+// Near the extremum p is close to a parabola, extremum.p + curvature / 2 (t - extremum.t)^2. Its roots are at
+// a distance `half` to both sides; at twice this distance p is -3 extremum.p.
 inline void AddPair(const Extremum& extremum, const Node& node, int sample, Brackets* brackets) {
   const double forward = node.is_inverse ? -1.0 : 1.0;  // along the circle
   const double half = std::sqrt(-2.0 * extremum.p / extremum.curvature), reach = 2.0 * forward * half;

@@ -1,5 +1,5 @@
 // The ten cubics that make E = x E_1 + y E_2 + z E_3 + w E_4 an essential matrix, solved for the ten
-// monomials of degree two and three in x and y alone (Nister, "An efficient solution to the five-point
+// monomials whose degree in x and y is two or three (Nister, "An efficient solution to the five-point
 // relative pose problem", 2004), for several samples side by side.
 #if defined(RCME_ESTIMATOR_KERNELS_FIVE_POINT_ELIMINATION_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_FIVE_POINT_ELIMINATION_INL_H_
@@ -27,12 +27,13 @@ constexpr int kCubicPlaces[10][4] = {{0, 2, 4, 5},     {2, 3, 8, 9},    {4, 8, 1
 using Quadratic = Vec[10];
 using Cubic = Vec[20];
 
-// The ten cubics, a row each. Kept as numbers, because compilers copy arrays of vectors by slow block moves.
+// The ten cubics, one per row. Stored as numbers, because compilers copy arrays of vectors by slow block
+// moves.
 struct alignas(64) Constraints {
   double c[10][20][kLanes];
 };
 
-// sum = sum + q r, or sum - q r, of linear forms q and r.
+// Adds to sum or subtracts from it the product q r of linear forms.
 HWY_INLINE void AddProduct(const Vec* q, const Vec* r, Quadratic& sum) {
   for (int a = 0; a < 4; ++a) {
     for (int b = 0; b < 4; ++b) {
@@ -59,7 +60,7 @@ HWY_INLINE void AddSquare(const Vec* q, Quadratic& sum) {
   }
 }
 
-// sum + q r of a quadratic q and a linear form r.
+// Adds the product q r of a quadratic q and a linear form r to sum.
 HWY_INLINE void AddProduct(const Quadratic& q, const Vec* r, Cubic& sum) {
   const Vec form[4] = {r[0], r[1], r[2], r[3]};
 #pragma GCC unroll 10
@@ -73,7 +74,7 @@ HWY_INLINE void AddProduct(const Quadratic& q, const Vec* r, Cubic& sum) {
   }
 }
 
-// q_0 r_0 + q_1 r_1 + q_2 r_2. A function of its own, so that the sum stays in registers.
+// q_0 r_0 + q_1 r_1 + q_2 r_2. Not inlined, so that the sum stays in registers.
 HWY_NOINLINE void SumOfProducts(const Quadratic& q0, const Quadratic& q1, const Quadratic& q2, const Vec* r0,
                                 const Vec* r1, const Vec* r2, double (*row)[kLanes]) {
   Cubic sum;
@@ -121,7 +122,7 @@ HWY_INLINE void FillConstraints(const NullSpace& space, Constraints* constraints
   SumOfProducts(minors[0], minors[1], minors[2], E(0, 0), E(0, 1), E(0, 2), constraints->c[9]);
 }
 
-// Row r less multiples of the rows above, scaled to have 1 in column r.
+// Subtracts multiples of the rows above from row r and scales it to have 1 in column r.
 template <int r>
 HWY_INLINE void EliminateRow(Constraints* constraints) {
   Cubic row;
@@ -137,7 +138,7 @@ HWY_INLINE void EliminateRow(Constraints* constraints) {
   for (int c = r + 1; c < 20; ++c) Store(row[c] * inverse, constraints->c[r][c]);
 }
 
-// Row r of the solution, from those of the rows below it.
+// Row r of the solution, from the rows below it.
 template <int r>
 HWY_INLINE void SubstituteBack(Constraints* constraints) {
   Vec tail[10];
@@ -153,8 +154,8 @@ HWY_INLINE void SubstituteBack(Constraints* constraints) {
   for (int c = 0; c < 10; ++c) Store(tail[c], constraints->c[r][10 + c]);
 }
 
-// Solves for the first ten monomials, without pivoting: the basis is mixed instead. Only the last six rows
-// are needed, and of these only the last ten columns.
+// Solves for the first ten monomials. There is no pivoting; Mix (five_point_null_space-inl.h) takes its
+// place. Only the last six rows are needed, and of these only the last ten columns.
 HWY_INLINE void Eliminate(Constraints* constraints) {
   [&]<int... r>(std::integer_sequence<int, r...>) { (EliminateRow<r>(constraints), ...); }
   (std::make_integer_sequence<int, 10>());

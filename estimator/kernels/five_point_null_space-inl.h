@@ -1,6 +1,6 @@
-// The matrices that meet five epipolar equations, for several samples side by side: an orthonormal basis
+// The matrices that satisfy five epipolar equations, for several samples side by side: an orthonormal basis
 // E_1 ... E_4 of the null space of M (5x9, rows kron(x2, x1)), by Householder reflections of M' as in
-// null_vector-inl.h. Lengths of rays scale columns of M' only: they need not be one.
+// null_vector-inl.h. The lengths of the rays only scale columns of M', so they need not be one.
 #if defined(RCME_ESTIMATOR_KERNELS_FIVE_POINT_NULL_SPACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_FIVE_POINT_NULL_SPACE_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_FIVE_POINT_NULL_SPACE_INL_H_
@@ -23,7 +23,7 @@ struct NullSpace {
   Mask is_regular;  // the five equations are independent
 };
 
-// M' of lanes [lane, lane + kLanes), a column per match.
+// M' of lanes [lane, lane + kLanes), one column per match.
 HWY_INLINE void LoadEpipolarEquations(const FivePointSamples& samples, int lane, Vec (&columns)[5][9]) {
   for (int k = 0; k < 5; ++k) {
     const Vec x1 = Load(samples.x1[k] + lane), y1 = Load(samples.y1[k] + lane);
@@ -41,8 +41,8 @@ HWY_INLINE void LoadEpipolarEquations(const FivePointSamples& samples, int lane,
   }
 }
 
-// H_k from column k, applied to the columns after it. Returns where the squared pivot is above 1e-18 of the
-// column's squared length.
+// Computes H_k from column k and applies it to the columns after it. Returns the lanes whose squared pivot
+// exceeds 1e-18 of the column's squared length.
 template <int k>
 HWY_INLINE Mask ReduceColumn(Vec (&columns)[5][9], Vec (&tau)[5]) {
   Vec* x = columns[k];
@@ -56,9 +56,9 @@ HWY_INLINE Mask ReduceColumn(Vec (&columns)[5][9], Vec (&tau)[5]) {
   return squared > Set(1e-18) * whole;
 }
 
-// A basis mixed by an orthogonal matrix. Coordinates that the structure of scene or motion makes small or
-// zero would be pivots of the elimination: of 20,000 exact samples each, 2.5 % of generic and 7.6 % of
-// forward motions lose the true E without it, .8 and 1.1 % with it.
+// Mixes the basis by an orthogonal matrix. Otherwise coordinates that the structure of the scene or the
+// motion makes small or zero would be pivots of the elimination. Of 20,000 exact samples each, 2.5 % of
+// generic and 7.6 % of forward motions lose the true E without mixing, .8 and 1.1 % with it.
 HWY_INLINE void Mix(Vec (&E)[9][4]) {
   const Vec half = Set(0.5);
   for (Vec(&e)[4] : E) {

@@ -17,20 +17,21 @@ namespace rcme::HWY_NAMESPACE {
 
 constexpr int kDegree = 10;
 
-// What is kept of eight samples for their roots; index [number][sample].
+// The polynomials of eight samples, as the search for roots needs them; index [number][sample].
 struct alignas(64) BlockPolynomials {
   using Row = double[kBlockSize];
   Row p[kDegree + 1];  // ascending powers
-  Row B[3][13];        // of every row the coefficients of x (4), y (4), 1 (5)
+  Row B[3][13];        // in each row the coefficients of x (4), y (4), 1 (5)
   Row basis[9][4];     // NullSpace::E
 };
 
-// A row of B(z): coefficients of x, y and 1, each of ascending powers of z.
+// A row of B(z): the coefficients of x, y and 1, each in ascending powers of z.
 struct PolynomialRow {
   Vec x[4], y[4], one[5];
 };
 
-// with_z - z without_z: rows of ten coefficients (of xzz ... www) solved for z and 1 times the same monomial.
+// with_z - z without_z. The rows hold ten coefficients (of xzz ... www); they were solved for the same
+// monomial times z and times 1.
 HWY_INLINE PolynomialRow MakeRow(const double (*with_z)[kLanes], const double (*without_z)[kLanes]) {
   const auto e = [&](int c) { return Load(with_z[c]); };
   const auto f = [&](int c) { return Load(without_z[c]); };
@@ -39,7 +40,7 @@ HWY_INLINE PolynomialRow MakeRow(const double (*with_z)[kLanes], const double (*
           {e(9), e(8) - f(9), e(7) - f(8), e(6) - f(7), hn::Neg(f(6))}};
 }
 
-// det B(z), ascending powers: along the column of 1.
+// det B(z) in ascending powers, expanded along the column of 1.
 HWY_INLINE void Determinant(const PolynomialRow (&B)[3], Vec (&p)[kDegree + 1]) {
   for (Vec& c : p) c = Set(0.0);
   for (int i = 0; i < 3; ++i) {

@@ -1,17 +1,18 @@
-// The essential matrices at the roots of the five-point problem, many side by side, each of a sample of its
-// own.
+// The essential matrices at the roots of the five-point problem, many side by side. Each root may belong to
+// another sample.
 //
-// A root gives coordinates c = (x, y, z, w) of E in the basis E_1 ... E_4 of the null space, with the
-// rounding of the elimination in them. They are polished by Newton's method on the essential matrices: the
-// three matrices N_i normal to these at E leave N_i . (sum_k c_k E_k) = 0, three linear equations for c up to
-// scale. With singular value decomposition E = s (u1 v1' + u2 v2') they are
+// A root gives the coordinates c = (x, y, z, w) of E in the basis E_1 ... E_4 of the null space, with the
+// rounding errors of the elimination. They are polished by Newton's method on the essential matrices. The
+// three matrices N_i normal to these at E give N_i . (sum_k c_k E_k) = 0, three linear equations for c up to
+// scale. With the singular value decomposition E = s (u1 v1' + u2 v2') they are
 //
 //   N = u1 v1' - u2 v2', u1 v2' + u2 v1', u3 v3'.
 //
-// The columns of E are normal to u3. With n a cross product of two of them, p one of the two and q = n x p,
-// which is |n| times as long, n^2 p (E'p)' - q (E'q)' and p (E'q)' + q (E'p)' span the same as the first two:
-// no root is taken. Where E is not essential yet, these two are half the gradients of n^2 |E'p|^2 - |E'q|^2
-// and 2 (E'p) . (E'q), which are of degree two in E: so it is N . (sum_k c'_k E_k) = N . E / 2.
+// The columns of E are normal to u3. Let n be a cross product of two of them, p one of the two, and q = n x
+// p, which is |n| times as long. Then n^2 p (E'p)' - q (E'q)' and p (E'q)' + q (E'p)' span the same as the
+// first two, and no square root is needed. While E is not essential yet, these two are half the gradients of
+// n^2 |E'p|^2 - |E'q|^2 and 2 (E'p) . (E'q). These functions have degree two in E, so the equations are N .
+// (sum_k c'_k E_k) = N . E / 2.
 #if defined(RCME_ESTIMATOR_KERNELS_FIVE_POINT_RECOVERY_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_FIVE_POINT_RECOVERY_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_FIVE_POINT_RECOVERY_INL_H_
@@ -46,7 +47,7 @@ HWY_INLINE Vec4 Normal(const Vec4& a, const Vec4& b, const Vec4& c) {
           FusedMulSub(c.y, xz, FusedMulAdd(c.z, xy, c.x * yz))};
 }
 
-// Of three vectors in a plane: the longest of their cross products, its squared length, and its first factor.
+// The longest cross product of three vectors in a plane, its squared length, and its first factor.
 struct LongCross {
   Vec3 vector, factor;
   Vec squared;
@@ -61,7 +62,8 @@ HWY_INLINE LongCross LongestCross(const Vec3& a, const Vec3& b, const Vec3& c) {
           Greater(of_ca, larger)};
 }
 
-// a times the power of two that makes the sum of its sizes one to two: keeps products of many factors finite.
+// Scales a by a power of two, so that the sum of its absolute values is between one and two. This keeps
+// products of many factors finite.
 HWY_INLINE Vec4 Scaled(const Vec4& a) {
   using Bits = hn::RebindToUnsigned<Tag>;
   const Vec size = (hn::Abs(a.x) + hn::Abs(a.y)) + (hn::Abs(a.z) + hn::Abs(a.w));
@@ -70,7 +72,7 @@ HWY_INLINE Vec4 Scaled(const Vec4& a) {
   return Times(a, hn::BitCast(Tag(), hn::Set(Bits(), std::uint64_t{0x7fe0000000000000}) - exponent));
 }
 
-// Coordinates at a root t: with n the null vector of B they are (n_0, n_1, z n_2, n_2) in the chart z and
+// Coordinates at a root t. With n the null vector of B they are (n_0, n_1, z n_2, n_2) in the chart z and
 // (n_0, n_1, n_2, u n_2) in the chart u. n is the longest cross product of two rows.
 HWY_INLINE Vec4 CoordinatesAtRoot(const BlockPolynomials& polynomials, const Lookup& lookup, Mask is_inverse,
                                   Vec t) {
@@ -124,11 +126,11 @@ struct SampleBasis {
 
 struct NewtonStep {
   Vec4 c;           // of any length
-  Mask is_short;    // turns c by less than 1e-6: what is left, the square of that, is nothing
+  Mask is_short;    // turns c by less than 1e-6; the remaining error, its square, is negligible
   Mask is_regular;  // the three equations are independent: their unit vectors span a volume above 1e-9
 };
 
-// 2 c^2 a - (a . c) c: half of a's part along c.
+// 2 c^2 a - (a . c) c: a, up to its length, without half of its component along c.
 HWY_INLINE Vec4 Halfway(const Vec4& a, const Vec4& c, Vec twice_squared) {
   const Vec along = Dot(a, c);
   return {FusedMulSub(twice_squared, a.x, along * c.x), FusedMulSub(twice_squared, a.y, along * c.y),
@@ -166,7 +168,7 @@ HWY_INLINE NewtonStep TakeNewtonStep(const SampleBasis& basis, const Vec4& c) {
 struct alignas(64) RecoveredRoots {
   double c[4][Brackets::kCapacity];
   double E[9][Brackets::kCapacity];            // row by row
-  std::uint8_t is_model[Brackets::kCapacity];  // 1: settled, at an isolated solution
+  std::uint8_t is_model[Brackets::kCapacity];  // 1: converged, and an isolated solution
 };
 
 HWY_INLINE void StoreCoordinates(const Vec4& c, int first, double (*to)[Brackets::kCapacity]) {
@@ -186,9 +188,9 @@ HWY_INLINE void StoreMatrices(const SampleBasis& basis, const Vec4& c, int first
   }
 }
 
-// Roots that take more than one step; packed again, because they are few.
+// Roots that need more than one step. They are few, so they are packed again.
 struct alignas(64) UnsettledRoots {
-  int number[Brackets::kCapacity];  // among the roots of the block
+  int number[Brackets::kCapacity];  // index among the roots of the block
   std::int64_t sample[Brackets::kCapacity];
   double c[4][Brackets::kCapacity];
   int count = 0;
@@ -199,7 +201,8 @@ struct alignas(64) UnsettledRoots {
     for (int k = 0; k < 4; ++k) c[k][count] = roots.c[k][root];
     ++count;
   }
-  // Whole vectors are read: beyond the last comes the first again, which makes no step of its own.
+  // Whole vectors are read. The places beyond the last hold the first root again, which needs no further
+  // steps.
   void Close() {
     for (int i = count; i < count + kBlockSize; ++i) {
       sample[i] = sample[0];
@@ -210,7 +213,8 @@ struct alignas(64) UnsettledRoots {
 
 constexpr int kMaxNewtonSteps = 5;
 
-// Up to kMaxNewtonSteps in all. A lane that is done does not move any more, whatever the others need.
+// Takes up to kMaxNewtonSteps steps, including the first one. A lane that has converged does not move any
+// more, whatever the other lanes need.
 HWY_INLINE Mask SettleCoordinates(const SampleBasis& basis, Vec4* c) {
   Mask is_done = MaskFromBits(0), is_regular = hn::Not(is_done);
   for (int step = 1; step < kMaxNewtonSteps; ++step) {

@@ -1,5 +1,5 @@
-// The roots of polynomials of degree ten in their brackets, many side by side, each of a polynomial of its
-// own: Halley's method kept inside the brackets.
+// The roots of polynomials of degree ten in their brackets, many side by side: Halley's method, kept inside
+// the brackets. Each root may belong to another polynomial.
 #if defined(RCME_ESTIMATOR_KERNELS_FIVE_POINT_ROOTS_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_FIVE_POINT_ROOTS_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_FIVE_POINT_ROOTS_INL_H_
@@ -16,7 +16,7 @@ namespace rcme::HWY_NAMESPACE {
 
 constexpr int kHalleySteps = 3;
 
-// Two vectors of brackets go side by side: one alone is a chain of dependent operations.
+// Two vectors of brackets are refined side by side: a single one is a chain of dependent operations.
 constexpr int kRootVectors = 2;
 
 struct RootSearch {
@@ -28,7 +28,7 @@ struct RootSearch {
   HWY_INLINE void Step();
 };
 
-// From where the chord between the ends is zero.
+// Starts at the zero of the chord between the ends.
 HWY_INLINE void RootSearch::Start(const BlockPolynomials& polynomials, const Brackets& brackets, int first) {
   const Lookup lookup(brackets.sample + first);
   const Mask is_inverse = Load(brackets.is_inverse + first) > Set(0.5);
@@ -57,7 +57,7 @@ HWY_INLINE void RootSearch::Step() {
   t = hn::IfThenElse(is_inside, next, Set(0.5) * (begin + end));
 }
 
-// Fills `roots` in the order of the brackets; those beyond the last mean nothing.
+// Fills `roots` in the order of the brackets. The places beyond the last bracket have no meaning.
 HWY_INLINE void RefineRoots(const BlockPolynomials& polynomials, const Brackets& brackets, double* roots) {
   for (int first = 0; first < brackets.count; first += kRootVectors * kLanes) {
     RootSearch search[kRootVectors];

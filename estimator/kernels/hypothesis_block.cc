@@ -14,9 +14,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Sigma_p (eq::cov_p) and the misfit's covariance from Sigma_f (eq. 6), without forming Sigma_f. Beside the
-// basis T of the motions (hypothesis_lanes-inl.h) three of the products of the projection span what is normal
-// to the essential matrices:
+// Sigma_p (eq::cov_p) and the misfit's covariance from Sigma_f (eq. 6), without forming Sigma_f. Three
+// products of the projection complete the basis T of the motions (hypothesis_lanes-inl.h). They span the
+// directions normal to the essential matrices:
 //
 //   N = (u1 v1' - u2 v2') / sqrt(2), (u1 v2' + u2 v1') / sqrt(2), u3 v3'
 //
@@ -29,7 +29,7 @@ HWY_INLINE void NormalBasis(const EssentialBasis& e, Vec (&N)[3][9]) {
   Product(e.u[2], e.v[2], N[2]);
 }
 
-// Lower Cholesky factor of an m x m matrix (lower triangle); a pivot that rounding made negative counts as 0.
+// Lower Cholesky factor of an m x m matrix (lower triangle). Pivots that rounding made negative count as 0.
 template <int m>
 HWY_INLINE void Cholesky(const Vec (&S)[m][m], Vec (&L)[m][m]) {
   Vec pivots[m],
@@ -67,8 +67,8 @@ HWY_INLINE Vec SquaredMahalanobis(const Vec* m, const Vec (&C)[3][3]) {
   return hn::IfThenElse(is_definite, squared, Set(std::numeric_limits<double>::infinity()));
 }
 
-// Covariance of the coordinates of delta f in m vectors b, which are overwritten: (G'b_i)' D (G'b_j), lower
-// triangle.
+// Covariance of the coordinates of delta f along m vectors b: (G'b_i)' D (G'b_j), lower triangle. Overwrites
+// b.
 template <int m>
 HWY_INLINE void PropagateCovariance(const ConstraintFactors& factors, const Vec* D, Vec (&b)[m][9],
                                     Vec (&cov)[m][m]) {
@@ -88,7 +88,7 @@ HWY_INLINE void PropagateCovariance(const ConstraintFactors& factors, const Vec*
   }
 }
 
-// dF of some lanes; returns where they are finite.
+// Fills dF of some lanes. Returns the lanes whose dF is finite.
 HWY_INLINE Mask FillDerivatives(const ConstraintFactors& factors, const EssentialBasis& basis, const Vec* D,
                                 const Whitening& whitening, int lane, HypothesisBlock* block) {
   Vec T[5][9], cov[5][5], L[5][5];
@@ -116,8 +116,8 @@ HWY_INLINE void FillSampleStatistic(const ConstraintFactors& factors, const Esse
   Store(SquaredMahalanobis(basis.misfit, cov), block->sample_statistic + lane);
 }
 
-// Lanes [lane, lane + kLanes) of the block: f (eq::model_instantiate), its motion (eq::motion_estimate), and
-// what else `outputs` asks for.
+// Fills lanes [lane, lane + kLanes) of the block: f (eq::model_instantiate), its motion
+// (eq::motion_estimate), and the numbers that `outputs` requests.
 template <RequestedOutputs outputs>
 HWY_INLINE Mask FillLanes(const Whitening& whitening, int lane, HypothesisBlock* block) {
   const SampleLanes<8> sample(*block, lane);

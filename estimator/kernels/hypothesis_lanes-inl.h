@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// The samples, of m matches each, of some lanes of a block.
+// The samples of some lanes of a block, m matches each.
 template <int m>
 struct SampleLanes {
   Vec x1[m], y1[m], x2[m], y2[m];
@@ -28,7 +28,7 @@ struct SampleLanes {
   }
 };
 
-// Matrices in rays to whitened coordinates, entry (i, j) times second[i] first[j]
+// Converts matrices for rays to whitened coordinates: entry (i, j) times second[i] first[j]
 // (eq::model_motion_relation).
 struct Whitening {
   Vec first[3], second[3];
@@ -37,7 +37,7 @@ struct Whitening {
   Vec operator()(int i, int j, Vec entry) const { return entry * (second[i] * first[j]); }
 };
 
-// The constraints kron(x2, x1) of a sample, in rays.
+// The constraints kron(x2, x1) of a sample, for rays.
 template <int m>
 HWY_INLINE void FillConstraints(const SampleLanes<m>& sample, const Whitening& whitening,
                                 Vec (&columns)[m][9]) {
@@ -102,7 +102,7 @@ HWY_INLINE void MotionBasis(const EssentialBasis& e, Vec (&T)[5][9]) {
   Product(e.u[1], e.v[2], T[4]);
 }
 
-// dE along a principal axis with coordinates l in T: with |E|^2 = 2, sqrt(2) sum_c l_c T_c.
+// dE along a principal axis with coordinates l in T: sqrt(2) sum_c l_c T_c, because |E|^2 = 2.
 HWY_INLINE void Derivative(const EssentialBasis& e, const Vec* l, Mat3* dE) {
   const Vec root_two = Set(1.41421356237309504880);
   const Vec turn = l[0], l1 = root_two * l[1], l2 = root_two * l[2], l3 = root_two * l[3],

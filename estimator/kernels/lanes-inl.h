@@ -1,10 +1,11 @@
-// Eight numbers side by side, as many per vector as the instruction set holds, and 3-vectors of them.
-// Included once per instruction set. No Eigen in here: its templates would be compiled for several sets.
+// Eight numbers side by side in vectors as wide as the instruction set allows, and 3-vectors of them.
+// Included once per instruction set. Do not include Eigen here: its templates would be compiled for several
+// sets.
 //
-// Every instruction set gives the same bits: products and sums are fused where the source says FusedMulAdd,
-// by rounding once, and nowhere else; sums over matches have eight partial sums, one for each number of a
-// block, that are added in one order (SumOfEight). Of Highway's own functions, those whose rounding depends
-// on the instruction set have no use here: MulAdd and its kin, Min, Max, SumOfLanes, hwy/contrib/math.
+// Every instruction set gives the same bits. Products and sums are fused, with one rounding, only where the
+// source says FusedMulAdd. Sums over matches have eight partial sums, one for each place of a block, which
+// are added in a fixed order (SumOfEight). Do not use those functions of Highway whose rounding depends on
+// the instruction set: MulAdd and its kin, Min, Max, SumOfLanes, hwy/contrib/math.
 #if defined(RCME_ESTIMATOR_KERNELS_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_LANES_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_LANES_INL_H_
@@ -32,8 +33,8 @@ HWY_INLINE Vec Load(const double* from) { return hn::Load(Tag(), from); }
 HWY_INLINE void Store(Vec v, double* to) { hn::Store(v, Tag(), to); }
 HWY_INLINE Vec Square(Vec a) { return a * a; }
 
-// a b + c, a b - c and c - a b, rounded once. Plain code has the library's fma, slow on a machine without
-// such an instruction.
+// a b + c, a b - c and c - a b, rounded once. The scalar target calls the library's fma, which is slow on a
+// machine without such an instruction.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE Vec FusedMulAdd(Vec a, Vec b, Vec c) { return Vec(std::fma(a.raw, b.raw, c.raw)); }
 HWY_INLINE Vec FusedMulSub(Vec a, Vec b, Vec c) { return Vec(std::fma(a.raw, b.raw, -c.raw)); }
@@ -43,11 +44,11 @@ HWY_INLINE Vec FusedMulAdd(Vec a, Vec b, Vec c) { return hn::MulAdd(a, b, c); }
 HWY_INLINE Vec FusedMulSub(Vec a, Vec b, Vec c) { return hn::MulSub(a, b, c); }
 HWY_INLINE Vec FusedNegMulAdd(Vec a, Vec b, Vec c) { return hn::NegMulAdd(a, b, c); }
 #endif
-// The second where one of them is NaN.
+// If either argument is NaN, these return the second one.
 HWY_INLINE Vec Lesser(Vec a, Vec b) { return hn::IfThenElse(a < b, a, b); }
 HWY_INLINE Vec Greater(Vec a, Vec b) { return hn::IfThenElse(a > b, a, b); }
 
-// Of eight partial sums, in one order.
+// Adds eight partial sums in a fixed order.
 HWY_INLINE double SumOfEight(const double* s) {
   return ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
 }
@@ -58,15 +59,15 @@ HWY_INLINE unsigned ReadMaskBits(Mask mask) {
   return bits[0];
 }
 
-// The inverse; bits beyond the lanes do not matter.
+// The inverse of ReadMaskBits; bits beyond the lanes are ignored.
 HWY_INLINE Mask MaskFromBits(unsigned bits) {
   const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits)};
   return hn::LoadMaskBits(Tag(), bytes);
 }
 
-// Writes the lanes of the mask side by side, and returns how many; what follows them, up to a vector, is
-// overwritten. Compressed in a register: into memory (Highway's CompressStore), AMD's Zen 4 takes above a
-// hundred cycles.
+// Writes the selected lanes side by side and returns their number. Overwrites what follows them, up to a
+// vector. The lanes are compressed in a register, because Highway's CompressStore to memory takes more than a
+// hundred cycles on AMD's Zen 4.
 HWY_INLINE size_t StoreSelected(Vec v, Mask mask, double* to) {
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
   _mm512_storeu_pd(to, _mm512_maskz_compress_pd(mask.raw, v.raw));

@@ -1,4 +1,4 @@
-// Numbers of the samples of a block by an index of their own in every lane.
+// Picks a number of a block's samples with an index of its own in every lane.
 #if defined(RCME_ESTIMATOR_KERNELS_LOOKUP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_LOOKUP_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_LOOKUP_INL_H_
@@ -13,20 +13,21 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Picks row[index of the lane] of rows of eight numbers; the indices are 0 to 7, one per lane.
+// Picks row[index of the lane] from rows of eight numbers. The indices are 0 to 7, one per lane.
 class Lookup {
  public:
   using IndexTag = hn::RebindToSigned<Tag>;
   HWY_INLINE explicit Lookup(hn::Vec<IndexTag> indices);
-  explicit Lookup(const std::int64_t* indices) : Lookup(hn::Load(IndexTag(), indices)) {}  // aligned
+  // `indices` is aligned
+  explicit Lookup(const std::int64_t* indices) : Lookup(hn::Load(IndexTag(), indices)) {}
   HWY_INLINE Vec operator()(const double* row) const;
 
  private:
 #if HWY_TARGET == HWY_SCALAR
   std::int64_t index_;
 #else
-  decltype(hn::IndicesFromVec(Tag(), hn::Zero(IndexTag()))) within_;  // a vector
-  Mask is_upper_;                                                     // in the second vector of the row
+  decltype(hn::IndicesFromVec(Tag(), hn::Zero(IndexTag()))) within_;  // index within one vector
+  Mask is_upper_;  // the number is in the second vector of the row
   hn::Vec<IndexTag> indices_;
 #endif
 };

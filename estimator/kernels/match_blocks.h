@@ -1,4 +1,4 @@
-// The matches of a problem as the kernels read them: blocks of eight, one array per coordinate.
+// The matches of a problem in the layout of the kernels: blocks of eight, one array per coordinate.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace rcme {
 
-// Matches (or hypotheses) side by side in a block; every vector width of the kernels divides it.
+// Number of matches (or hypotheses) in a block, a multiple of every vector width of the kernels.
 inline constexpr int kBlockSize = 8;
 
 // Eight matches in whitened coordinates (match_whitening.h). Lanes beyond the last match hold zeros.
@@ -17,8 +17,7 @@ struct alignas(64) MatchBlock {
   double x1[kBlockSize], y1[kBlockSize], x2[kBlockSize], y2[kBlockSize];
 };
 
-// How noisy eight matches are beside the others (MotionProblem::noise_scale), and one over it; 1 beyond the
-// last match.
+// The noise scales of eight matches (MotionProblem::noise_scale) and their inverses; 1 beyond the last match.
 struct alignas(64) ScaleBlock {
   double scale[kBlockSize], inverse[kBlockSize];
 };
@@ -34,7 +33,7 @@ class MatchBlocks {
   int num_blocks() const { return static_cast<int>(blocks_.size()); }
   const MatchBlock* data() const { return blocks_.data(); }
   const MatchBlock& operator[](int block) const { return blocks_[static_cast<size_t>(block)]; }
-  // Empty: all matches are alike.
+  // Empty if all are 1.
   const std::vector<ScaleBlock>& noise_scales() const { return noise_scales_; }
   double NoiseScaleAt(size_t match) const {
     return noise_scales_.empty() ? 1.0 : noise_scales_[match / kBlockSize].scale[match % kBlockSize];
@@ -59,14 +58,14 @@ inline void WriteRowMajor(const Eigen::Matrix3d& matrix, double* to) {
   for (int i = 0; i < 9; ++i) to[i] = matrix(i / 3, i % 3);
 }
 
-// Indices of the matches in the mask, ascending, and back.
+// The indices of the matches in the mask, ascending; and the mask of given indices.
 std::vector<int> ListIndices(const MatchMask& mask);
 MatchMask MakeMask(std::span<const int> indices, const MatchBlocks& matches);
 
 MatchMask Intersection(const MatchMask& a, const MatchMask& b);
 
 int CountIn(const MatchMask& mask);
-// Number of matches in both.
+// Number of matches in both masks.
 int CountInBoth(const MatchMask& a, const MatchMask& b);
 
 }  // namespace rcme

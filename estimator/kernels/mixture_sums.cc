@@ -17,13 +17,13 @@
 #define RCME_ESTIMATOR_KERNELS_MIXTURE_SUMS_ONCE_
 namespace rcme {
 
-// A motion as the kernels take it: F and its derivatives in whitened coordinates, the pose, the scale of
+// A motion in the form of the kernels: F and its derivatives in whitened coordinates, the pose, the scale of
 // rays.
 struct MixtureModel {
   double F[9], dF[5][9];
   TwoViewPose pose;
   RayScale rays;
-  double inverse_noise_rad;  // of the angle between two rays
+  double inverse_noise_rad;  // 1 / noise of the angle between two rays
 };
 // log_likelihood, num_right, sum_squares, num_wrong_near, then gradient and the Hessian's lower triangle.
 inline constexpr int kNumScalars = 4, kNumMixtureSums = kNumScalars + 20;
@@ -41,13 +41,12 @@ HWY_INLINE Vec Power(Vec x, int k) {
   return power;
 }
 
-// Squared gradient of g, the residual's squared standard deviation, kept from zero.
+// Squared gradient of g, which is the variance of g in whitened coordinates, bounded away from zero.
 HWY_INLINE Vec SquaredGradient(const Constraint& c) {
   return Greater(Dot4(c.gradient, c.gradient), Set(1e-100));
 }
 
-// How noisy matches are beside the others; nothing but ones, of which nothing is left in the machine code,
-// where all are alike.
+// The noise scales of some matches. Without noise scales they are constants 1, which the compiler removes.
 struct NoiseScales {
   Vec scale, inverse;
 };
@@ -58,14 +57,14 @@ HWY_INLINE NoiseScales LoadNoiseScales(const MatchBlocks& matches, int block, in
   return {Load(scales.scale + lane), Load(scales.inverse + lane)};
 }
 
-// The parts of the density at some matches, r = g / n. A match that is w times as noisy as the others comes
-// with n w for n, and so r' for r.
+// The terms of the density at some matches, r = g / n. For a match with noise scale w, the caller passes n w
+// for n, so that r is r'.
 struct MixtureTerms {
   Vec inverse_n2, r2;                   // 1 / n^2, r^2
   Vec total, right, weight, curvature;  // density, p, v, p psi' - p (1 - p) psi^2 bounded from below
 };
-// Divisions and roots are what takes time: c(z)^(-1/2) = 1 + min(z / s + 1, 0)^2 is a ratio of polynomials in
-// the depth's `along` and sqrt(square), 1 + u^2 / dof one in g and n^2, and three inverses come from one.
+// Divisions and roots cost the most time. So c(z)^(-1/2) = 1 + min(z / s + 1, 0)^2 is a ratio of polynomials
+// in the depth's `along` and sqrt(square), 1 + u^2 / dof one in g and n^2, and three inverses come from one.
 HWY_INLINE MixtureTerms EvaluateMixture(Vec g, Vec n2, const DepthAngle& depth, double inverse_noise_rad,
                                         const NoiseScales& noise, const MixtureParameters& m) {
   const Vec one = Set(1.0), inverse_s2 = Set(1.0 / (m.scale * m.scale)), g2 = g * g;
@@ -89,7 +88,7 @@ HWY_INLINE MixtureTerms EvaluateMixture(Vec g, Vec n2, const DepthAngle& depth, 
   return terms;
 }
 
-// n dr / dp along the motion's five coordinates (kernels/sampson_equations.h), u = g / n^2: for every
+// n dr / dp along the motion's five coordinates (kernels/sampson_equations.h), with u = g / n^2. For every
 // derivative D of F, x2' D x1 - u (gradient of g)' (gradient of x2' D x1) = sum D_ij W_ij.
 HWY_INLINE void EvaluateSlopes(const MixtureModel& model, const Matches& m, const Constraint& c, Vec u,
                                Vec* slopes) {
@@ -164,7 +163,7 @@ void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, co
   SumMixtureOver<true>(matches, mask, model, parameters, totals);
 }
 
-// `lists`: residual, depth, five derivatives; as if all matches were alike.
+// `lists`: residual, depth, five derivatives, without noise scales.
 void ListTerms(const MatchBlocks& matches, const MixtureModel& model, double* const* lists) {
   for (int b = 0; b < matches.num_blocks(); ++b) {
     for (int lane = 0; lane < kBlockSize; lane += kLanes) {
@@ -227,7 +226,7 @@ HWY_EXPORT(SumCheiralityOverMatches);
 
 namespace {
 
-// The angle between two rays has the noise of both, about the mean of the rays' scales.
+// 1 / noise of the angle between two rays: the noise of both, averaged over the scales of x and y.
 double InverseNoise(const RayScale& s) {
   return 1.0 / std::sqrt(0.5 * (s.x1 * s.x1 + s.y1 * s.y1 + s.x2 * s.x2 + s.y2 * s.y2));
 }

@@ -1,8 +1,8 @@
-// Householder factorization of M' (9x8, one column per constraint) for several samples side by side:
-// M' = Q R, Q = H_0 H_1 ... H_7, H_k = I + tau_k v_k v_k' with v_k zero above row k. The last column of Q is
-// f, the null vector of M; the first eight are A, and M A = R1' (R1 the upper 8x8 of R).
+// Householder factorization of M' (9x8, one column per constraint) for several samples side by side: M' = Q
+// R, Q = H_0 H_1 ... H_7, H_k = I + tau_k v_k v_k' with v_k zero above row k. The last column of Q is f, the
+// null vector of M. The first eight columns are A, and M A = R1' (R1: the upper 8x8 of R).
 //
-// With x the rest of column k, alpha = -sign(x_0) |x| and v = x - alpha e_0: H x = alpha e_0 for
+// Let x be the rest of column k, alpha = -sign(x_0) |x| and v = x - alpha e_0. Then H x = alpha e_0 for
 // tau = -2 / v'v = 1 / (alpha v_0).
 #if defined(RCME_ESTIMATOR_KERNELS_NULL_VECTOR_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_NULL_VECTOR_INL_H_
@@ -19,13 +19,13 @@ HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
 struct ConstraintFactors {
-  Vec columns[8][9];  // M' on entry; then v_k from row k on, above it R
+  Vec columns[8][9];  // M' on entry; then v_k from row k on, R above
   Vec tau[8];
   Vec inverse_pivot[8];               // 1 / R_kk
   Vec smallest_pivot, largest_pivot;  // of |R_kk|
 };
 
-// sum of a_i b_i, i = k..8, in three chains: one would wait for itself.
+// sum of a_i b_i, i = k..8, in three chains, because a single one would wait for its own results.
 template <int k>
 HWY_INLINE Vec DotFrom(const Vec* a, const Vec* b) {
   Vec sums[3] = {Set(0.0), Set(0.0), a[8] * b[8]};
@@ -40,7 +40,7 @@ HWY_INLINE void Reflect(const Vec* v, Vec tau, Vec* b) {
   for (int i = k; i < 9; ++i) b[i] = FusedMulAdd(v[i], weight, b[i]);
 }
 
-// The same to m vectors: first all sums, then all updates.
+// The same for m vectors: first all sums, then all updates.
 template <int k, int m>
 HWY_INLINE void ReflectAll(const Vec* v, Vec tau, Vec (&b)[m][9]) {
   Vec weights[m];
@@ -79,9 +79,9 @@ HWY_INLINE void NullVector(const ConstraintFactors& factors, Vec* f) {
   (std::make_integer_sequence<int, 8>());
 }
 
-// G'b, 8 numbers each, for m 9-vectors b, which are overwritten: the solution y of R1 y = (Q'b)_top, G = A
-// R1^-T, Sigma_f = G D G' (eq. 6). Side by side, because each alone is one long chain of dependent
-// operations.
+// G'b (8 numbers each) for m 9-vectors b, which are overwritten: the solution y of R1 y = (Q'b)_top, where
+// G = A R1^-T and Sigma_f = G D G' (eq. 6). All are computed side by side, because each alone is one long
+// chain of dependent operations.
 template <int m>
 HWY_INLINE void ApplyGainTransposed(const ConstraintFactors& factors, Vec (&b)[m][9], Vec (*y)[8]) {
   [&]<int... k>(std::integer_sequence<int, k...>) {

@@ -1,9 +1,9 @@
-// The printed point test (eq::find-inlier), delta' Sigma_delta^-1 delta (eq::mahalanobis_dist_F) with
+// The point test as printed (eq::find-inlier): delta' Sigma_delta^-1 delta (eq::mahalanobis_dist_F) with
 // Sigma_delta 4x4 (eq::cov_sampson_error_vec), in closed form.
 //
-// In whitened coordinates (unit noise) let j, g, n2 = |j|^2 be the gradient, value and squared gradient of
-// the constraint, j_k, g_k those of its derivatives along the principal axes of the motion, H the Hessian.
-// The Sampson vector -j g / n2 (eq::sampson_error_vec) depends on match and motion through z = (j, g) alone,
+// In whitened coordinates (unit noise) let g be the value of the constraint, j its gradient, n2 = |j|^2, H
+// its Hessian, and g_k, j_k the value and gradient of its derivatives along the principal axes of the motion.
+// The Sampson vector -j g / n2 (eq::sampson_error_vec) depends on match and motion only through z = (j, g),
 // whose covariance is
 //
 //   X = [[Q, a], [a', D]],   Q = H H' + sum j_k j_k',   a = H j + sum g_k j_k,   D = n2 + sum g_k^2.
@@ -17,8 +17,8 @@
 //
 //   d2 = g^2 j'Q^-1 j / p,   det Sigma_delta = g^6 det(Q) p / n2^8.
 //
-// Nothing is divided by g. Q is factored as L diag(d) L'; cofactors, or 2x2 blocks and their inverses, would
-// be cheaper and lose the digits: the eigenvalues of Q span many decades.
+// There is no division by g. Q is factored as L diag(d) L'. Cofactors, or 2x2 blocks and their inverses,
+// would be cheaper but lose digits, because the eigenvalues of Q span many decades.
 #if defined(RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_PRINTED_DISTANCE_INL_H_
@@ -111,7 +111,7 @@ HWY_INLINE PrintedDistance EvaluatePrinted(const Model& model, const Matches& ma
   return distance;
 }
 
-// d2 <= threshold, of a match (eq::find-inlier) or of a sample's own (eq. 12).
+// Whether d2 <= threshold, for a match (eq::find-inlier) or for a sample's own matches (eq. 12).
 HWY_INLINE Mask IsWithin(const PrintedDistance& distance, Vec threshold) {
   return hn::And(distance.numerator <= threshold * distance.denominator, distance.is_regular);
 }

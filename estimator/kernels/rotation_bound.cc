@@ -27,15 +27,15 @@ HWY_INLINE Vec SquaredDistance(const Vec3& a, const Vec3& b) {
   return Dot(d, d);
 }
 
-// Whether one rotation can explain both: | |a| - |b| | <= reach, a and b the differences in the two images,
-// is a^2 + b^2 - reach^2 <= 2 |a| |b|.
+// Whether one rotation can explain both matches: | |a| - |b| | <= reach, where a and b are the differences in
+// the two images. This is equivalent to a^2 + b^2 - reach^2 <= 2 |a| |b|.
 HWY_INLINE Mask CanShareRotation(const UnitRays& i, const UnitRays& j, Vec squared_reach) {
   const Vec a2 = SquaredDistance(i.first, j.first), b2 = SquaredDistance(i.second, j.second);
   const Vec excess = (a2 + b2) - squared_reach;
   return hn::Not(hn::And(excess > Set(0.0), Square(excess) > Set(4.0) * a2 * b2));
 }
 
-// Of each lane's group, one match of each of `size` blocks.
+// The bound for the group of each lane, which consists of one match of each of `size` blocks.
 HWY_INLINE Vec BoundGroup(const MatchBlock* blocks, int size, const RayScale& scale, int lane,
                           Vec squared_reach) {
   const Vec one = Set(1.0);
@@ -84,7 +84,8 @@ int BoundRotated(const MatchBlocks& matches, double threshold) {
   const double greatest = std::max({s.x1, s.y1, s.x2, s.y2});
   const double squared_reach = 9.68 * threshold * greatest * greatest;  // (2 tau)^2
   const double bound = HWY_DYNAMIC_DISPATCH(SumGroupBounds)(matches, squared_reach);
-  return std::min(static_cast<int>(bound), matches.num_matches());  // lanes beyond the last match counted too
+  // the bound includes lanes beyond the last match
+  return std::min(static_cast<int>(bound), matches.num_matches());
 }
 
 }  // namespace rcme

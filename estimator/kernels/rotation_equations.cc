@@ -48,7 +48,7 @@ HWY_INLINE Transfer EvaluateTransfer(const TwoViewPose& pose, const RayScale& sc
   return t;
 }
 
-// Energy, gradient (3) and the lower triangle of the Hessian (6) of a lane's matches.
+// Sums of a lane's matches: energy, gradient (3) and lower triangle of the Hessian (6).
 template <Loss loss>
 HWY_INLINE void SumLane(const MatchBlocks& matches, const MatchMask& mask, const TwoViewPose& pose, int lane,
                         Vec (&sums)[10]) {

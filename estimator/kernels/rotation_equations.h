@@ -1,5 +1,5 @@
-// The normal equations of a pure rotation, many matches at a time: what refinement/rotation_equations.h
-// states, in whitened coordinates, where the residual e = x2 - h(x1) has covariance C = I + J J'.
+// The normal equations of a pure rotation (refinement/rotation_equations.h), many matches at a time, in
+// whitened coordinates. There the residual e = x2 - h(x1) has covariance C = I + J J'.
 #pragma once
 
 #include "estimator/kernels/score.h"
@@ -7,11 +7,11 @@
 
 namespace rcme {
 
-// Over the matches of the mask.
+// Sums over the matches of the mask.
 RotationEquations LinearizeRotation(const MatchBlocks& matches, const MatchMask& mask,
                                     const Eigen::Matrix3d& R, Loss loss);
 
-// d2 <= threshold, and not behind camera 2.
+// Finds the matches with d2 <= threshold that are in front of camera 2.
 void ScanRotation(const MatchBlocks& matches, const Eigen::Matrix3d& R, double threshold, InlierScan* scan);
 
 }  // namespace rcme

@@ -38,7 +38,7 @@ HWY_INLINE void ForEachBlock(const MatchBlocks& matches, const MatchMask& mask, 
   }
 }
 
-// sum log x of numbers x >= 1, one logarithm for eight blocks of them, b = 0, 1, ...; each up to 1e38.
+// sum log x of numbers 1 <= x <= 1e38, with one logarithm per eight blocks, b = 0, 1, ...
 class LogSum {
  public:
   HWY_INLINE LogSum() : product_(Set(1.0)), sum_(Set(0.0)) {}
@@ -59,7 +59,7 @@ class LogSum {
   Vec product_, sum_;
 };
 
-// The eight partial sums of each of m numbers; each lane of a block has its own.
+// The eight partial sums of each of m numbers, one per lane of a block.
 template <int m>
 struct alignas(64) PartialSums {
   double lanes[m][kBlockSize];
@@ -71,8 +71,8 @@ struct alignas(64) PartialSums {
   }
 };
 
-// With u = g / n^2 and e_k = g_k - g J'J_k / |J|^2: r^2 = g u, r dr/dp_k = u e_k, dr/dp_k dr/dp_l = e_k e_l /
-// n^2. No root is needed. Sums of cost, gradient, Hessian, of a lane's matches.
+// Sums of cost, gradient and Hessian over a lane's matches. With u = g / n^2 and e_k = g_k - g J'J_k / |J|^2:
+// r^2 = g u, r dr/dp_k = u e_k, dr/dp_k dr/dp_l = e_k e_l / n^2. No root is needed.
 template <Loss loss, bool are_scaled>
 HWY_INLINE void SumLane(const MatchBlocks& matches, const MatchMask& mask, const SampsonModel& model,
                         int lane, Vec (&sums)[21]) {

@@ -1,5 +1,5 @@
-// The normal equations of the Sampson distance, many matches at a time: what refinement/sampson_equations.h
-// states, in whitened coordinates.
+// The normal equations of the Sampson distance (refinement/sampson_equations.h), many matches at a time, in
+// whitened coordinates.
 #pragma once
 
 #include "estimator/kernels/match_blocks.h"
@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// What the kernel takes, F and its derivatives along the five coordinates of the motion (whitened
-// coordinates), and what it gives: sums, symmetric matrices as lower triangles row by row.
+// The kernel's input: F and its derivatives along the five coordinates of the motion (whitened coordinates).
+// And its output: sums, symmetric matrices as lower triangles row by row.
 struct SampsonModel {
   double F[9], dF[5][9];
 };
@@ -16,16 +16,16 @@ struct SampsonSums {
   double cost, gradient[5], hessian[15];
 };
 
-// Of sum rho(r^2) / 2 over the matches of the mask, r = g / |J| in units of a match's sigma, at a motion.
-// With J_k and g_k the derivatives of J and g along coordinate k of the motion, dr / dp_k = (g_k - r J'J_k /
-// |J|) / |J|.
+// The normal equations of sum rho(r^2) / 2 over the matches of the mask at a motion, r = g / |J| in units of
+// a match's sigma. With J_k and g_k the derivatives of J and g along coordinate k of the motion,
+// dr / dp_k = (g_k - r J'J_k / |J|) / |J|.
 NormalEquations LinearizeSampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
                                  Loss loss);
 
 // sum g_p' g_p / var g over the matches of the mask.
 Matrix5d SampsonInformation(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose);
 
-// The search of refinement/sampson_mle.h with these equations.
+// The minimisation of refinement/sampson_mle.h with these equations.
 RefinedMotion RefineBySampson(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& start,
                               Loss loss);
 

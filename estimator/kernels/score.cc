@@ -17,15 +17,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Calls visit(matches, are_matches) for every vector of matches, and keeps what it returns: the inliers
-// (eq::find-inlier) and their spreads.
+// The result of visit(matches) for a vector of matches: the inliers (eq::find-inlier) and their spreads.
 struct Visited {
   Mask is_inlier;
   Vec spread;
 };
 
-// One block; returns its inliers and moves *spread behind their spreads. What follows them, up to a block, is
-// overwritten.
+// Scans one block: returns its inliers, and writes their spreads to *spread, which it advances. Overwrites
+// what follows them, up to a block.
 template <bool has_spread, typename Visit>
 HWY_INLINE unsigned ScanBlock(const MatchBlock& block, int num_matches, const Visit& visit, double** spread) {
   unsigned bits = 0;
@@ -95,11 +94,11 @@ void ScanUncertain(const MatchBlock* blocks, int num_matches, const double* F, c
   });
 }
 
-// The vectors of a block.
+// Number of vectors in a block.
 constexpr int kVectors = kBlockSize / kLanes;
 
-// sum over the first `count` of numbers. visit(first, values) writes those of the block that starts there;
-// those beyond are left out.
+// The sum of `count` numbers. visit(first, values) writes the numbers of the block that starts at `first`;
+// those beyond `count` are ignored.
 template <typename Visit>
 HWY_INLINE double SumOverBlocks(int count, const Visit& visit) {
   Vec sums[kVectors], values[kVectors];
@@ -138,8 +137,8 @@ struct Predictions {
   }
 };
 
-// In two steps: polynomial and logarithm are long chains, and one after the other they would fill the window
-// in which a processor finds work for its units.
+// Works in two steps. Polynomial and logarithm are long chains of operations; evaluated one after the other
+// for each vector, they would fill the processor's window for out-of-order execution.
 double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const double* F,
                                 const double* coefficients, double outlier_cost) {
   const Vec half = Set(0.5), log_two_pi = Set(1.8378770664093454836), limit = Set(outlier_cost);
@@ -150,13 +149,13 @@ double SumNegativeLogLikelihood(const MatchBlock* blocks, int num_matches, const
     for (int v = 0; v < kVectors; ++v) {
       const int i = first % kMatchesAtOnce + v * kLanes;
       const Vec d2 = Load(of.d2 + i), log_s2 = ComputeLog(Tag(), Load(of.s2 + i));
-      costs[v] = Lesser(half * (d2 + log_two_pi + log_s2), limit);  // limit too where a number is NaN
+      costs[v] = Lesser(half * (d2 + log_two_pi + log_s2), limit);  // also limit if a number is NaN
     }
   });
 }
 
 // The entropies of the inliers (eq::score-inliers, eq. 15), their mean and the sum of squares about it
-// (eq. 16). Two passes: the sum loses no digits. `spreads` may be read beyond count, up to a block.
+// (eq. 16). Two passes, so that the sum loses no digits. Reads `spreads` beyond count, up to a block.
 void SumEntropies(const double* spreads, int count, double offset, double* mean, double* sum_squares) {
   const Vec half = Set(0.5), shift = Set(offset);
   const auto entropy = [&](int i) {
@@ -180,7 +179,7 @@ void SumEntropies(const double* spreads, int count, double offset, double* mean,
   });
 }
 
-// Each lane a hypothesis with its own model.
+// A hypothesis with its own model in each lane.
 struct ModelPerLane {
   const HypothesisBlock& block;
   int lane;
@@ -273,7 +272,7 @@ void RemoveSample(const Sample& sample, InlierScan* scan) {
     const auto byte = static_cast<size_t>(index / kBlockSize);
     const unsigned bit = 1u << (index % kBlockSize), before = scan->inliers[byte] & (bit - 1u);
     if ((scan->inliers[byte] & bit) == 0) continue;
-    std::ptrdiff_t rank = __builtin_popcount(before);  // among the inliers
+    std::ptrdiff_t rank = __builtin_popcount(before);  // index among the inliers
     for (size_t b = 0; b < byte; ++b) rank += __builtin_popcount(scan->inliers[b]);
     const auto spreads = scan->spreads.begin();
     std::copy(spreads + rank + 1, spreads + scan->num_inliers, spreads + rank);

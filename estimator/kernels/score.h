@@ -1,4 +1,4 @@
-// One hypothesis against all matches: which are inliers (eq::find-inlier), and how uncertain they are
+// Scores one hypothesis against all matches: which are inliers (eq::find-inlier), and how uncertain they are
 // (eq::score-inliers). The same tests as point_consistency.h, many matches at a time.
 #pragma once
 
@@ -11,14 +11,14 @@
 
 namespace rcme {
 
-// A motion with its covariance, in whitened coordinates; one of a block of hypotheses, or any other.
+// A motion with its covariance in whitened coordinates, from a block of hypotheses or any other.
 struct WhitenedModel {
   double F[9];
   double dF[5][9];
 
   WhitenedModel(const HypothesisBlock& block,
-                int hypothesis);  // dF unset where the block's RequestedOutputs is kNone
-  // Nothing if pose_cov is not finite and positive semi-definite.
+                int hypothesis);  // dF is unset if the block's RequestedOutputs is kNone
+  // Nullopt if pose_cov is not finite and positive semi-definite.
   static std::optional<WhitenedModel> From(const MatchBlocks& matches, const RelativePose& pose,
                                            const Matrix5d& pose_cov);
 
@@ -33,8 +33,8 @@ struct VariancePolynomial {
   explicit VariancePolynomial(const double (&dF)[5][9]);
 };
 
-// What a pass over the matches finds. Kept by the caller from hypothesis to hypothesis: no allocation after
-// the first.
+// The result of a pass over the matches. The caller keeps it from one hypothesis to the next, so that only
+// the first one allocates memory.
 struct InlierScan {
   explicit InlierScan(const MatchBlocks& matches)
       : inliers(matches.Empty()), spreads(inliers.size() * kBlockSize + kBlockSize) {}
@@ -44,22 +44,24 @@ struct InlierScan {
                                 // s2 / sigma^2 (rank-aware)
 };
 
-// d2 = g^2 / n2 <= threshold, the motion taken as exact.
+// Finds the inliers d2 = g^2 / n2 <= threshold, with the motion taken as exact.
 void ScanKnownPose(const MatchBlocks& matches, const double* F, double threshold, InlierScan* scan);
-// d2 of printed_distance-inl.h <= threshold.
+// Finds the inliers d2 <= threshold, d2 of printed_distance-inl.h.
 void ScanAsPrinted(const MatchBlocks& matches, const WhitenedModel& model, double threshold,
                    InlierScan* scan);
-// d2 = g^2 / (n2 + variance of g from the motion) <= threshold.
+// Finds the inliers d2 = g^2 / (n2 + variance of g due to the motion) <= threshold.
 void ScanRankAware(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
                    double threshold, InlierScan* scan);
 
-// Takes the matches of a sample, as far as they are inliers, and their spreads out of the scan.
+// Removes those matches of a sample that are inliers, and their spreads, from the scan.
 void RemoveSample(const Sample& sample, InlierScan* scan);
 
-// The entropies h = log(spread) / 2 + offset of the inliers (eq. 15), summarised by psi and s (eq. 16).
+// Summarises the entropies h = log(spread) / 2 + offset of the inliers (eq. 15) by psi and s (eq. 16).
 InlierScore SummarizeEntropies(const InlierScan& scan, double offset);
 
-// Predictive: sum over all matches of min(outlier_cost, (d2 + log(2 pi s2 / sigma^2)) / 2), rank-aware.
+// Predictive likelihood, rank-aware: the sum over all matches of
+//
+//   min(outlier_cost, (d2 + log(2 pi s2 / sigma^2)) / 2)
 double NegativeLogLikelihood(const MatchBlocks& matches, const double* F, const VariancePolynomial& variance,
                              double outlier_cost);
 

@@ -13,8 +13,8 @@ namespace rcme::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Products and sums are rounded one by one, and each place of a block has its own partial sum: the same bits
-// on every instruction set.
+// Each product and sum is rounded separately, and each place of a block has its own partial sum. So every
+// instruction set gives the same bits.
 double SumOverBlocks(const ScoreBlock* blocks, int num_matches, const float* F, float s2) {
   using FloatTag = hn::CappedTag<float, kScoreBlockSize>;
   using FloatVec = hn::Vec<FloatTag>;
@@ -73,7 +73,7 @@ double ScoreMatches::SumScores(const double* F, double scale, int first, int end
   double largest = 0.0;
   for (int i = 0; i < 9; ++i) largest = std::max(largest, F[i] < 0.0 ? -F[i] : F[i]);
   if (!(largest > 0.0) || end <= first) return 0.0;
-  float entries[9];  // of length about 1: products stay within the range of single precision
+  float entries[9];  // of norm about 1, so that products stay within the range of single precision
   for (int i = 0; i < 9; ++i) entries[i] = static_cast<float>(F[i] / largest);
   const double sum = HWY_DYNAMIC_DISPATCH(SumOverBlocks)(blocks_.data() + first / kScoreBlockSize,
                                                          std::min(end, num_matches_) - first, entries,

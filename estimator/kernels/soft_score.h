@@ -1,5 +1,6 @@
 // The score that ranks hypotheses: sum over matches of v = 1 / (1 + r^2 / s^2), r the Sampson residual (Geman
-// and McClure's loss, turned over). In single precision: it only chooses what is looked at more closely.
+// and McClure's loss, reversed). Single precision suffices, because the score only selects hypotheses for
+// closer examination.
 #pragma once
 
 #include <vector>
@@ -19,8 +20,8 @@ class ScoreMatches {
  public:
   explicit ScoreMatches(const MatchBlocks& matches);
   int num_matches() const { return num_matches_; }
-  // Of matches first, ..., end - 1; `first` is a multiple of kScoreBlockSize. F in whitened coordinates, row
-  // by row, of any length; `scale` is s in units of the assumed sigma.
+  // The score of matches first, ..., end - 1. `first` is a multiple of kScoreBlockSize. F is in whitened
+  // coordinates, row by row, of any norm. `scale` is s in units of the assumed sigma.
   double SumScores(const double* F, double scale, int first, int end) const;
 
  private:

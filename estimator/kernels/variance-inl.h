@@ -1,6 +1,6 @@
-// The squared residual of a match and its two variances: the noise of the match and that of the motion. The
-// latter is evaluated as one polynomial (VariancePolynomial): 36 multiplications where five bilinear forms
-// take 45.
+// The squared residual of a match and its two variances, from the noise of the match and from the motion. The
+// latter is evaluated as one polynomial (VariancePolynomial), which takes 36 multiplications instead of the
+// 45 of five bilinear forms.
 #if defined(RCME_ESTIMATOR_KERNELS_VARIANCE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_VARIANCE_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_VARIANCE_INL_H_
@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// Value of the polynomial in the monomials of both images.
+// The value of the polynomial in the monomials of both images.
 HWY_INLINE Vec EvaluateVariance(const double* coefficients, const Matches& m) {
   const Vec one[] = {m.x1 * m.x1, m.x1 * m.y1, m.x1, m.y1 * m.y1, m.y1};
   const Vec two[] = {m.x2 * m.x2, m.x2 * m.y2, m.x2, m.y2 * m.y2, m.y2};
@@ -26,7 +26,7 @@ HWY_INLINE Vec EvaluateVariance(const double* coefficients, const Matches& m) {
   return value;
 }
 
-// g^2, n2 = |J|^2, and the variance of g that comes from the motion.
+// g^2, n2 = |J|^2, and the variance of g due to the motion.
 struct RankAwareTerms {
   Vec g2, n2, variance;
 };
