@@ -29,7 +29,7 @@ class ConformedEstimator : public MotionEstimator {
   bool refuses_;
 };
 
-// Of no file: it refuses everything.
+// The estimator without a file: it refuses every problem.
 class Unconformed : public MotionEstimator {
  public:
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream&) const override {

@@ -1,5 +1,5 @@
-// The estimator `conform`: another estimator, whose answers are made to keep their word by what problems with
-// truth have taught (conform_rule.h, `rcme conform`).
+// The estimator `conform`: calibrates the answers of another estimator by a rule that was learned on problems
+// with known truth (conform_rule.h, `rcme conform`).
 #pragma once
 
 #include <memory>
@@ -12,11 +12,12 @@ namespace rcme {
 
 inline constexpr const char* kConformEstimator = "conform";
 
-// Options: file, digest (of its content: another is refused), accept_rule (apply: refuse what the rule does
-// not accept; ignore: state the probability alone). The file names the estimator with its options.
+// Options: file; digest (of its content; a file with another one is refused); accept_rule (apply: refuse
+// answers that the rule does not accept; ignore: only state the probability). The file names the estimator
+// and its options.
 std::unique_ptr<EstimatorModel> ConformModel();
 
-// What the options `file` and `digest` take. Throws InputError as ReadConformFile.
+// The values of the options `file` and `digest` for a file. Throws InputError as ReadConformFile.
 Settings ConformOptions(const std::string& path);
 
 }  // namespace rcme

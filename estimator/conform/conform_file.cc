@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON has finite numbers alone.
+// JSON has only finite numbers.
 Json FactorAsJson(double factor) { return std::isfinite(factor) ? Json(factor) : Json("all motions"); }
 
 Json ModelAsJson(const FeatureModel& model) {
@@ -36,7 +36,7 @@ Json ModelAsJson(const FeatureModel& model) {
   return {{"intercept", model.intercept}, {"terms", std::move(terms)}};
 }
 
-// Reads the values of an object; what is wrong is a std::invalid_argument that names the key.
+// Reads the values of an object. Throws std::invalid_argument that names the key if one is wrong.
 class ObjectReader {
  public:
   ObjectReader(const Json& json, std::string name) : json_(json), name_(std::move(name)) {
@@ -54,14 +54,14 @@ class ObjectReader {
     if (!value.is_number()) Fail(fmt::format("'{}' is no number", key));
     return value.get<double>();
   }
-  // Between the two, neither included.
+  // A number between two bounds, both excluded.
   double NumberBetween(const std::string& key, double low, double high) {
     const double value = Number(key);
     if (!(value > low && value < high))
       Fail(fmt::format("'{}' is {:.6g}, not between {:.6g} and {:.6g}", key, value, low, high));
     return value;
   }
-  // Of a failure bound.
+  // A failure bound, deg.
   double Angle(const std::string& key) {
     const double value = Number(key);
     if (!(value > 0.0 && value <= 180.0))
@@ -89,7 +89,7 @@ class ObjectReader {
     if (!value.is_array()) Fail(fmt::format("'{}' is no list", key));
     return value;
   }
-  // Every key has to be one that was asked for.
+  // Throws if the object has a key that was not read.
   void RequireNoOther() const {
     for (const auto& [key, value] : json_.items())
       if (!used_.contains(key)) Fail(fmt::format("has an unknown key {}", Quoted(key)));
@@ -191,7 +191,7 @@ void ReadFailure(const Json& json, ConformRule* rule) {
   rule->failure = ModelFrom(reader.At("log_odds"), "log_odds");
   rule->log_odds_intercept = reader.Number("intercept");
   rule->log_odds_slope = reader.Number("slope");
-  if (!(rule->log_odds_slope >= 0.0))  // 0: the odds say nothing
+  if (!(rule->log_odds_slope >= 0.0))  // 0: the log-odds carry no information
     reader.Fail(fmt::format("'slope' is {:.6g}, not at least 0", rule->log_odds_slope));
   reader.RequireNoOther();
 }

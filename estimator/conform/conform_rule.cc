@@ -90,7 +90,8 @@ ConformJudge::ConformJudge(ConformRule rule) : rule_(std::move(rule)) {
   std::ranges::sort(strangeness_);
 }
 
-// The greatest distance of a feature from its median, in median distances; infinite where one is missing.
+// The greatest distance of a feature from its median, in units of the median absolute deviation; infinite if
+// a feature is missing.
 double ConformJudge::Strangeness(const VisibleFeatures& features, size_t* strangest) const {
   double most = 0.0;
   for (size_t j = 0; j < usual_.size(); ++j) {

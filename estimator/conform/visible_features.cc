@@ -18,9 +18,10 @@ namespace rcme {
 namespace {
 
 constexpr double kAgreementLevel = 0.05;
-constexpr double kLeastRatio = 1e-3;  // of a logarithm
+constexpr double kLeastRatio = 1e-3;  // least argument of a logarithm
 constexpr size_t kMostForPlane = 200;
-constexpr int kPlaneSamples = 20;  // of four: one of them lies on a plane of half the matches with .72
+// of four matches: with probability .72 one lies on a plane of half the matches
+constexpr int kPlaneSamples = 20;
 
 double LogOdds(double yes, double no) { return std::log((yes + 1.0) / (no + 1.0)); }
 
@@ -59,7 +60,8 @@ double MedianParallax(const std::vector<RayMatch>& matches, const RayScale& nois
   return ComputeMedian(std::move(parallax));
 }
 
-// The most of these matches that the homography of one of some samples explains, refined.
+// The number of matches on a plane: those that the best homography of a few samples explains, after
+// refinement.
 int CountOnPlane(const RayMatches& all) {
   const double threshold = ConsistencyThreshold(kAgreementLevel);
   RandomStream rng({.seed = 1, .condition = 0, .trial = 0, .purpose = 1});  // the same samples for all

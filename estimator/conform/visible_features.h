@@ -1,6 +1,5 @@
-// What can be seen of a problem and its answer without the truth, as numbers that say how hard the problem
-// is: the quantities by which regions are made wider, probabilities corrected and a shift is noticed
-// (conform_rule.h).
+// Features of a problem and its answer that are visible without the truth and show how hard the problem is.
+// conform_rule.h uses them to widen regions, to correct probabilities and to notice a shift.
 #pragma once
 
 #include <array>
@@ -15,29 +14,30 @@ namespace rcme {
 enum class VisibleFeature {
   kMatches,        // log(1 + matches)
   kAgreeing,       // log(1 + matches that agree with the motion at the assumed sigma)
-  kAgreeingShare,  // log odds of the share of them, one added to either side
+  kAgreeingShare,  // log-odds of their share, with one added on either side
   kResidual,       // log of the residuals' scale over the assumed sigma: median |Sampson distance| / .6745 of
                    // the estimator's inliers, at least .001
   kParallax,       // log of the median parallax over its noise: what the rotation leaves of an agreeing match
                    // over sqrt(2) sigma, at least .001
-  kPlanarity,      // log odds of the share of agreeing matches that one homography explains, one added
-  kSpread,         // log of the standard deviation of agreeing points of image 1 over the focal length
-  kRotation,       // log(.1 + rotation, deg)
-  kAxialShare,     // |t_z|
-  kRotationSd,     // log of the stated standard deviation of the rotation (root of the trace), rad
-  kDirectionSd,    // the same of the direction
-  kStatedOdds,     // log odds of the stated probability of failure, it moved into [1e-4, 1 - 1e-4]
+  // log-odds of the share of agreeing matches that one homography explains, with one added on either side
+  kPlanarity,
+  kSpread,       // log of the standard deviation of agreeing points of image 1 over the focal length
+  kRotation,     // log(.1 + rotation, deg)
+  kAxialShare,   // |t_z|
+  kRotationSd,   // log of the stated standard deviation of the rotation (root of the trace), rad
+  kDirectionSd,  // likewise for the direction
+  kStatedOdds,   // log-odds of the stated probability of failure, clipped to [1e-4, 1 - 1e-4]
 };
 inline constexpr size_t kNumVisibleFeatures = 12;
 
-// In the order of the enumeration; NaN: the answer does not have it.
+// In the order of the enumeration; NaN: the answer does not have the feature.
 using VisibleFeatures = std::array<double, kNumVisibleFeatures>;
 
 // "matches", "agreeing", ...
 const std::vector<std::string>& VisibleFeatureNames();
 
-// Of an answer with a motion (status ok) of as many finite numbers; otherwise all but the number of matches
-// are NaN. A pure function; takes some 0.1 ms for 500 matches.
+// Measures the features of an answer with a motion (status ok) whose numbers are finite; for another answer,
+// all but the number of matches are NaN. A pure function; takes about 0.1 ms for 500 matches.
 VisibleFeatures MeasureVisibleFeatures(const MotionProblem& problem, const MotionEstimate& estimate);
 
 }  // namespace rcme

@@ -15,7 +15,8 @@
 namespace rcme {
 namespace {
 
-constexpr double kLeastKept = 0.05;  // of the information along a direction, without a group
+// share of the information along a direction that is kept without a group
+constexpr double kLeastKept = 0.05;
 
 // Unites the matches whose points in one image are within the radius.
 void UniteNeighbours(const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px,
@@ -29,7 +30,7 @@ void UniteNeighbours(const std::vector<Correspondence>& matches, Eigen::Vector2d
   }
 }
 
-// The places of the matches, group after group, in each group ascending.
+// The indices of the matches by group, ascending within each group.
 struct GroupMembers {
   explicit GroupMembers(std::span<const int> groups)
       : starts(groups.empty() ? 1 : static_cast<size_t>(*std::ranges::max_element(groups)) + 2, 0),
@@ -47,7 +48,7 @@ struct GroupMembers {
   std::vector<size_t> starts, members;
 };
 
-// (1 - A_c)^-1 s_c of a group, of rows in coordinates in which A is the identity.
+// (1 - A_c)^-1 s_c of a group; the rows are in coordinates in which A is the identity.
 Vector5d MoveWithout(std::span<const size_t> group, const std::vector<Vector5d>& rows,
                      const std::vector<double>& residuals) {
   if (group.size() == 1) {

@@ -1,14 +1,14 @@
 // The covariance of a least-squares motion whose residuals are correlated within groups of matches.
 //
-// The motion that minimises 1/2 sum r_i^2 over its matches moves, where the errors of a group c of them are
-// taken away, by (A - A_c)^-1 s_c to first order, with
+// Let a motion minimise 1/2 sum r_i^2 over its matches. If the errors of a group c of them vanish, it moves
+// by (A - A_c)^-1 s_c to first order, with
 //
-//   A = sum J_i' J_i    information, 5x5, of all matches; A_c of the group; J_i = g_p / (sigma |J|), 1x5
+//   A = sum J_i' J_i    information of all matches, 5x5; A_c of the group; J_i = g_p / (sigma |J|), 1x5
 //   s_c = sum J_i' r_i  score of the group, 5x1; r_i = g / (sigma |J|)
 //
-// and if errors of different groups are independent, C = sum_c (A - A_c)^-1 s_c s_c' (A - A_c)^-1: the
-// sandwich with groups left out as a whole (CR3, Bell and McCaffrey 2002; a delete-one-group jackknife to
-// first order). With each match a group of its own it is HC3 (MacKinnon and White 1985), A^-1 sum (r_i / (1 -
+// If errors of different groups are independent, C = sum_c (A - A_c)^-1 s_c s_c' (A - A_c)^-1. This is the
+// sandwich that leaves out whole groups (CR3, Bell and McCaffrey 2002; to first order a delete-one-group
+// jackknife). If each match is a group of its own, it is HC3 (MacKinnon and White 1985), A^-1 sum (r_i / (1 -
 // h_i))^2 J_i' J_i A^-1. sigma cancels.
 #pragma once
 
@@ -24,21 +24,21 @@ struct MatchScores {
   std::vector<Vector5d> rows;     // J_i', 5x1
   std::vector<double> residuals;  // r_i
   std::vector<Correspondence> matches;
-  std::vector<Eigen::Vector4d> normals;  // derivatives of g along both points, of length 1
+  std::vector<Eigen::Vector4d> normals;  // derivatives of g by both points, of length 1
   Matrix5d information = Matrix5d::Zero();
 };
 MatchScores ScoreFitted(const MotionProblem& problem, std::span<const int> fitted, const RelativePose& pose);
 
-// C, `groups` the number of the group of each score, 0, 1, ... NaN where A is not positive definite. A group
-// that holds more than 0.95 of the information along a direction counts as if it held that.
+// Computes C. `groups` holds the group 0, 1, ... of each score. Returns NaN if A is not positive definite. A
+// group with more than 0.95 of the information along a direction counts as if it had 0.95.
 Matrix5d ClusteredCovariance(const MatchScores& scores, std::span<const int> groups);
 
-// Each match a group of its own.
+// Makes each match a group of its own.
 std::vector<int> Separate(size_t num_matches);
-// Matches that share a key point: they lie within `radius_px` of each other in image 1, or in image 2,
-// directly or by way of others.
+// Groups the matches that share a key point: they lie within `radius_px` of each other in image 1 or in image
+// 2, directly or through other matches.
 std::vector<int> KeyPointGroups(const std::vector<Correspondence>& matches, double radius_px);
-// Matches in one block of image 1, of per_side x per_side blocks.
+// Groups the matches by blocks of image 1, per_side x per_side of them.
 std::vector<int> BlockGroups(const Camera& camera1, const std::vector<Correspondence>& matches, int per_side);
 
 }  // namespace rcme

@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kOption = "covariance";
 
-// What an estimator promises with a motion; whoever scores the answer says what is wrong with another.
+// Whether the estimate is a valid motion. Faults of an invalid one are reported when the answer is scored.
 bool IsMotion(const MotionEstimate& estimate, size_t num_matches) {
   const std::vector<int>& inliers = estimate.inliers;
   const bool is_ascending =
@@ -35,7 +35,7 @@ class WithRobust : public MotionEstimator {
       MakeCovarianceRobust(problem, options_, std::nullopt, &estimate);
       return estimate;
     }
-    MotionProblem all_alike = problem;  // as the estimator took them
+    MotionProblem all_alike = problem;  // as the estimator used them
     all_alike.noise_scale.clear();
     MakeCovarianceRobust(all_alike, options_, std::nullopt, &estimate);
     return estimate;

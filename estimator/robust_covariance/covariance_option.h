@@ -1,4 +1,4 @@
-// The option `covariance: robust`, which any estimator can be given.
+// The option `covariance: robust`, available for any estimator.
 #pragma once
 
 #include <memory>
@@ -10,21 +10,21 @@
 
 namespace rcme {
 
-// The same estimator with the options
+// Adds these options to an estimator:
 //
-//   covariance              own (the default: Make gives what the model itself makes) or robust
-//   covariance_factor, covariance_jackknife, focal_sd, principal_point_sd_px, distortion_sd  of the robust
-//   one
+//   covariance  own (default: Make returns what the model itself makes) or robust
+//   covariance_factor, covariance_jackknife, focal_sd, principal_point_sd_px, distortion_sd
+//               of the robust one
 //
-// beside its own. The motion, its inliers and whatever else it says stay, number for number; of a motion
-// (status ok) the covariance is that of robust_covariance.h. Where the inliers determine none the status is
-// degenerate_matches. A model that has an option `covariance` itself stays as it is. The robust covariance is
-// of a fit that weighs all matches alike unless `uses_noise_scale`.
+// With `robust`, a motion (status ok) gets the covariance of robust_covariance.h; the motion, its inliers and
+// all other results do not change. If the inliers determine no covariance, the status is degenerate_matches.
+// A model that already has an option `covariance` is returned unchanged. Unless `uses_noise_scale`, the
+// robust covariance is that of a fit that weights all matches equally.
 std::unique_ptr<EstimatorModel> WithRobustCovariance(std::unique_ptr<EstimatorModel> model,
                                                      bool uses_noise_scale = false);
 
-// Gives a motion the robust covariance, or refuses it. An answer that is none (motion not finite, inliers
-// that are no matches) stays.
+// Replaces the covariance of a motion by the robust one, or refuses the motion. An invalid answer (motion not
+// finite, inliers that are no matches) stays unchanged.
 void MakeCovarianceRobust(const MotionProblem& problem, const RobustCovarianceOptions& options,
                           const std::optional<Matrix5d>& own_cov, MotionEstimate* estimate);
 

@@ -5,7 +5,7 @@
 
 namespace rcme {
 
-// Things 0, 1, ... in sets that are united.
+// Union-find over the elements 0, 1, ...
 class DisjointSets {
  public:
   explicit DisjointSets(size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), size_t{0}); }
@@ -14,7 +14,7 @@ class DisjointSets {
     return i;
   }
   void Unite(size_t i, size_t k) { parent_[Find(i)] = Find(k); }
-  // The number of each thing's set: 0, 1, ... in the order of their first members.
+  // The number of each element's set: 0, 1, ... in the order of their first members.
   std::vector<int> Numbers() {
     std::vector<int> numbers, number_of(parent_.size(), -1);
     numbers.reserve(parent_.size());

@@ -8,7 +8,7 @@
 
 namespace rcme {
 
-// Points in the square cells of a grid as wide as a radius, found by hashing.
+// Points in a grid of square cells, whose width is the radius of search. Cells are found by hashing.
 class PointGrid {
  public:
   PointGrid(size_t num_points, double radius)
@@ -16,8 +16,8 @@ class PointGrid {
     cells_.reserve(num_points);
   }
 
-  // Calls visit(k) for the points k in the cell of x and the eight around it, then adds x as point i. Of a
-  // cell the first 16 stand for all: more would take quadratic time.
+  // Calls visit(k) for the points k in the cell of x and in the eight cells around it, then adds x as point
+  // i. Only the first 16 points of a cell are stored and visited, because more would take quadratic time.
   template <typename Visit>
   void VisitAndAdd(std::uint32_t i, const Eigen::Vector2d& x, const Visit& visit) {
     const Eigen::Vector2d cell = (x / radius_).array().floor();
@@ -56,7 +56,7 @@ class PointGrid {
     const auto bits = std::bit_cast<std::uint64_t>(coordinate + 0.0);  // -0 is 0
     return (bits ^ bits >> 32) * factor;
   }
-  // Of the cell, or the empty one where it belongs.
+  // The slot of the cell, or the empty slot where it belongs.
   size_t FindSlot(std::uint64_t hash, double x, double y) const {
     const size_t last = slots_.size() - 1;
     size_t slot = static_cast<size_t>(hash ^ hash >> 32) & last;
@@ -66,7 +66,7 @@ class PointGrid {
   }
 
   double radius_;
-  std::vector<std::uint32_t> slots_;  // numbers of cells; at least half are empty
+  std::vector<std::uint32_t> slots_;  // indices of cells; at least half are empty
   std::vector<Cell> cells_;
 };
 

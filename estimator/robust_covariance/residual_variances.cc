@@ -16,27 +16,28 @@ constexpr Eigen::Index kNumLengths = kNumCorrelationLengths;
 constexpr double kLongestPx = kNeighbourLengthsPx.back();  // the others are a third and a ninth
 constexpr int kOwn = 0, kKeyPoint = 1, kFirstLength = 2, kNumParts = kNumVarianceParts;
 constexpr size_t kMostKeyPoints = 1500;
-constexpr double kLeastPairs = 1.0;     // of evidence for a part, in full pairs
-constexpr double kLeastDeviance = 1.0;  // half of what Akaike's criterion asks of a parameter
+constexpr double kLeastPairs = 1.0;     // least evidence for a part, in full pairs
+constexpr double kLeastDeviance = 1.0;  // half of what Akaike's criterion demands per parameter
 
 using Parts = ResidualMoments::Parts;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 5>;
 
-// Key points, n of N that the matches have, and their matches' rows of U.
+// The n selected of N key points, and the rows of U of their matches.
 struct KeyPoints {
   double share_kept = 1.0;  // n / N
   std::vector<Correspondence> at;
   std::vector<Eigen::Vector4d> normals;
-  Eigen::VectorXd num_matches, residuals, mean_squares;  // n; of the residuals mean and mean square
+  Eigen::VectorXd num_matches, residuals, mean_squares;  // n each; mean and mean square of the residuals
   Rows sums, means;                                      // n x 5, of the rows
-  // Sums over the matches of U_i' U_i, the same over the number of matches of their key point, and over pairs
-  // of different matches of one, over the number of these: U' U, U' W_0 U, U' W_1 U.
+  // Three sums. U' U: over the matches, of U_i' U_i. U' W_0 U: the same, divided by the number of matches of
+  // the key point. U' W_1 U: over pairs of different matches of a key point, divided by the number of its
+  // pairs.
   Matrix5d squares = Matrix5d::Zero(), within = Matrix5d::Zero(), between = Matrix5d::Zero();
 
   Eigen::Index size() const { return num_matches.size(); }
 };
 
-// Of so many that their pairs can be visited, evenly: the place of each, or -1.
+// Selects evenly spaced key points, few enough to visit their pairs. Returns the place of each, or -1.
 std::vector<Eigen::Index> SelectPlaces(size_t num_points) {
   std::vector<Eigen::Index> places(num_points, -1);
   const size_t num_kept = std::min(num_points, kMostKeyPoints);
@@ -87,15 +88,16 @@ KeyPoints SelectKeyPoints(const MatchScores& scores, std::span<const int> groups
   return points;
 }
 
-// Sums over pairs of different key points: nearly all of the time (kernels/correlated_pairs.h).
+// Sums over pairs of different key points (kernels/correlated_pairs.h). They take nearly all of the time.
 struct PairSums {
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();   // of c_k c_l
-  Eigen::Matrix3d weighted = Eigen::Matrix3d::Zero();  // over both numbers of matches
+  Eigen::Matrix3d weighted = Eigen::Matrix3d::Zero();  // divided by both numbers of matches
   Eigen::Vector3d products = Eigen::Vector3d::Zero();  // of c_k times both residuals
-  std::array<Rows, kNumLengths> sums, means;           // row g: of c_gh times the sum, the mean of rows of h
+  // row g: sum over h of c_gh times the sum, or the mean, of the rows of h
+  std::array<Rows, kNumLengths> sums, means;
 };
 
-// The places of the key points, those of several matches first.
+// The order of the key points: those with several matches first.
 std::vector<Eigen::Index> OrderByRepetition(const KeyPoints& points) {
   std::vector<Eigen::Index> order(points.at.size());
   std::iota(order.begin(), order.end(), Eigen::Index{0});
@@ -183,7 +185,7 @@ ResidualMoments ComputeMoments(const KeyPoints& points) {
   moments.T(kOwn, kOwn) = static_cast<double>(points.size());
   for (int a = kOwn; a < kNumParts; ++a) moments.T(a, kOwn) -= of_weights[a]->trace();
   for (int b = kKeyPoint; b < kNumParts; ++b) {
-    Rows smooth = points.sums;  // K_b U, of a key point's matches
+    Rows smooth = points.sums;  // K_b U, for a match of each key point
     if (b >= kFirstLength) smooth += pairs.sums[static_cast<size_t>(b - kFirstLength)] / points.share_kept;
     const Matrix5d G = points.sums.transpose() * smooth / points.share_kept;
     const Eigen::ArrayXd left = 1.0 - 2.0 * smooth.cwiseProduct(points.means).rowwise().sum().array();
@@ -197,13 +199,13 @@ ResidualMoments ComputeMoments(const KeyPoints& points) {
   return moments;
 }
 
-// Least squares of q - T v over v >= 0, and by how much it is better than v_0 alone.
+// Least squares of q - T v over v >= 0, and its improvement over v_0 alone.
 struct Solution {
   Parts v = Parts::Zero();
   double deviance = 0.0;
 };
 Solution SolveMoments(const ResidualMoments& moments) {
-  std::vector<int> known;  // parts that the matches say something of
+  std::vector<int> known;  // parts for which there is evidence
   for (int a = kOwn; a < kNumParts; ++a) {
     if (moments.M(a, a) >= kLeastPairs || a == kOwn) known.push_back(a);
   }
@@ -231,14 +233,14 @@ Solution SolveMoments(const ResidualMoments& moments) {
   return best;
 }
 
-// Without what thinning may leave of negative eigenvalues.
+// Removes negative eigenvalues, which the selection of key points may cause.
 Matrix5d Nonnegative(const Matrix5d& matrix) {
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(Matrix5d(0.5 * (matrix + matrix.transpose())));
   return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
          eigen.eigenvectors().transpose();
 }
 
-// Fills the shared part of parts v.
+// Computes `shared` from the parts v.
 void SetShared(const Parts& v, const ResidualMoments& moments, const Matrix5d& L,
                ResidualVariances* variances) {
   Matrix5d middle = Matrix5d::Zero();
@@ -272,7 +274,7 @@ std::optional<ResidualMoments> ComputeResidualMoments(const MatchScores& scores,
                                                       double unit_px) {
   const Eigen::LLT<Matrix5d> llt(scores.information);
   if (groups.empty() || llt.info() != Eigen::Success) return std::nullopt;
-  MatchScores in_units = scores;  // only distances depend on where points are
+  MatchScores in_units = scores;  // positions of points matter only for distances
   for (Correspondence& match : in_units.matches) {
     match.x1_px /= unit_px;
     match.x2_px /= unit_px;

@@ -20,7 +20,7 @@ constexpr double kLeastEffect =
     1.25;  // of blocks; where there is none, the sandwich of blocks is 1.13 too large
 constexpr int kMostRefits = 10;
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
-constexpr double kLeastPivot = 1e-4;  // of the triangle of an information, over the greatest
+constexpr double kLeastPivot = 1e-4;  // of the triangle of an information, relative to the greatest
 constexpr size_t kLeastFitted = 6;    // five matches determine a motion exactly
 
 std::vector<Correspondence> SelectMatches(const MotionProblem& problem, std::span<const int> indices) {
@@ -29,13 +29,13 @@ std::vector<Correspondence> SelectMatches(const MotionProblem& problem, std::spa
   return matches;
 }
 
-// The matches of a problem, and the same with the noise of their own residuals.
+// The matches of a problem, and the problem with the noise of its own residuals.
 class AgreeingSearch {
  public:
   explicit AgreeingSearch(const MotionProblem& problem)
       : assumed_sigma_px_(problem.sigma_px), with_own_noise_(problem), matches_(problem) {}
 
-  // The matches that agree with a motion that was fitted to `fitted`; nothing where these determine none.
+  // The matches that agree with a motion that was fitted to `fitted`; none if `fitted` determines no motion.
   std::vector<int> FindAgreeing(const RelativePose& pose, const std::vector<int>& fitted);
   RefinedMotion Refine(const std::vector<int>& fitted, const RelativePose& start) const {
     return RefineBySampson(matches_, MakeMask(fitted, matches_), start, Loss::kSquared);
@@ -50,7 +50,7 @@ class AgreeingSearch {
   MatchTermLists terms_;
 };
 
-// From the median of the residuals' sizes, px.
+// From the median of the residuals' absolute values, px.
 double AgreeingSearch::EstimateSigma(const std::vector<int>& fitted, const RelativePose& pose) {
   EvaluateTerms(matches_, pose, &terms_);
   std::vector<double> sizes;
@@ -59,8 +59,8 @@ double AgreeingSearch::EstimateSigma(const std::vector<int>& fitted, const Relat
   return assumed_sigma_px_ * ValueOfRank(sizes.size() / 2, &sizes) / kNormalQuartile;
 }
 
-// First-order covariance of a motion that was fitted to matches that are taken to be all alike. By the normal
-// equations where their inverse keeps eight digits.
+// First-order covariance of a motion that was fitted to equally weighted matches. Uses the normal equations
+// if their inverse keeps eight digits.
 std::optional<Matrix5d> ComputeFitCovariance(const MotionProblem& problem, const MatchBlocks& matches,
                                              const RelativePose& pose, const std::vector<int>& fitted) {
   if (problem.noise_scale.empty()) {
@@ -84,14 +84,14 @@ std::vector<int> AgreeingSearch::FindAgreeing(const RelativePose& pose, const st
   return ListIndices(with_motion.SelectFitSet({true, pose, *pose_cov, 0}, MakeMask(fitted, matches)));
 }
 
-// How much greater the sandwich of blocks is than a covariance, on average over the directions; 1 where it is
+// How much greater the sandwich of blocks is than a covariance, on average over the directions; 1 if it is
 // hardly greater.
 double DesignEffect(const Matrix5d& covariance, const Matrix5d& of_blocks) {
   const double effect = covariance.llt().solve(of_blocks).trace() / 5.0;
   return std::isfinite(effect) && effect > kLeastEffect ? effect : 1.0;
 }
 
-// C_0 of scores.
+// C_0 from the scores.
 std::optional<Matrix5d> IndependentCovariance(const MatchScores& scores) {
   const size_t n = scores.residuals.size();
   const Matrix5d sandwich = ClusteredCovariance(scores, Separate(n));
