@@ -17,8 +17,8 @@ constexpr double kTightScale = 1.5;  // of the soft score, in units of the assum
 // relative to one motion's noise level; above, a mode may be a compromise
 constexpr double kWideScale = 1.15;
 constexpr size_t kLeastMatches = 12;  // of the second motion
-constexpr double kLeastSplitGain =
-    40.0;  // nats: the search for the second motion, its five parameters, a margin
+// Nats: pays for the search for the second motion and its five parameters, with a margin.
+constexpr double kLeastSplitGain = 40.0;
 
 // The matches that the mode does not explain.
 std::vector<size_t> Unexplained(const Explanation& explanation) {

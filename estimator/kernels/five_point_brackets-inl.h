@@ -52,8 +52,7 @@ inline constexpr std::array<Interval, kNumNodes> kIntervals = MakeIntervals();
 
 // p at the nodes, [node][sample]; bit s of a byte belongs to sample s.
 struct alignas(64) NodeValues {
-  static constexpr int kPad =  // bytes before node 0 and after the last; these nodes wrap around
-      8;  // bytes before node 0; all nodes that fall there or beyond the last wrap around
+  static constexpr int kPad = 8;  // bytes before node 0 and after the last; these nodes wrap around
 
   double p[kNumNodes][kBlockSize];
   std::uint8_t is_negative[kPad + kNumNodes + kPad];

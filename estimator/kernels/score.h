@@ -16,8 +16,8 @@ struct WhitenedModel {
   double F[9];
   double dF[5][9];
 
-  WhitenedModel(const HypothesisBlock& block,
-                int hypothesis);  // dF is unset if the block's RequestedOutputs is kNone
+  // Leaves dF unset if the block's RequestedOutputs is kNone.
+  WhitenedModel(const HypothesisBlock& block, int hypothesis);
   // Nullopt if pose_cov is not finite and positive semi-definite.
   static std::optional<WhitenedModel> From(const MatchBlocks& matches, const RelativePose& pose,
                                            const Matrix5d& pose_cov);

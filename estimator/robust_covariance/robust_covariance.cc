@@ -16,8 +16,8 @@ namespace rcme {
 namespace {
 
 constexpr int kBlocksPerSide = 8, kJackknifeBlocksPerSide = 4;
-constexpr double kLeastEffect =
-    1.25;  // of blocks; where there is none, the sandwich of blocks is 1.13 too large
+// For the sandwich of blocks, which is 1.13 times too large if there is no correlation.
+constexpr double kLeastEffect = 1.25;
 constexpr int kMostRefits = 10;
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
 constexpr double kLeastPivot = 1e-4;  // of the triangle of an information, relative to the greatest

@@ -4,8 +4,7 @@
 //
 //   C_0  for independent errors: the mean of two covariances. One is the sandwich of the matches' own
 //        residuals, HC3 (clustered_covariance.h); it holds if some matches are noisier than others, but is
-//        uncertain for few. The other is s^2 A^-1, s^2 the residuals' variance, for which the opposite is
-//        true.
+//        uncertain for few. The other is s^2 A^-1, s^2 the residuals' variance; the opposite is true of it.
 //   s_0  share of the residuals' variance that belongs to each match alone
 //   C_shared  contribution of the rest: matches of one key point (within 1 px of each other in either image)
 //        and neighbours have similar errors, as far as the residuals show (residual_variances.h)

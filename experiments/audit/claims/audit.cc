@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-// Of the claim's id and the check's number: the condition that names the check's random streams.
+// The condition that names the check's random streams, from the claim's id and the check's number.
 std::uint32_t StreamCondition(const std::string& id, size_t check) {
   Fnv1a32 hash;
   hash.Add(fmt::format("{} {}", id, check));
@@ -35,7 +35,7 @@ bool IsNamed(const Claim& claim, const std::string& name) {
   return claim.id == name || claim.id.starts_with(name + ".");
 }
 
-// Seconds on all threads that the check takes if no verdict stops it.
+// Seconds on all threads for a check that no verdict ends early.
 double EstimateWork(const Check& check, const CheckRun& run, int num_threads) {
   if (!check.not_possible.empty()) return 0.0;
   constexpr std::uint32_t kLeastTimed = 4;

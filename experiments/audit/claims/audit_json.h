@@ -6,7 +6,7 @@
 
 namespace rcme {
 
-// Claims, conditions, targets, intervals, verdicts. plots/audit.py draws them. Unknown or unbounded numbers
+// Claims, conditions, targets, intervals, verdicts; the input of plots/audit.py. Unknown or unbounded numbers
 // are null.
 nlohmann::ordered_json AuditAsJson(const Audit& audit);
 

@@ -17,9 +17,9 @@ namespace {
 
 Estimate MakeEstimate(const TargetResult& result) { return {result.measured, result.interval}; }
 
-// The target that decided the checks [begin, end) of a claim: of the check at the asserted noise level (or
-// the nearest below), the first that does not hold, else the first undecided, else the first. Null: none of
-// them has a target.
+// The target that decided the checks [begin, end) of a claim. It belongs to the check at the asserted noise
+// level (or the nearest below), and is the first that does not hold, else the first undecided one, else the
+// first. Null if none of the checks has a target.
 struct Decisive {
   const Check* check;
   const Target* target;
@@ -48,7 +48,8 @@ Decisive FindDecisive(const Claim& claim, const ClaimResult& result, size_t begi
   return best;
 }
 
-// One row per claim and condition of a study, after one for all conditions where there are several.
+// One row per claim and condition of a study. If there are several conditions, a row for all of them
+// precedes.
 Table MakeConditionTable(const Audit& audit) {
   Table table{{Column::Key("claim"), Column::Key("condition"), Column::Text("verdict"),
                Column::Text("quantity"), Column::Text("claimed"), Column::Estimated("measured", kFourDigits),
@@ -102,7 +103,7 @@ Table MakeClaimTable(const Audit& audit) {
   return table;
 }
 
-// A row per claimed or measured number.
+// One row per claimed or measured number.
 Table MakeNumberTable(const Audit& audit) {
   Table table{{Column::Key("claim"),
                Column::Text("family"),

@@ -7,14 +7,14 @@
 
 namespace rcme {
 
-// What was laid down before the run: of each claimed quantity the range that counts as nominal, the trials of
-// the budget, the probability that the claim holds where everything is nominal, and the smallest departure
-// that is found with probability 0.9. Of a claim with several checks the first.
+// The design of the audit, before any run. For each claimed quantity: the range that counts as nominal, the
+// trials of the budget, the probability that the claim holds if everything is nominal, and the smallest
+// deviation that is detected with probability 0.9. For a claim with several checks, those of the first.
 CommandResult MakePlanResult(const Audit& plan);
 
-// For people one row per claim: its verdict and the number that decided it, with interval and n; on a study
-// one per claim and condition. In files a row per claimed or measured number; in JSON also what audit_json.h
-// has.
+// The result of an audit. On the screen it has one row per claim: its verdict and the number that decided it,
+// with interval and n; on a study, one row per claim and condition. Files have one row per claimed or
+// measured number; JSON also has the contents of audit_json.h.
 CommandResult MakeAuditResult(const Audit& audit);
 
 }  // namespace rcme

@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-// The coverage by fifths of difficulty, the worst one named.
+// The coverage by fifths of difficulty; names the worst one.
 std::string FifthsAsMarkdown(const Claim& claim, const ClaimResult& result) {
   std::string text;
   for (size_t c = 0; c < claim.checks.size(); ++c) {
@@ -32,7 +32,7 @@ std::string FifthsAsMarkdown(const Claim& claim, const ClaimResult& result) {
   return text;
 }
 
-// What would decide an undecided target; else nothing.
+// What would decide an undecided target; empty for others.
 std::string DescribeRemedy(const TargetResult& target) {
   if (target.verdict != Verdict::kUndecided) return "";
   return std::isfinite(target.trials_to_decide)
@@ -70,7 +70,7 @@ std::string ClaimAsMarkdown(const Audit& audit, const Claim& claim, const ClaimR
          RenderMarkdown(MakeEvidenceTable(audit, claim, result)) + FifthsAsMarkdown(claim, result) + "\n";
 }
 
-// The verdicts: of the claims, and beside them those of a study's conditions where they fit on a page.
+// The verdicts of the claims, and beside them those of a study's conditions if they fit on a page.
 Table MakeVerdictTable(const Audit& audit) {
   constexpr size_t kMostColumns = 8;
   size_t num_columns = 0;

@@ -6,8 +6,8 @@
 
 namespace rcme {
 
-// The audit as a page of Markdown: verdict table, and per family its figure, the sentences and every measured
-// number.
+// The audit as a page of Markdown: the table of verdicts, then for each family its figure, its sentences and
+// every measured number.
 std::string AuditAsMarkdown(const Audit& audit);
 
 }  // namespace rcme

@@ -18,7 +18,7 @@
 namespace rcme {
 namespace {
 
-// What the results depend on, a line for each thing.
+// Everything on which the results depend, one line each.
 std::string Identity(const Audit& plan) {
   const AuditOptions& options = plan.options;
   std::string identity = fmt::format("seed: {}\nbudget: {}\nclaimed numbers: {}\n", options.seed,
@@ -37,7 +37,7 @@ WorkPlan PlanOfChecks(const Audit& plan, const std::string& work, const std::str
   return items;
 }
 
-// A round is kept as a part is, with one piece for each check: how many blocks it needs.
+// A round is stored like a part, with one piece per check: the number of blocks it needs.
 WorkPlan PlanRound(const Audit& plan) {
   return PlanOfChecks(plan, "round of an audit", "number", AuditRound(ListCheckPlaces(plan).size(), 1));
 }
@@ -58,8 +58,8 @@ std::vector<ItemPlace> ListItems(const AuditRound& round) {
   return places;
 }
 
-// Counts the blocks of a check that the parts hold, as far as they lead without a gap and are needed: its
-// result, and how many blocks it needs.
+// Evaluates those blocks of a check that the parts hold, in order, up to the first gap or the verdict. Sets
+// the check's result and returns how many blocks it needs.
 size_t CountBlocks(const Audit& plan, const CheckPlace& place, const TrialBlocks& blocks, size_t group,
                    const WorkPlan& pieces, const WorkResults& parts, CheckResult* result) {
   const Check& check = CheckAt(plan, place);

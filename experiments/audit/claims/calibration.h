@@ -1,5 +1,5 @@
-// The claims about calibration, which make sense for cases from anywhere: one function per family, each claim
-// without its cases.
+// The claims about calibration, one function per family. They make sense for cases from any source, so that
+// these claims have no cases yet.
 #pragma once
 
 #include "experiments/audit/claims/case_claim.h"
@@ -7,26 +7,27 @@
 
 namespace rcme {
 
-std::vector<CaseClaim> SigmaFCalibration();      // coverage of f, for every solver of any motion
-std::vector<CaseClaim> SigmaPCalibration();      // of the motion of eight points
-std::vector<CaseClaim> InlierCalibration();      // of a point: the known motion, a fresh point, an own point
+std::vector<CaseClaim> SigmaFCalibration();  // coverage of f, for every solver that finds general motions
+std::vector<CaseClaim> SigmaPCalibration();  // coverage of the motion from eight points
+// coverage of a point, for the known motion, a fresh and an own point
+std::vector<CaseClaim> InlierCalibration();
 std::vector<CaseClaim> SampleTestCalibration();  // size of the sample test
 std::vector<CaseClaim> EntropyCalibration();     // the entropy's unit
 std::vector<CaseClaim> MleCalibration();         // coverage of maximum likelihood
-// Coverage of the covariance that an estimator reports. `reading` says which estimator with which options.
+// Coverage of the covariance that an estimator reports. `reading` names the estimator and its options.
 CaseClaim EstimatorCalibration(const std::string& label, const std::string& reading,
                                std::shared_ptr<const MotionEstimator> estimator, const FailureBounds& bounds);
 
-// That no more of its motions are beyond the bounds than its answers say, and that the probabilities of
-// failure are right where it states them.
+// That the estimator's motions do not exceed the bounds more often than its answers say, and that its stated
+// probabilities of failure, if any, are right.
 CaseClaim FailureCalibration(const std::string& label, const std::string& reading,
                              std::shared_ptr<const MotionEstimator> estimator, const FailureBounds& bounds);
 
-// That the noise level is right where it states one.
+// That the stated noise level, if any, is right.
 CaseClaim SigmaCalibration(const std::string& label, const std::string& reading,
                            std::shared_ptr<const MotionEstimator> estimator);
 
-// All of them. What an estimator states its answers say, never its name or its options.
+// All three. What an estimator states is taken from its answers, never from its name or options.
 std::vector<CaseClaim> AnswerCalibration(const std::string& label, const std::string& reading,
                                          std::shared_ptr<const MotionEstimator> estimator,
                                          const FailureBounds& bounds);

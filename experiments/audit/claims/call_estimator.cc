@@ -64,7 +64,7 @@ std::vector<Target> ReportedCovarianceTargets() {
 double DrawShareBeyond(const MotionEstimate& answer, const FailureBounds& bounds, RandomStream& rng) {
   constexpr int kNumDraws = 16;
   const RelativePose& pose = answer.cam2_from_cam1;
-  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(answer.pose_cov);  // which may be singular
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(answer.pose_cov);  // pose_cov may be singular
   const Vector5d sd = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
   constexpr double kFarthest = 8.0;  // in standard deviations; beyond with probability 2e-12
   const double least_bound_deg = std::min(bounds.max_rotation_error_deg, bounds.max_direction_error_deg);
@@ -92,7 +92,7 @@ Outcome FailureStatistic(const TrialRecord& record, const ImpliedFailure& implie
 
 Outcome StatedFailureStatistic(const MotionEstimator& estimator, Case& made, const FailureBounds& bounds) {
   const auto [answer, record] = AskEstimator(estimator, made);
-  ImpliedFailure implied;  // of an answer without a covariance nothing
+  ImpliedFailure implied;  // share 0 for an answer without a covariance
   if (record.status == MotionStatus::kOk) {
     implied.is_sure = DrawShareBeyond(answer, bounds, made.rng) == 0.0;
     implied.share = DrawShareBeyond(answer, bounds, made.rng);
@@ -101,8 +101,8 @@ Outcome StatedFailureStatistic(const MotionEstimator& estimator, Case& made, con
 }
 
 std::vector<Target> StatedFailureTargets() {
-  // Bounded means count on a grid (stats/score_mean.h); the ranges are such that 0, where most of the trials
-  // are, is a point of it.
+  // Bounded means count on a grid (stats/score_mean.h). The ranges make 0, the value of most trials, a grid
+  // point.
   return {PlannedBoundedMean("failures of sure answers less what they state", 0.0,
                              {-1.0, kUnstatedFailures.margin}, {-1.0, 1.0}, kUnstatedFailures),
           IfStated(PlannedBoundedMean("stated less actual rate of failures", 0.0,

@@ -15,9 +15,9 @@ struct Case {
   StreamName name;
   Scene scene;       // exact
   TrialData data;    // its noisy matches in random order, and the truth
-  RandomStream rng;  // for what the check itself draws
-  double sigma_px_true =
-      std::numeric_limits<double>::quiet_NaN();  // of the noise; the problem has the assumed
+  RandomStream rng;  // for draws of the check itself
+  // The true noise level; the problem states the assumed one.
+  double sigma_px_true = std::numeric_limits<double>::quiet_NaN();
 
   const MotionProblem& problem() const { return data.problem; }
   const RelativePose& pose_true() const { return scene.cam2_from_cam1_true; }
@@ -26,21 +26,22 @@ struct Case {
 using CaseMaker = std::function<Case(const StreamName&)>;
 using Statistic = std::function<Outcome(Case&)>;
 
-// The cases of simulated data.
+// Cases of simulated data.
 CaseMaker CasesFrom(std::shared_ptr<const SimulatedData> simulated);
 
-// Simulated cases; `settings` override the defaults of the scene uniform_volume and of noise; no outliers
-// unless outlier_ratio is given.
+// Simulated cases. `settings` override the defaults of the scene uniform_volume and of noise. There are no
+// outliers unless outlier_ratio is given.
 CaseMaker SimulatedCases(const Settings& settings);
 
-// The settings of SimulatedCases in full.
+// All settings of SimulatedCases, including defaults.
 Settings ResolveCaseSettings(const Settings& settings);
 
 // A check of `statistic` on simulated cases.
 Check MakeCheck(const Settings& settings, const Statistic& statistic, const std::vector<Target>& targets,
                 const TrialLimits& limits);
 
-// Noise levels for claims about minimal samples: from where first order holds to beyond the paper's 0.5 px.
+// Noise levels for claims about minimal samples: from the range of first-order theory to beyond the paper's
+// 0.5 px.
 inline const std::vector<double> kNoiseLevelsPx = {1e-6, 1e-4, 1e-3, 0.01, 0.1, 0.5, 1.0};
 
 // The same check at several noise levels.
@@ -49,13 +50,13 @@ std::vector<Check> ChecksAtNoiseLevels(const std::vector<double>& sigmas_px, con
                                        const TrialLimits& limits);
 
 // Coverage of the 1 - alpha regions of a chi-square law at alpha = .5, .2, .1, .05, .01, alpha = .05 first,
-// and the mean of its probability integral transform. What counts as nominal: what sigmas wrong by the
-// tolerance would do.
+// and the mean of its probability integral transform. The allowed range is the effect of sigmas wrong by the
+// tolerance.
 std::vector<Target> CoverageTargets(int degrees_of_freedom,
                                     const ScaleTolerance& tolerance = kFormulaTolerance);
 
-// An identity that holds in at least 999 of 1,000 trials: the statistic, a relative deviation, is within
-// `tolerance`.
+// A target for an identity: the statistic, a relative deviation, is within `tolerance` in at least 999 of
+// 1,000 trials.
 Target IdentityTarget(const std::string& quantity, double tolerance, size_t statistic = 0);
 
 }  // namespace rcme

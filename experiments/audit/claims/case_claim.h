@@ -1,5 +1,5 @@
-// A claim about a statistic of a trial, before it is said where the trials come from: from the built-in scene
-// (below) or from a study (study_claims.h).
+// A claim about a statistic of a trial, independent of the source of the trials: the built-in scene (below)
+// or a study (study_claims.h).
 #pragma once
 
 #include <string>
@@ -9,16 +9,16 @@
 
 namespace rcme {
 
-// What a statistic takes from a case.
+// The matches of a case that a statistic uses.
 enum class MatchesOf {
-  kSample,  // the first true matches (they are in random order), no more than it needs
+  kSample,  // the first true matches, no more than needed; their order is random
   kTruth,   // all true matches
-  kPair     // all matches, wrong ones included
+  kPair     // all matches, including wrong ones
 };
 struct CaseNeeds {
-  int num_true_matches = 8;  // at least
+  int num_true_matches = 8;  // minimum
   MatchesOf matches = MatchesOf::kSample;
-  bool true_motion = true;  // is compared with the true motion, so that its direction must be defined
+  bool true_motion = true;  // compares with the true motion, whose direction must be defined
 };
 
 struct CaseClaim {
@@ -27,14 +27,14 @@ struct CaseClaim {
   std::vector<Target> targets;
   TrialLimits limits;
   CaseNeeds needs;
-  std::optional<size_t> difficulty_statistic = std::nullopt;  // as of Check
+  std::optional<size_t> difficulty_statistic = std::nullopt;  // as in Check
   std::string not_stated = {};                                // likewise
 };
 
 // The claim on the built-in scene, one check for each of the settings.
 Claim OnBuiltInScene(const CaseClaim& claim, const std::vector<Settings>& settings);
 
-// The same at several noise levels.
+// The claim on the built-in scene, one check per noise level.
 Claim AtNoiseLevels(const CaseClaim& claim, const std::vector<double>& sigmas_px, const Settings& settings);
 
 }  // namespace rcme

@@ -5,8 +5,8 @@
 
 namespace rcme {
 
-// Every claim, family by family. `estimators` are checked as black boxes: the covariances they report, and
-// those that the paper does not know for their failures against standard.
+// Every claim, family by family. `estimators` are checked as black boxes: the covariances they report, and,
+// for estimators that are not in the paper, their failures compared with standard.
 std::vector<Claim> AllClaims(const std::vector<EstimatorEntry>& estimators);
 
 }  // namespace rcme

@@ -37,7 +37,7 @@ const char* Name(Side side) {
 
 std::optional<Side> FindFailedSide(const Target& target, const TargetResult& result) {
   if (!target.IsOfRegion() || result.verdict != Verdict::kDoesNotHold) return std::nullopt;
-  // A region that is too narrow covers too seldom, and the truth lies too far out in its law.
+  // A region that is too narrow covers too rarely, and its mean PIT is too great.
   const bool is_below = result.interval.upper < target.allowed.lower;
   return is_below == (target.kind == Target::Kind::kCoverage) ? Side::kTooNarrow : Side::kTooWide;
 }
@@ -82,7 +82,7 @@ void JudgeClaim(const Claim& claim, ClaimResult* result) {
     if (verdict != Verdict::kHolds || !has_noise_levels) break;
     result->holds_up_to_sigma_px = sigma_px;
   }
-  bool fails = false, is_undecided = false;  // at a noise level up to the asserted one
+  bool fails = false, is_undecided = false;  // at any noise level up to the asserted one
   for (const auto& [sigma_px, verdict] : noise_levels) {
     if (sigma_px > kAssertedSigmaPx && sigma_px > noise_levels.front().first) continue;
     fails |= verdict == Verdict::kDoesNotHold;

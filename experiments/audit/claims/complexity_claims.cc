@@ -23,8 +23,7 @@ double Exponent(const std::vector<double>& x, const std::vector<double>& y) {
   return products / squares;
 }
 
-// Processor time of this thread, s; the lesser of two runs, so that what else the machine does counts
-// little.
+// Processor time of this thread, s: the lesser of two runs, so that other load of the machine matters little.
 double MeasureSeconds(const std::function<void()>& work) {
   double least = std::numeric_limits<double>::infinity();
   for (int run = 0; run < 2; ++run) {

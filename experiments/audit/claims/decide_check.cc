@@ -19,7 +19,7 @@ bool HasSequenceOfMean(const Target& target) {
   return target.kind == Target::Kind::kMeanPit || target.kind == Target::Kind::kBoundedMean;
 }
 
-// What is averaged of a statistic, in the target's range.
+// The value of a statistic that is averaged, in the target's range.
 double BoundedNumber(const Target& target, double value) {
   if (target.kind == Target::Kind::kBoundedMean) return value;
   return value >= 0.0 && std::isfinite(value) ? ChiSquareCdf(target.degrees_of_freedom, value) : 1.0;
@@ -43,7 +43,7 @@ TargetResult Measure(const Target& target, const TargetTally& tally, double conf
   return result;
 }
 
-// Trials of the check until a mean's interval fits between the estimate and the nearest border.
+// Number of trials until a mean's interval fits between the estimate and the nearest border.
 double TrialsToDecideMean(const TargetResult& result, const Interval& allowed) {
   const double gap =
       std::min(std::abs(result.measured - allowed.lower), std::abs(result.measured - allowed.upper));

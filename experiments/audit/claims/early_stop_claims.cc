@@ -6,7 +6,7 @@
 namespace rcme {
 namespace {
 
-// `mu` is that of the reading by default.
+// `mu`: the default of the reading.
 Claim EarlyStopClaim(const std::string& reading, const std::string& mu, const std::string& name) {
   std::shared_ptr<const MotionEstimator> all = MakeEstimator("rcme", {{"reading", reading}});
   std::shared_ptr<const MotionEstimator> early =

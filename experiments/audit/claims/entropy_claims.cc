@@ -17,7 +17,7 @@ namespace {
 const Sample kFirstEight = {0, 1, 2, 3, 4, 5, 6, 7};
 const char* const kEntropyLabel = "eq::score-inliers";
 
-// The same problem with pixels half as large: every coordinate and sigma twice as large.
+// The same problem with pixels of half the size: every coordinate and sigma is doubled.
 MotionProblem InHalfPixels(MotionProblem problem) {
   for (Camera* camera : {&problem.camera1, &problem.camera2}) {
     camera->fx *= 2.0, camera->fy *= 2.0, camera->cx *= 2.0, camera->cy *= 2.0;
@@ -28,8 +28,8 @@ MotionProblem InHalfPixels(MotionProblem problem) {
   return problem;
 }
 
-// Whether psi stays the same in half pixels, by how many log 2 it shifts (NaN without inliers), and whether
-// the quality test's verdict stays.
+// For half pixels: whether psi stays the same, by how many log 2 it shifts (NaN without inliers), and whether
+// the quality test's verdict stays the same.
 template <typename PointTest>
 Statistic UnitStatistic(Reading reading) {
   RansacOptions options;
@@ -54,23 +54,23 @@ std::vector<Target> UnitTargets() {
           PlannedRate("share of models with the same verdict", 1.0, kIdentity, 2)};
 }
 
-// The printed entropy h of a match is 3 log|e| plus a rest, e the signed Sampson distance (px).
+// The printed entropy h of a match is 3 log|e| plus another part, e the signed Sampson distance (px).
 struct EntropyParts {
   Moments whole, residual;
-  double sum_products = 0.0;  // of whole and residual
+  double sum_products = 0.0;  // of h and its residual part
   void Add(double h, double log_residual) {
     whole.Add(h), residual.Add(log_residual);
     sum_products += h * log_residual;
   }
-  // Share of the variance of the whole that the residual part carries: Cov(whole, residual) / Var(whole).
+  // Share of the variance of the whole that the residual part explains: Cov(whole, residual) / Var(whole).
   double ResidualShare() const {
     const double n = static_cast<double>(whole.n());
     return (sum_products - n * whole.mean() * residual.mean()) / ((n - 1.0) * whole.variance());
   }
 };
 
-// Share of the residual part in the variance of h among the inliers of a model (mean of the models), and of
-// psi among twenty models of one scene.
+// Share of the residual part in the variance of h among the inliers of a model (mean over the models), and in
+// the variance of psi among twenty models of one scene.
 Outcome ResidualShareStatistic(Case& made) {
   constexpr int kNumModels = 20;
   const MotionProblem& problem = made.problem();
@@ -127,7 +127,8 @@ class PrintedEntropyTest {
   AsPrintedTest as_printed_;
 };
 
-// RCME with the joint sample test and no quality test: all but the score that selects is the same.
+// RCME with the joint sample test and without the quality test. The variants differ only in the score that
+// selects.
 template <typename PointTestT>
 struct SelectionDecision {
   using PointTest = PointTestT;

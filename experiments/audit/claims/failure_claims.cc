@@ -10,7 +10,7 @@ struct Rivals {
   std::shared_ptr<const MotionEstimator> standard, prcme, rcme;
 };
 
-// pRCME and RCME with these options; standard tests its motion as they do by default.
+// pRCME and RCME with these options, and standard with the tests of its motion at `test_level`.
 Rivals MakeRivals(const Settings& options, const char* test_level) {
   return {MakeEstimator("standard", {{"observability_significance_level", test_level},
                                      {"chance_significance_level", test_level}}),

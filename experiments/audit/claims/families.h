@@ -17,12 +17,12 @@ std::vector<Claim> ZTestClaims();       // the test of the mean entropy
 std::vector<Claim> MuClaims();          // its threshold
 std::vector<Claim> FlagClaims();        // the failure flag
 std::vector<Claim> ComplexityClaims();
-// Failure rates, compared: the paper's three, and every other estimator against standard.
+// Comparisons of failure rates: the paper's three, and every other estimator against standard.
 std::vector<Claim> FailureClaims(const std::vector<EstimatorEntry>& estimators);
 std::vector<Claim> EarlyStopClaims();
 std::vector<Claim> EstimatorClaims(
     const std::vector<EstimatorEntry>& estimators);  // any estimator, as a black box
-// What OpenCV's estimators suppose; none where they are not among the peers.
+// The assumptions of OpenCV's estimators; empty if these are not among the peers.
 std::vector<Claim> PeerClaims(const std::vector<EstimatorEntry>& peers);
 
 }  // namespace rcme

@@ -6,7 +6,8 @@
 namespace rcme {
 namespace {
 
-// Of an answer, valid or not: flagged, if it failed; not flagged, if it did not.
+// For an answer, valid or not: whether it is flagged, if it failed; whether it is not flagged, if it did not;
+// whether it failed.
 Outcome FlagStatistic(const MotionEstimator& estimator, const Case& made) {
   const TrialRecord record = CallEstimator(estimator, made);
   if (HasRefused(record)) return {kNaN, kNaN, kNaN};

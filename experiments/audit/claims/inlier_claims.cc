@@ -8,7 +8,7 @@
 namespace rcme {
 namespace {
 
-// Sigma_delta by its pseudo-inverse; the whitened derivatives carry the motion's covariance.
+// Inverts Sigma_delta by its pseudo-inverse. The whitened derivatives carry the motion's covariance.
 double PseudoInverseDistance(const UncertainFundamental& model, double sigma_px,
                              const Correspondence& match) {
   const Eigen::Matrix4d covariance =
@@ -35,7 +35,7 @@ const std::vector<PointReading>& Readings() {
   return readings;
 }
 
-// The conditions of the true-pose claim that nothing was chosen on: always a million points.
+// The conditions of the true-pose claim on which nothing was tuned: always a million points.
 Check UntunedCheck(const PointReading& reading) {
   const Settings settings = {{"num_matches", "1"},
                              {"sigma_px", "0.37"},

@@ -22,7 +22,7 @@ RefinedMotion RefineReprojection(const MotionProblem& problem, const RelativePos
   return RefineByReprojection(problem, indices, start, Loss::kSquared);
 }
 
-// The optimum over all matches, from their linear motion; nothing if there is none.
+// The optimum over all matches, started at their linear motion; nullopt if there is none.
 std::optional<RefinedMotion> FitAll(const MotionProblem& problem, Refine refine) {
   const std::optional<LinearMotion> linear = EstimateLinearMotion(problem);
   if (!linear) return std::nullopt;
@@ -32,7 +32,7 @@ std::optional<RefinedMotion> FitAll(const MotionProblem& problem, Refine refine)
   return refined.converged ? std::optional(refined) : std::nullopt;
 }
 
-// NEES of the optimum under the covariance it reports.
+// NEES of the optimum with the covariance that it reports.
 Statistic NeesStatistic(Refine refine) {
   return [refine](Case& made) -> Outcome {
     const std::optional<RefinedMotion> refined = FitAll(made.problem(), refine);
@@ -41,7 +41,7 @@ Statistic NeesStatistic(Refine refine) {
   };
 }
 
-// NEES of the optimum under the Cramer-Rao bound.
+// NEES of the optimum with the Cramer-Rao bound.
 Statistic CramerRaoStatistic(Refine refine) {
   return [refine](Case& made) -> Outcome {
     const std::optional<Matrix5d> bound = CramerRaoBound(made);
@@ -75,7 +75,7 @@ std::vector<Claim> MleClaims() {
   all.push_back(MakeClaim("cramer_rao", "Sampson error, motion alone",
                           "Maximum likelihood reaches the Cramer-Rao bound",
                           CramerRaoStatistic(RefineAllBySampson), kSampleCoverage.limits));
-  // On a hundred matches: the validity map shows where first order breaks with fewer.
+  // With a hundred matches: the validity map shows where first order fails with fewer.
   std::vector<Claim> claims;
   for (const CaseClaim& claim : all) {
     claims.push_back(AtNoiseLevels(claim, {0.1, 0.5, 1.0}, {{"num_matches", "100"}}));

@@ -1,4 +1,4 @@
-// The entropy of one model's inlier set, as the claims about entropy, Z-test and mu measure it.
+// The entropy of one model's inlier set, for the claims about entropy, Z-test and mu.
 #pragma once
 
 #include "estimator/hypothesis.h"
@@ -8,14 +8,14 @@
 
 namespace rcme {
 
-// The eight-point model of a sample with its covariances; nothing if it is degenerate.
+// The eight-point model of a sample with its covariances; nullopt if it is degenerate.
 std::optional<UncertainFundamental> ComputeSampleModel(const MotionProblem& problem, const Sample& sample);
 
-// Samples of eight matches as RANSAC draws them, given that all of them are true or that not all are.
+// A sample of eight matches as RANSAC draws it, given that all of them are true (kGood) or that not all are.
 enum class SampleKind { kGood, kContaminated };
 Sample DrawSampleByKind(SampleKind kind, Case& made);
 
-// n_j, psi_j and s_j of the model of a sample, scored on all matches; no inlier at all if it is degenerate.
+// n_j, psi_j and s_j of the model of a sample, scored on all matches; without inliers if it is degenerate.
 template <typename PointTest>
 InlierScore ScoreSample(const MotionProblem& problem, const Sample& sample) {
   const std::optional<UncertainFundamental> model = ComputeSampleModel(problem, sample);

@@ -19,8 +19,8 @@ InlierScore ScoreDrawnSample(SampleKind kind, Case& made) {
   return ScoreSample<PointTest>(made.problem(), sample);
 }
 
-// A good model of one scene and a contaminated one of another: whether psi puts them in order, and which of
-// them pass the quality test.
+// For a good model of one scene and a contaminated one of another: whether psi orders them, and which of them
+// pass the quality test.
 template <typename PointTest>
 Check SeparationCheck(Reading reading) {
   RansacOptions options;
@@ -87,7 +87,7 @@ std::vector<Claim> MakeMuClaims(Reading reading, const std::string& id, const st
             RocCheck<PointTest>(SampleKind::kContaminated, thresholds)}}};
 }
 
-// The inlier set of the five-point model of the first five matches of a sample that has most inliers.
+// The largest inlier set among the five-point models of the first five matches of a sample.
 InlierScore FivePointScore(const MotionProblem& problem, const Sample& sample) {
   const Sample first_five = {sample[0], sample[1], sample[2], sample[3], sample[4]};
   const Thresholds thresholds = Thresholds::For(problem, {}, RankAwareTest::kDegreesOfFreedom);
@@ -102,7 +102,7 @@ InlierScore FivePointScore(const MotionProblem& problem, const Sample& sample) {
   return most;
 }
 
-// psi of good models, eight-point and five-point, each of a scene of its own.
+// Compares psi of good models, eight-point and five-point, each of its own scene.
 Claim SolverClaim() {
   const auto pass_at = [](double mu, const std::string& solver, size_t statistic) {
     Target target = MeasuredRate(fmt::format("{}: psi at most {}", solver, mu), statistic);

@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kUsac = "opencv_usac";
 constexpr double kThresholdSigma = 2.0;  // of the calls below, in standard deviations of a true match
 
-// OpenCV 4.6 weighs the residuals of essential and fundamental matrices by a chi-square law of 4 degrees of
-// freedom (MAGSAC++, Barath et al. 2020, has the number as a parameter: the dimension of the residual).
+// OpenCV 4.6 weights the residuals of essential and fundamental matrices by a chi-square law with 4 degrees
+// of freedom. In MAGSAC++ (Barath et al. 2020) this number is a parameter, the dimension of the residual.
 Claim MagsacClaim() {
   const CaseClaim claim = {
       {"peer.magsac.degrees_of_freedom",
@@ -35,8 +35,9 @@ Claim MagsacClaim() {
   return OnBuiltInScene(claim, {{{"num_matches", "1"}}});
 }
 
-// Mean over the true matches among the returned inliers of F(r^2) / F(k^2): uniform on 0..1 where the
-// residual r has the law of the noise, cut off at the threshold k; F of chi2_1, r in units of sigma.
+// Mean of F(r^2) / F(k^2) over the true matches among the returned inliers, where F is the distribution
+// function of chi2_1 and r the residual in units of sigma. It is uniform on 0..1 if r has the law of the
+// noise, cut off at the threshold k.
 Outcome InSampleStatistic(const MotionEstimator& estimator, const Case& made) {
   RandomStream rng = StreamFor(made.name, StreamPurpose::kSampling);
   const MotionProblem& problem = made.problem();

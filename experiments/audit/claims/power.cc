@@ -18,7 +18,8 @@
 namespace rcme {
 namespace {
 
-// The least whole number in [0, n + 1] that is `late`, which is false and then true.
+// The least integer in [0, n + 1] for which `late` is true; `late` is false up to some number and true from
+// there.
 std::int64_t First(std::int64_t n, const std::function<bool(std::int64_t)>& late) {
   std::int64_t low = 0, high = n + 1;
   while (low < high) {
@@ -31,7 +32,7 @@ std::int64_t First(std::int64_t n, const std::function<bool(std::int64_t)>& late
   return high;
 }
 
-// Where between `found` and `not_found` the predicate changes.
+// The point between `found` and `not_found` at which the predicate changes.
 double Border(double found, double not_found, const std::function<bool(double)>& is_found) {
   for (int i = 0; i < 30; ++i) {
     const double middle = 0.5 * (found + not_found);
@@ -82,7 +83,7 @@ TargetPower PowerOfRate(const Target& target, std::int64_t num_trials, double co
   return power;
 }
 
-// A mean's law and the reach of its interval on either side.
+// The law of a mean, and how far its interval reaches to either side.
 struct MeanLaw {
   double mean, standard_error, reach_below, reach_above;
 
@@ -96,8 +97,8 @@ struct MeanLaw {
   }
 };
 
-// The values F(x / c), x chi-square distributed, c = (assumed sigma / true sigma)^2, that n trials are
-// expected to give.
+// The values F(x / c) that n trials are expected to give, with x chi-square distributed and c = (assumed
+// sigma / true sigma)^2.
 ScoreMean ExpectedPits(int degrees_of_freedom, double sigma_error, double n) {
   constexpr int kNumBins = 128;
   const double c = (1.0 + sigma_error) * (1.0 + sigma_error);
@@ -132,17 +133,17 @@ TargetPower PowerOfMeanPit(const Target& target, std::int64_t num_trials, double
   return power;
 }
 
-// Student's at the one look, or the sequence of a bounded mean, which reaches about as far as a normal one
-// with the price of looking.
+// Student's interval at the single look, or the sequence of a bounded mean, which reaches about as far as a
+// normal one at the cost of repeated looks.
 TargetPower PowerOfMean(const Target& target, std::int64_t num_trials, double confidence) {
   const double n = target.planned_share * static_cast<double>(num_trials);
-  constexpr double kNumStakes = 14.0;  // that share the first capital (stats/score_mean.cc)
+  constexpr double kNumStakes = 14.0;  // they share the initial capital (stats/score_mean.cc)
   const double standard_error = target.planned_spread / std::sqrt(n), tail = 0.5 * (1.0 - confidence);
   const double reach = standard_error * (target.kind == Target::Kind::kBoundedMean
                                              ? std::sqrt(2.0 * std::log(2.0 * kNumStakes / tail))
                                              : StudentQuantile(static_cast<int>(n) - 1, 1.0 - tail));
   const double beyond = reach + NormalQuantile(kPowerOfDesign) * standard_error;
-  Interval allowed = target.allowed;  // a border at the end of what is possible is never crossed
+  Interval allowed = target.allowed;  // a border at the end of the possible range is never crossed
   if (target.kind == Target::Kind::kBoundedMean) {
     if (allowed.lower <= target.range.lower) allowed.lower = -kInfinity;
     if (allowed.upper >= target.range.upper) allowed.upper = kInfinity;
@@ -162,11 +163,11 @@ TargetPower ComputePower(const Target& target, std::int64_t num_trials, double c
 }  // namespace
 
 TargetPower FindPower(const Target& target, std::int64_t num_trials, double confidence) {
-  // Everything that the power depends on: a claim's noise levels, and many claims, share theirs.
+  // Everything on which the power depends. The noise levels of a claim, and many claims, have it in common.
   using Key = std::pair<std::array<std::int64_t, 3>, std::array<double, 9>>;
   static std::mutex mutex;
   static std::map<Key, TargetPower> known;
-  const auto or_zero = [](double x) { return std::isnan(x) ? 0.0 : x; };  // a NaN has no place in a map
+  const auto or_zero = [](double x) { return std::isnan(x) ? 0.0 : x; };  // a NaN cannot be a key of a map
   const Key key{{static_cast<std::int64_t>(target.kind), target.degrees_of_freedom, num_trials},
                 {or_zero(target.nominal), target.allowed.lower, target.allowed.upper,
                  or_zero(target.threshold), target.range.lower, target.range.upper, target.planned_share,

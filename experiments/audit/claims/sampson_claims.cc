@@ -10,8 +10,8 @@
 namespace rcme {
 namespace {
 
-// The motion of the first eight matches, moved to the truth, with its covariance; and a match that fits it
-// exactly.
+// The motion of the first eight matches, moved to the truth, with its covariance; and a match that fits this
+// motion exactly.
 struct ExactFit {
   UncertainFundamental model;
   Correspondence match;
@@ -49,8 +49,9 @@ Outcome SampsonRankStatistic(Case& made) {
   return {variances(0) > 1e-12 * variances(3) ? 1.0 : 0.0, variances(2) < 1e-12 * variances(3) ? 1.0 : 0.0};
 }
 
-// log det Sigma_delta = log det(B B'), B = [sigma J_X, J_p L] (4x9): of no closed form that knows how it
-// depends on g, and of B, not of the 4x4 matrix, whose three small eigenvalues fall as g^2 into its rounding.
+// log det Sigma_delta = log det(B B'), B = [sigma J_X, J_p L] (4x9). It does not use a closed form, which
+// would already know the dependence on g. It uses B instead of the 4x4 matrix, whose three small eigenvalues
+// fall as g^2 below its rounding errors.
 double LogDeterminant(const ExactFit& fit, double sigma_px, const Correspondence& match) {
   Eigen::Matrix<double, 9, 4> factor;  // B'
   factor.topRows<4>() = sigma_px * SampsonVectorPointJacobian(fit.model.F, match).transpose();
@@ -59,7 +60,7 @@ double LogDeterminant(const ExactFit& fit, double sigma_px, const Correspondence
   return 2.0 * qr.matrixQR().diagonal().array().abs().log().sum();
 }
 
-// Deviation from 6 of the exponent of det Sigma_delta in g, between 0.01 and 0.003 px from the motion.
+// Deviation of the exponent of det Sigma_delta in g from 6, between 0.01 and 0.003 px from the motion.
 Outcome DeterminantStatistic(Case& made) {
   constexpr double kFarPx = 0.01, kNearPx = 0.003;
   const std::optional<ExactFit> fit = MakeExactFit(made);

@@ -48,7 +48,7 @@ Outcome ExactInverseStatistic(Case& made) {
   return {eigenvalues(0) > 1e-12 * eigenvalues(8) ? 1.0 : 0.0};
 }
 
-// Coverage of f by the covariance of a solver's model. One claim for each solver that there is.
+// Coverage of f by the covariance of a solver's model; one claim per solver.
 CaseClaim MakeCoverageClaim(const std::string& name, MinimalSolver solver) {
   const auto [num_matches, is_exact] = VisitSolver(solver, []<typename Solver>(std::type_identity<Solver>) {
     return std::pair(Solver::kSampleSize, Solver::kCase == SolverCase::kExact);
@@ -70,7 +70,7 @@ CaseClaim MakeCoverageClaim(const std::string& name, MinimalSolver solver) {
       {.num_true_matches = num_matches}};
 }
 
-// One point knows the motion of a car alone.
+// The one-point solver finds only the motion of a car.
 Settings MakeSampleSettings(const CaseClaim& claim, MinimalSolver solver) {
   Settings settings = {{"num_matches", fmt::format("{}", claim.needs.num_true_matches)}};
   if (solver == MinimalSolver::kOnePoint) settings.emplace_back("motion", "ackermann");

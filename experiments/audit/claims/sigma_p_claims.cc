@@ -14,9 +14,9 @@ namespace {
 
 const Settings kSample = {{"num_matches", "8"}};
 
-// NEES of the motion with Sigma_p = J_p Sigma_f J_p'. Of the four motions of the essential matrix the one
-// nearest to the truth: which of them is right is decided by all matches of a pair, and no covariance
-// describes it.
+// NEES of the motion with Sigma_p = J_p Sigma_f J_p'. Takes the one of the four motions of the essential
+// matrix that is nearest to the truth, because all matches of a pair decide which is right, and no covariance
+// describes this choice.
 using Jacobian = Eigen::Matrix<double, 5, 9>;
 Statistic NeesStatistic(Jacobian (*motion_jacobian)(const EssentialProjection&, const RelativePose&)) {
   return [motion_jacobian](Case& made) -> Outcome {
@@ -31,7 +31,8 @@ Statistic NeesStatistic(Jacobian (*motion_jacobian)(const EssentialProjection&, 
 
 Jacobian ThetaJacobian(const EssentialProjection&, const RelativePose& pose) { return MotionJacobian(pose); }
 
-// Whether the 7x7 covariance of p = [q; t] has five eigenvalues above rounding, and whether it has seven.
+// Whether the 7x7 covariance of p = [q; t] has five eigenvalues above rounding errors, and whether it has
+// seven.
 Outcome PoseRankStatistic(Case& made) {
   const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
   if (!hypothesis) return {0.0, 0.0};

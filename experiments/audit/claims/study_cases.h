@@ -8,26 +8,26 @@
 
 namespace rcme {
 
-// The conditions that an audit or a map takes: each costs seconds to minutes.
+// Most conditions for an audit or a map; each costs seconds to minutes.
 inline constexpr size_t kMaxCaseConditions = 1'000;
 
-// Throws InputError for a study that cannot give cases: of pairs from match files nobody knows which matches
-// are true; and for more conditions than that.
+// Throws InputError for a study that cannot give cases: one with pairs from match files, whose true matches
+// are unknown, or one with more conditions than that.
 void RequireCases(const Study& study);
 
-// All settings of a condition's simulation; of a study that can give cases.
+// All settings of a condition's simulation, for a study that can give cases.
 Settings SimulatedSettings(const StudyPlan& plan, const Condition& condition);
 
-// Cases of a condition; their severity is not measured. NotSimulated shows when one is made.
+// Cases of a condition. Their severity is not measured. NotSimulated is thrown when a case is made.
 CaseMaker StudyCases(const StudyPlan& plan, const Condition& condition);
 
-// What a case lacks for a statistic with these needs, in words; empty: nothing.
+// Describes what a case lacks for a statistic with these needs; empty: nothing.
 std::string WhatIsMissing(const Case& made, const CaseNeeds& needs);
 
-// Leaves in the problem only true matches, in their order: the first `num_matches` of them.
+// Reduces the problem to its first `num_matches` true matches, in their order.
 void KeepTrueMatches(TrialData* data, size_t num_matches = std::numeric_limits<size_t>::max());
 
-// Leaves in the problem what a statistic with these needs takes from it.
+// Reduces the problem to the matches that a statistic with these needs uses.
 void KeepWhatIsNeeded(TrialData* data, const CaseNeeds& needs);
 
 }  // namespace rcme

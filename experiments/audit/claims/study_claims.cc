@@ -28,7 +28,7 @@ std::vector<CaseClaim> ListCalibrationClaims(const StudyPlan& plan) {
 
 using SimulatedCase = SimulatedDraw<Case>;
 
-// A condition of the study, with the first of its trials for a look at what they hold.
+// A condition of the study, with its first trials to see what they hold.
 struct ConditionCases {
   Settings levels;  // factor, level
   std::function<SimulatedCase(const StreamName&)> make;
@@ -50,13 +50,13 @@ ConditionCases MakeConditionCases(const StudyPlan& plan, const Condition& condit
   return cases;
 }
 
-// Why a trial gives no statistic with these needs; empty: it does.
+// Why a trial gives no statistic with these needs; empty if it gives one.
 std::string WhyNoStatistic(const SimulatedCase& simulated, const CaseNeeds& needs) {
   if (simulated.made) return WhatIsMissing(*simulated.made, needs);
   return StatusName(MotionStatus::kNotSimulated) + ": " + simulated.why_not;
 }
 
-// What every one of the first trials lacks; empty: some of them lack nothing.
+// What all of the first trials lack; empty if at least one lacks nothing.
 std::string WhatAllLack(const std::vector<SimulatedCase>& cases, const CaseNeeds& needs) {
   std::string missing;
   for (const SimulatedCase& simulated : cases) {

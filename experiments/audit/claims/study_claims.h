@@ -7,12 +7,12 @@
 namespace rcme {
 
 // One claim per calibration claim (calibration.h) and per estimator of the study, each with one check per
-// condition of the plan. Minimal samples are of a trial's first true matches, which are in random order;
-// maximum likelihood and the entropy take all true matches, and an estimator the problem as it is. Where a
-// condition cannot give a statistic its check says why (Check::not_possible) and has no targets. A single
-// trial that cannot (too few true matches, where their number is random) counts as a trial of the check, not
-// in a target's n. Throws InputError for a study that cannot
-// give cases (study_cases.h).
+// condition of the plan. Minimal samples take a trial's first true matches, whose order is random; maximum
+// likelihood and the entropy take all true matches; an estimator takes the whole problem.
+//
+// If a condition cannot give a statistic, its check says why (Check::not_possible) and has no targets. A
+// single trial that cannot, because it has too few true matches, counts as a trial of the check but not in a
+// target's n. Throws InputError for a study that cannot give cases (study_cases.h).
 std::vector<Claim> StudyClaims(const StudyPlan& plan);
 
 }  // namespace rcme

@@ -7,7 +7,7 @@
 namespace rcme {
 namespace {
 
-// The first look with so many trials or more.
+// The first look with at least this many trials.
 std::int64_t LookWith(const Check& check, Budget budget, double num_trials) {
   std::int64_t look = 0;
   do look = NextLook(check, budget, look);

@@ -11,13 +11,13 @@ namespace {
 
 constexpr int kSampleSize = 8, kNumTested = 100, kNumForMean = 2000;
 
-// Z of the inliers among a hundred matches at mu = the model's own mean entropy, which two thousand others
-// tell (its error widens Z by 2.5 %).
+// Z of the inliers among a hundred matches, with mu = the model's own mean entropy, which is estimated from
+// two thousand others (its error widens Z by 2.5 %).
 template <typename PointTest>
 double ZAtOwnMean(const Case& made) {
   MotionProblem problem = made.problem();
-  problem.noise_scale
-      .clear();  // as if all matches were alike: the statistic is of an estimator that ignores it
+  // Equal noise: the statistic is that of an estimator that ignores noise scales.
+  problem.noise_scale.clear();
   const Sample sample = {0, 1, 2, 3, 4, 5, 6, 7};
   const std::optional<UncertainFundamental> model = ComputeSampleModel(problem, sample);
   if (!model) return kNaN;
@@ -54,8 +54,8 @@ Claim SizeClaim(const char* id, const char* reading, QualityTest quality_test, c
 }
 
 // Whether the psi of two good models of one scene differ by less than 1.96 of their standard errors
-// sqrt(s_j^2 / n_j + s_k^2 / n_k): 95 % if the entropies of a model were independent draws around one mean.
-// NaN where one of them has fewer than two inliers, and so no standard error.
+// sqrt(s_j^2 / n_j + s_k^2 / n_k). This holds in 95 % if the entropies of a model are independent draws
+// around one mean. NaN if one of them has fewer than two inliers, hence no standard error.
 template <typename PointTest>
 Outcome SpreadStatistic(Case& made) {
   const InlierScore a = ScoreSample<PointTest>(made.problem(), DrawSampleByKind(SampleKind::kGood, made));

@@ -9,7 +9,7 @@
 namespace rcme {
 namespace {
 
-constexpr size_t kNumMatchesOfSome = 60;  // one problem of every scene has as many
+constexpr size_t kNumMatchesOfSome = 60;  // every scene has one problem of this size
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// What a check of the contract works with: the estimator, the problems, and the clock of its calls.
+// The tools of a contract check: the estimator, the problems, and the clock of its calls.
 #pragma once
 
 #include <mutex>
@@ -16,17 +16,17 @@ struct Breach {
 
 class Bench {
  public:
-  // What is passed has to live as long.
+  // The arguments must outlive the bench.
   Bench(const EstimatorMaker& make, const ContractOptions& options, const Announce& announce)
       : make_(make), estimator_(make()), options_(options), announce_(announce) {}
 
-  // One call of the estimator, or of another one. From any thread.
+  // Calls the estimator, or another one. May be called from any thread.
   MotionEstimate Call(const ContractProblem& problem, const MotionEstimator* other = nullptr);
   std::unique_ptr<MotionEstimator> MakeAnother() const { return make_(); }
 
-  // Those that are asked for. Throws InputError if none is.
+  // The problems that the options select. Throws InputError if there is none.
   std::vector<ContractProblem> Chosen(std::vector<ContractProblem> problems) const;
-  // Every scene once: for checks that call several times.
+  // One problem per scene, for checks that call the estimator several times.
   std::vector<ContractProblem> SomeOrdinary() const;
 
   std::uint64_t seed() const { return options_.seed; }
@@ -38,7 +38,7 @@ class Bench {
   std::unique_ptr<MotionEstimator> estimator_;
   const ContractOptions& options_;
   const Announce& announce_;
-  std::mutex mutex_;  // of the two below
+  std::mutex mutex_;  // guards the two below
   double slowest_seconds_ = 0.0;
   std::string slowest_;
 };

@@ -35,7 +35,7 @@ struct Spoiling {
   bool has_no_motion;
 };
 
-// Keeps the first `num_distinct` matches, again and again.
+// Keeps the first `num_distinct` matches and repeats them.
 Change Repeat(size_t num_distinct) {
   return [num_distinct](MotionProblem& problem) {
     for (size_t i = num_distinct; i < problem.matches.size(); ++i)

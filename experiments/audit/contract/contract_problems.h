@@ -1,4 +1,4 @@
-// The problems on which an estimator is put through its contract.
+// The problems on which an estimator's contract is checked.
 #pragma once
 
 #include <optional>
@@ -12,19 +12,19 @@ namespace rcme {
 struct ContractProblem {
   std::string name;
   MotionProblem problem;
-  StreamName stream;                                // of the samples, purpose kSampling
-  bool has_no_motion = false;                       // nothing but a refusal can be right
-  std::optional<RelativePose> cam2_from_cam1_true;  // where the answer has to be right
+  StreamName stream;                                // of its samples, purpose kSampling
+  bool has_no_motion = false;                       // only a refusal is right
+  std::optional<RelativePose> cam2_from_cam1_true;  // if the answer must be right
 };
 
-// Every scene, each with many and with few matches, none and most of them wrong.
+// Every scene, with many and with few matches, with no and with mostly wrong ones.
 std::vector<ContractProblem> OrdinaryProblems(std::uint64_t seed);
 
-// Problems that no estimator should fail on: 100 true matches of an ordinary scene, noise of .1 px.
+// Problems on which no estimator should fail: 100 true matches of an ordinary scene, noise of .1 px.
 std::vector<ContractProblem> EasyProblems(std::uint64_t seed);
 
-// What real data and broken programs bring: numbers that are not finite or huge, too few matches, the same
-// ones again and again, points on a line, cameras without an inverse.
+// Inputs that real data and broken programs produce: numbers that are not finite or huge, too few matches,
+// repeated matches, points on a line, cameras without an inverse.
 std::vector<ContractProblem> BadProblems(std::uint64_t seed);
 
 // 10^5 matches, 30 % of them wrong.

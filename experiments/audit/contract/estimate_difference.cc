@@ -84,7 +84,8 @@ std::optional<std::string> FirstDifference(const Numbers& a, const Numbers& b) {
     return std::bit_cast<std::uint64_t>(x.second) == std::bit_cast<std::uint64_t>(y.second);
   };
   const auto [in_a, in_b] = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), is_same);
-  if (in_a == a.end() || in_b == b.end()) return std::nullopt;  // their lengths are among the numbers
+  // their lengths were compared among the numbers
+  if (in_a == a.end() || in_b == b.end()) return std::nullopt;
   return fmt::format("{} is {} and then {}", in_a->first, in_a->second, in_b->second);
 }
 

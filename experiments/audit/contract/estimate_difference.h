@@ -8,11 +8,11 @@
 
 namespace rcme {
 
-// The first number in which two answers differ by a single bit, with both values; nothing: they are the same
-// bytes.
+// The first number in which two answers differ by at least one bit, with both values; nullopt if they are the
+// same bytes.
 std::optional<std::string> FirstDifference(const MotionEstimate& a, const MotionEstimate& b);
 
-// The same of two problems.
+// The same for two problems.
 std::optional<std::string> FirstDifference(const MotionProblem& a, const MotionProblem& b);
 
 }  // namespace rcme

@@ -18,7 +18,7 @@
 namespace rcme {
 namespace {
 
-// What the score would find, and what only the contract asks for; nothing: sound.
+// A fault of an answer: one that the score would find, or one that only the contract forbids. Nullopt: sound.
 std::optional<std::string> FindContractFault(const MotionEstimate& estimate, const ContractProblem& problem) {
   if (const auto fault = FindFault(estimate, problem.problem.matches.size()))
     return fmt::format("{}: {}", StatusName(fault->status), fault->message);
@@ -35,7 +35,7 @@ std::optional<std::string> FindContractFault(const MotionEstimate& estimate, con
   return std::nullopt;
 }
 
-// Calls each problem once; all breaches of them are counted and the first is shown.
+// Calls the estimator once on each problem. Counts all breaches and reports the first.
 std::string ExpectSoundAnswers(Bench& bench, const std::vector<ContractProblem>& problems) {
   int num_ok = 0, num_broken = 0;
   std::optional<Breach> first;
@@ -78,7 +78,7 @@ bool IsClose(const RelativePose& pose, const RelativePose& pose_true) {
          kDegPerRad * AngleBetween(pose.t, pose_true.t) <= bounds.max_direction_error_deg;
 }
 
-// Usual mistakes of convention, each with the motion that it makes of the right one.
+// Common mistakes of convention, each with the motion that it makes of the right one.
 struct Mistake {
   std::string words;
   RelativePose (*right)(const RelativePose& pose);  // what the answer should have been
@@ -168,7 +168,7 @@ std::string CheckThreads(Bench& bench) {
   std::optional<Breach> first;
   const auto run = [&](size_t thread) {
     for (size_t i = 0; i < kNumRounds * problems.size(); ++i) {
-      const size_t p = (i + 3 * thread) % problems.size();  // different ones at a time
+      const size_t p = (i + 3 * thread) % problems.size();  // at any time, threads work on different problems
       try {
         ExpectSame(in_turn[p], bench.Call(problems[p]), problems[p], "while other threads call");
       } catch (const Breach& breach) {
@@ -202,7 +202,7 @@ std::string CheckProblemUntouched(Bench& bench) {
 
 struct RunnableCheck {
   ContractCheck description;
-  std::string (*run)(Bench& bench);  // throws Breach, or says what was done
+  std::string (*run)(Bench& bench);  // throws Breach, or returns what was done
 };
 
 const std::vector<RunnableCheck>& RunnableChecks() {
@@ -218,7 +218,7 @@ const std::vector<RunnableCheck>& RunnableChecks() {
   return all;
 }
 
-// The check's outcome as text: the first letter says how it ended, then problem and finding.
+// The check's outcome as text: the first letter is one of these, then follow problem and finding.
 constexpr char kPassed = '+', kBroken = '-', kUsage = '?';
 
 std::string Attempt(const RunnableCheck& check, const EstimatorMaker& make, const ContractOptions& options,

@@ -101,8 +101,8 @@ Matrices CountTrials(const StudyPlan& plan, const Condition& condition, TrialRan
   return matrices;
 }
 
-// Adds the matrices of so many trials, or of those of them that could be simulated. What no trials can have
-// given is damage, whatever the checksums say.
+// Adds the matrices of this many trials, or of those that could be simulated. Counts that no trials can have
+// given are damage, even if the checksums are right.
 void AddMatrices(const nlohmann::ordered_json& json, std::int64_t num_trials, bool is_drawn, Matrices* sum) {
   RequireSize(json, sum->size());
   std::int64_t num_of_first = 0;

@@ -1,5 +1,5 @@
-// How often each criterion of model choice says what, where the truth is what: a confusion matrix per
-// criterion.
+// How often each criterion of model choice gives which verdict, by the true kind of the problem: a confusion
+// matrix per criterion.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ const std::string& AnswerName(size_t answer);
 // Trials of one criterion: [truth][answer].
 using ConfusionMatrix = std::array<std::array<std::int64_t, kNumAnswers>, kTrueKinds.size()>;
 
-// Conditions with the same levels of the chosen factors, counted together: a matrix per criterion, in the
+// Conditions with the same levels of the chosen factors, counted together: one matrix per criterion, in the
 // order of CriterionNames().
 struct ChoiceGroup {
   std::vector<std::string> levels;  // of the chosen factors
@@ -33,16 +33,17 @@ struct ChoiceCounts {
   std::vector<ChoiceGroup> groups;
 };
 
-// Every criterion, with default options, on the same fits to the first `plan.study.trials` trials of each
-// condition. The verdicts draw from the estimators' stream; the truth meets them here for the first time. The
-// groups are those of the factors `by`, in the order of the conditions; without any there is one.
+// Applies every criterion, with default options, to the same fits to the first `plan.study.trials` trials of
+// each condition. The verdicts draw from the estimators' stream and do not see the truth; it is used only
+// here. The groups are those of the factors `by`, in the order of the conditions; without factors there is
+// one group.
 //
-// Throws as Runner::Get; InputError: `by` names what is no factor; a condition whose scenes nobody knows
-// (real pairs), whose trials have weights, or which meets its scenes again and again; conditions that share
-// their scenes.
+// Throws as Runner::Get. Throws InputError if `by` names no factor; for a condition whose scenes are unknown
+// (real pairs), whose trials have weights, or whose scenes repeat; and for conditions that share their
+// scenes.
 ChoiceCounts CountChoices(const StudyPlan& plan, const std::vector<std::string>& by, Runner* runner);
 
-// The runner's work: an item is ten trials of a condition. Throws InputError for such a condition.
+// The runner's work; an item is ten trials of a condition. Throws InputError for such a condition.
 WorkPlan PlanChoices(const StudyPlan& plan);
 
 }  // namespace rcme

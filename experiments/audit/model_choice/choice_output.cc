@@ -12,11 +12,11 @@
 namespace rcme {
 namespace {
 
-// One number of a matrix. Of conditions counted together the rate is their mean: the binomial interval is
-// then too wide, if anything (Hoeffding 1956).
+// One entry of a matrix. For conditions counted together the rate is their mean, and the binomial interval
+// is, if anything, too wide (Hoeffding 1956).
 struct Cell {
   std::int64_t count = 0, n = 0;
-  double value = 0.0;  // NaN where n is 0
+  double value = 0.0;  // NaN if n is 0
   Interval interval;
 };
 

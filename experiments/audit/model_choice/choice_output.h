@@ -7,10 +7,11 @@
 
 namespace rcme {
 
-// For people a matrix per group and criterion, a row for each truth that there is, rates with exact 95 %
-// intervals. In files rows of `rcme summarize --format csv`, so that the same figures draw it: truth and
-// verdict are factors beside the chosen ones, a criterion stands in the place of an estimator, the quantity
-// is `share`; one more column, `count`. A truth that no trial has is there with n = 0.
+// On the screen there is one matrix per group and criterion, with one row for each truth that occurs, and
+// rates with exact 95 % intervals. Files have the rows of `rcme summarize --format csv`, so that the same
+// figures can draw them: truth and verdict are factors besides the chosen ones, a criterion takes the place
+// of an estimator, the quantity is `share`, and there is a further column, `count`. A truth without trials is
+// included with n = 0.
 CommandResult MakeChoiceResult(const StudyPlan& plan, const ChoiceCounts& counts);
 
 }  // namespace rcme

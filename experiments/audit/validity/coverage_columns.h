@@ -9,7 +9,7 @@
 
 namespace rcme {
 
-// `format` of fmt; empty: as many digits as somebody typed.
+// `format` of fmt; empty: as many digits as were given.
 inline NumberFormat MakeCsvFormat(const std::string& format) {
   NumberFormat number;
   number.file = format;
@@ -21,7 +21,7 @@ inline std::vector<Column> CoverageColumns() {
   return {Column::Number("coverage", format), {"lower,upper", ColumnType::kInterval, format}};
 }
 
-// Nothing where n is zero.
+// Leaves the columns empty if n is zero.
 inline void AddCoverage(std::int64_t num_covered, std::int64_t n, std::vector<Value>* row) {
   if (n == 0) return row->resize(row->size() + 2);
   row->emplace_back(static_cast<double>(num_covered) / static_cast<double>(n));

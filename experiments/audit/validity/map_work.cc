@@ -36,7 +36,7 @@ std::string TrialsAsJson(const std::vector<ValidityTrial>& trials) {
   return json.dump();
 }
 
-// What no trial can have given is damage, whatever the checksums say.
+// Values that no trial can have given are damage, even if the checksums are right.
 void RequirePossibleTrial(const ValidityTrial& trial) {
   for (const auto share : {&ValidityTrial::exact_conditioning, &ValidityTrial::observed_conditioning}) {
     if (!(trial.*share >= 0.0 && trial.*share <= 1.0))
@@ -77,7 +77,7 @@ std::string ComputeMapItem(const MapWork& work, const ItemPlace& place) {
       .dump();
 }
 
-// What the results depend on, a line for each thing.
+// Everything on which the results depend, one line each.
 std::string Identity(const MapWork& work) {
   std::string identity = fmt::format("seed: {}\ntrials: {}\n", work.map.seed, work.map.trials);
   if (work.reference) {

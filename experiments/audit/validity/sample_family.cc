@@ -25,13 +25,14 @@ ObservedSample SampleFamily::Observe(const Scene& scene, const StreamName& name,
 }
 
 ObservedSample SampleFamily::ObserveExactly(const Scene& scene, const StreamName& name) const {
-  RandomStream unused = StreamFor(name, StreamPurpose::kNoise);  // multiplied by zero
+  RandomStream unused = StreamFor(name, StreamPurpose::kNoise);  // the noise is multiplied by zero
   return ObserveWith(0.0, scene, name, unused);
 }
 
 ObservedSample SampleFamily::ObserveWith(double noise_px, const Scene& scene, const StreamName& name,
                                          RandomStream& noise_rng) const {
-  RandomStream order_rng = StreamFor(name, StreamPurpose::kOutliers);  // no outliers: the order alone
+  // there are no outliers: only for the order
+  RandomStream order_rng = StreamFor(name, StreamPurpose::kOutliers);
   Observation observation =
       rcme::Observe(scene, *MakeGaussianNoise(noise_px), OutlierModel(0.0), noise_rng, order_rng);
   ObservedSample sample;

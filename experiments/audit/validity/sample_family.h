@@ -1,5 +1,5 @@
-// Random samples of correct matches, for measuring how well a covariance covers: a scene of the default
-// uniform volume with another baseline, m matches to estimate from and one fresh match.
+// Random samples of correct matches, to measure how well a covariance covers: a scene of the default uniform
+// volume with another baseline, m matches for the estimate and one fresh match.
 #pragma once
 
 #include "estimator/motion_problem.h"
@@ -8,19 +8,19 @@
 
 namespace rcme {
 
-// The m sample matches as a problem, and the one that took no part in it.
+// The m sample matches as a problem, and the match that took no part in it.
 struct ObservedSample {
   MotionProblem problem;
   Correspondence fresh_match;
 };
 
-// Const and shared by threads; everything is a pure function of the names.
+// Threads may share one object. Every result is a pure function of the names.
 class SampleFamily {
  public:
   SampleFamily(int num_points, double baseline_m, double sigma_px);
 
   Scene MakeScene(const StreamName& name) const;
-  // The scene's matches with noise from `noise_rng`; their order depends on the name alone.
+  // The scene's matches with noise from `noise_rng`. Their order depends only on the name.
   ObservedSample Observe(const Scene& scene, const StreamName& name, RandomStream& noise_rng) const;
   // The same matches in the same order without noise; the problem states the same sigma.
   ObservedSample ObserveExactly(const Scene& scene, const StreamName& name) const;
@@ -33,7 +33,7 @@ class SampleFamily {
   double sigma_px_;
 };
 
-// Angle at a point between the rays to the two camera centres.
+// Angle at a point between the rays to the two camera centres, rad.
 double ParallaxRad(const Scene& scene, const Eigen::Vector3d& point_in_cam1);
 
 }  // namespace rcme

@@ -25,12 +25,13 @@ std::string ReadSettingValue(const Settings& settings, const std::string& key) {
 }
 
 double ReadSettingNumber(const Settings& settings, const std::string& key) {
+  // remains NaN for the word "true"
   double number = std::numeric_limits<double>::quiet_NaN();  // stays NaN for the word "true"
   ParseReal(ReadSettingValue(settings, key), &number);
   return number;
 }
 
-// The settings of a condition in full, at another noise level.
+// All settings of a condition, at another noise level.
 Settings AtSigma(Settings settings, double sigma_px) {
   const double ratio = ReadSettingNumber(settings, kAssumedSigmaKey) / ReadSettingNumber(settings, kSigmaKey);
   for (auto& [key, value] : settings) {
@@ -41,7 +42,8 @@ Settings AtSigma(Settings settings, double sigma_px) {
   return settings;
 }
 
-// The factors of a map: without the noise level, which is an axis of its own, if the assumed one follows it.
+// The factors of a map. If the assumed sigma follows the true one, the noise level is left out, because it is
+// an axis of its own.
 Settings ListMapLevels(const StudyPlan& plan, const Condition& condition, const Settings& settings) {
   const bool is_sigma_true = std::isnan(ReadSettingNumber(settings, kAssumedSigmaKey));
   Settings levels;
@@ -66,7 +68,7 @@ MapSample MakeMapSample(const Case& made, int num_points) {
   const TrialData& data = made.data;
   MapSample sample{made.pose_true(), {data.problem, data.problem.matches[n]}, {data.problem, {}}, 0.0};
   sample.observed.problem.matches.resize(n);
-  sample.observed.problem.noise_scale.clear();  // a map is of what first-order theory says of equal noise
+  sample.observed.problem.noise_scale.clear();  // the map shows first-order theory for equal noise
   sample.exact.problem.noise_scale.clear();
   sample.exact.problem.matches.clear();
   const auto point = [&](size_t k) { return made.scene.points_in_cam1[data.scene_point[k]]; };

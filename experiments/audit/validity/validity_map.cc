@@ -41,7 +41,7 @@ struct MapCell {
   std::vector<ValidityTrial> trials;
 };
 
-// Trials of a cell that are counted together.
+// A group of trials of a cell that are counted together.
 struct Group {
   std::string name;
   double median_conditioning;
@@ -55,7 +55,7 @@ Group MakeGroup(std::string name, double ValidityTrial::*conditioning,
   return {std::move(name), MeasureQuantile(std::move(values), 0.5).value, std::move(trials)};
 }
 
-// All trials, then the thirds by either conditioning; trials without a model are in the lower third.
+// All trials, then the thirds by either conditioning. Trials without a model are in the lower third.
 std::vector<Group> MakeGroups(const std::vector<ValidityTrial>& trials) {
   std::vector<const ValidityTrial*> order;
   for (const ValidityTrial& trial : trials) order.push_back(&trial);
@@ -98,7 +98,7 @@ void AddRows(const MapCell& cell, double median_parallax_deg, Table* table) {
   }
 }
 
-// Over all cells of one condition, which differ in nothing that parallax depends on. NaN: no cell has a
+// The median over all cells of one condition, because parallax depends on nothing else. NaN if no cell has a
 // trial.
 double MedianParallaxDeg(std::span<const MapCell> cells) {
   std::vector<double> parallaxes_rad;

@@ -1,6 +1,6 @@
-// The validity map: where is first-order propagation good enough? Coverage of the 95 % regions of linear
-// least-squares estimates over noise, number of points and conditioning of the sample, on the built-in scene
-// at several baselines or in the conditions of a study.
+// The validity map: where is first-order propagation accurate enough? It shows the coverage of the 95 %
+// regions of linear least-squares estimates by noise, number of points and conditioning of the sample, on the
+// built-in scene at several baselines or in the conditions of a study.
 #pragma once
 
 #include <cstdint>
@@ -16,16 +16,16 @@
 
 namespace rcme {
 
-// What one trial needs: a sample as it is seen and without noise, in the same order, and the truth.
+// The input of one trial: a sample with noise and without, in the same order, and the truth.
 struct MapSample {
   RelativePose pose_true;
   ObservedSample observed, exact;
   double parallax_rad = 0.0;  // of one of the scene's points
 };
-// A pure function of the name; nothing if the trial has no such sample.
+// A pure function of the name; nullopt if the trial has no such sample.
 using MapSampler = std::function<std::optional<MapSample>(const StreamName&)>;
 
-// One row of panels of the map: where samples of so many matches come from at a noise level.
+// One row of panels of the map: the source of samples with a number of matches and a noise level.
 struct MapCondition {
   std::string level;
   std::function<MapSampler(int num_points, double sigma_px)> sampler;
@@ -42,8 +42,8 @@ struct ValidityMapOptions {
   std::uint64_t seed = 1;
 };
 
-// One sample, estimated once. What could not be computed stays infinite, which no region covers, and a sample
-// without a model has the conditioning zero: nothing is dropped.
+// The results of one sample. Values that could not be computed stay infinite, which no region covers, and a
+// sample without a model has conditioning zero. So nothing is dropped.
 struct ValidityTrial {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   double f_nees = kNone;               // of Sigma_f = G D G', 8 dof
@@ -56,22 +56,22 @@ struct ValidityTrial {
 };
 ValidityTrial RunValidityTrial(const MapSample& sample);
 
-// A cell is a condition with a number of points and a noise level; the conditions vary slowest, the noise
+// A cell is a condition with a number of points and a noise level. The conditions vary slowest, the noise
 // fastest.
 std::int64_t NumCells(const ValidityMapOptions& options);
 std::string DescribeCell(const ValidityMapOptions& options, std::uint32_t cell);
 
-// Those of these trials of a cell that have a sample, in their order.
+// Runs these trials of a cell. Returns those that have a sample, in their order.
 std::vector<ValidityTrial> RunTrialsOfCell(const ValidityMapOptions& options, std::uint32_t cell,
                                            TrialRange trials);
 
-// How long the map will take on one thread, by a few trials of each condition and number of points.
+// Estimates how long the map takes on one thread, from a few trials of each condition and number of points.
 double SecondsOfWork(const ValidityMapOptions& options);
 
 // validity_map.csv: one row per cell, conditioning group and quantity, with exact 95 % intervals. The groups
-// of a cell are all its trials, and their lower, middle and upper third in order of either conditioning. A
-// trial without a sample does not count in n; a cell in which none has one is a row with n = 0.
-// `trials_of` has all trials of a cell that have a sample.
+// of a cell are all its trials, and their lower, middle and upper third by either conditioning. A trial
+// without a sample does not count in n; a cell without samples is a row with n = 0. `trials_of` returns all
+// trials of a cell that have a sample.
 using TrialsOfCell = std::function<std::vector<ValidityTrial>(std::uint32_t cell)>;
 Table MakeValidityMapTable(const ValidityMapOptions& options, const TrialsOfCell& trials_of);
 

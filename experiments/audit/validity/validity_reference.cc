@@ -15,7 +15,7 @@ namespace rcme {
 namespace {
 
 constexpr double kReferenceCoverage = 0.95;
-constexpr std::uint32_t kFirstCell = 1'000'000;  // streams that no cell of the map uses
+constexpr std::uint32_t kFirstCell = 1'000'000;  // its streams are not used by any cell of the map
 constexpr std::array<const char*, 2> kReferenceQuantities = {"f", "pose"};
 constexpr std::array<const char*, 4> kCovariances = {"first_order_at_estimate", "first_order_at_truth",
                                                      "unscented_at_truth", "monte_carlo_at_truth"};
@@ -27,8 +27,8 @@ struct ExactSample {
   LinearMotion motion;
   RelativePose pose_true;
 
-  // Coordinates of the estimate from `problem` in the tangents at the truth: 8 of f, then 5 of p. NaN where
-  // there is no estimate: a covariance that such a draw entered covers nothing.
+  // Coordinates of the estimate from `problem` in the tangents at the truth: 8 of f, then 5 of p. NaN if
+  // there is no estimate; a covariance that such a draw entered covers nothing.
   Eigen::VectorXd ComputeDeviation(const std::optional<LinearMotion>& estimate) const {
     Eigen::VectorXd deviation(kFDof + kPoseDof);
     if (!estimate) {
@@ -75,7 +75,7 @@ Eigen::MatrixXd MonteCarloAtTruth(const ExactSample& exact, const SampleFamily& 
   return moments.covariance();
 }
 
-// f and p of one draw within the 95 % regions of a covariance at the truth.
+// Whether f and p of one draw lie within the 95 % regions of a covariance at the truth.
 std::array<bool, 2> CoveredAtTruth(const Eigen::VectorXd& deviation, const Eigen::MatrixXd& covariance) {
   const Vector8d of_f = deviation.head<kFDof>();
   const Vector5d of_pose = deviation.tail<kPoseDof>();
