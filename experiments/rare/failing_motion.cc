@@ -73,11 +73,10 @@ std::shared_ptr<const Scene> FailingMotion::WithSomePoints(const Scene& scene, d
   return std::make_shared<const Scene>(std::move(mixed));
 }
 
-// The points have the density f(x) [both images see x] / Z(motion) each, and nobody knows Z. The exchange
-// algorithm (Murray, Ghahramani & MacKay 2006) does without: fresh points of the new motion are drawn, and
-// where those of either scene are all seen under the motion of the other, f and Z cancel and Metropolis and
-// Hastings' ratio is 1; elsewhere it is 0. Several tries are a power of one reversible move, and so are
-// reversible.
+// Each point has the density f(x) [both images see x] / Z(motion), with unknown Z. The exchange algorithm
+// (Murray, Ghahramani & MacKay 2006) does not need Z: it draws fresh points of the new motion. If the points
+// of either scene are all visible under the motion of the other, f and Z cancel and the Metropolis-Hastings
+// ratio is 1, else 0. Several tries are a power of one reversible move, hence reversible.
 std::shared_ptr<const Scene> FailingMotion::WithMotionNear(const Scene& scene, double step,
                                                            RandomStream& rng) const {
   constexpr int kTries = 3;
@@ -105,7 +104,7 @@ FailingMotion::State FailingMotion::DrawOnce(RandomStream& rng) const {
   rng.FillNormal(state.noise);
   state.outlier_seed = rng.Next64();
   state.sampling_seed = rng.Next64();
-  if (study_.population) MakeData(state);  // throws where it cannot
+  if (study_.population) MakeData(state);  // throws if it cannot be simulated
   return state;
 }
 
@@ -114,7 +113,7 @@ TrialData FailingMotion::MakeData(const State& state) const {
   return data_->MakeFrom(*state.scene, state.noise, outlier_rng);
 }
 
-// The move of the scene that the kind is.
+// Makes the move of the scene with this number.
 std::shared_ptr<const Scene> FailingMotion::ProposeScene(const State& state, std::uint32_t kind, double step,
                                                          RandomStream& rng) const {
   const auto simulated = SimulateDraw(study_, [&] {

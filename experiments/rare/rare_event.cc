@@ -10,7 +10,8 @@
 namespace rcme {
 namespace {
 
-// A quotient is rounded, and 0 / 0 where a bound is 0: the event decides.
+// The event decides on which side of 1 the result lies, because the quotient is rounded, and 0 / 0 if a bound
+// is 0.
 double DecideQuotient(double quotient, bool has_happened) {
   return has_happened ? std::fmax(quotient, std::nextafter(1.0, 2.0)) : std::fmin(quotient, 1.0);
 }

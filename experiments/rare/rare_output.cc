@@ -63,7 +63,7 @@ std::vector<Column> HeadColumns(const StudyPlan& plan) {
   return columns;
 }
 
-// NaN: not finite.
+// NaN for a number that is not finite.
 double KnownShare(const RareRow& row) {
   const double share = row.BruteForceShare();
   return std::isfinite(share) ? share : std::nan("");
@@ -75,7 +75,7 @@ std::string DescribeEvents(const RareEvent& event) {
   return fmt::format("{} (protection levels at the risk {:g})", Name(event.kind), event.risk);
 }
 
-// Of so many trials of every condition; the estimators of one share them.
+// How many trials of all conditions could not be simulated. The estimators of a condition share its trials.
 template <typename Cell>
 std::string DescribeMissingCellTrials(const std::vector<Cell>& cells, std::int64_t num_of_condition) {
   std::int64_t num_not_simulated = 0, num_trials = 0;
@@ -93,7 +93,7 @@ std::int64_t NumDrawn(const std::vector<StratifiedCell>& cells) {
   return num_trials;
 }
 
-// The columns that all rates have.
+// The table of rates, with the columns that both methods have.
 Table MakeRateTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows) {
   Table table{HeadColumns(plan)};
   table.AddColumns({Column::Estimated(Name(event.kind), {1.0, "", ".2e"}), Column::Count("calls"),
@@ -108,7 +108,7 @@ Table MakeRateTable(const StudyPlan& plan, const RareEvent& event, const std::ve
   return table;
 }
 
-// What a rate is of, in files.
+// The columns that identify a rate in files.
 Table MakeKeyTable(const StudyPlan& plan) {
   Table table{{Column::Count("condition")}};
   for (const std::string& factor : plan.factor_names)
@@ -123,8 +123,8 @@ std::vector<Value> MakeKeyValues(const StudyPlan& plan, size_t condition, size_t
   return values;
 }
 
-// A row per level of the error: the rate of errors beyond it, and the share of the moves there that were
-// accepted, both as means of the replicates.
+// One row per level of the error: the rate of errors beyond it, and the share of moves accepted there, both
+// as means of the replicates.
 Table MakeLevelTable(const StudyPlan& plan, const std::vector<RareCell>& cells) {
   Table table = MakeKeyTable(plan);
   table.AddColumns({Column::Number("error_over_bound"), Column::Number("rate_beyond"),

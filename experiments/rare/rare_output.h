@@ -9,33 +9,35 @@
 
 namespace rcme {
 
-// One line of the tables.
+// One row of the tables.
 struct RareRow {
   size_t condition = 0, estimator = 0;
   double estimate = 0.0, standard_error = 0.0;
   Interval interval;
-  std::int64_t num_calls = 0;       // of the estimator
-  double unseen_up_to = 1.0;        // the upper end that allows for failures of another kind
-  double relative_spread = 0.0;     // of replicates; NaN: there are none
-  std::vector<std::string> doubts;  // none: the rate is trusted
+  std::int64_t num_calls = 0;       // calls of the estimator
+  double unseen_up_to = 1.0;        // the upper end if failures of another kind are allowed for
+  double relative_spread = 0.0;     // of the replicates; NaN without replicates
+  std::vector<std::string> doubts;  // empty: the rate is trusted
 
-  // Calls, of those after which plain trials would have the same standard error.
+  // Number of calls relative to that of plain trials with the same standard error.
   double BruteForceShare() const;
 };
 RareRow MakeRareRow(const RareCell& cell);
-// Doubted ("few_failures") below kLeastFailures of them: the interval is that of hardly any.
+// Doubted ("few_failures") below kLeastFailures failures, on which no interval can rest.
 RareRow MakeRareRow(const StratifiedCell& cell);
-inline constexpr double kLeastFailures = 3.0;  // as many of equal weight as have the same relative error
+// effective number: as many of equal weight have the same relative error
+inline constexpr double kLeastFailures = 3.0;
 
-// For people: a row for each condition and estimator, and why a rate is not to be trusted.
+// A table with one row per condition and estimator, and the reasons why a rate is not to be trusted.
 std::string RareAsTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareCell>& cells);
 std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<StratifiedCell>& cells);
 
-// Rows of `rcme summarize --format csv`, the event as their quantity, with more columns: trusted, doubts,
+// Rows of `rcme summarize --format csv` with the event as the quantity and more columns: trusted, doubts,
 // unseen_up_to, relative_spread, brute_force_share. n counts calls of the estimator.
 Table MakeRareFileTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareRow>& rows);
 
-// These, in JSON also the levels of the error and the replicates of splitting, or the strata.
+// The results with both tables; JSON also has the levels of the error and the replicates of splitting, or the
+// strata.
 CommandResult MakeRareResult(const StudyPlan& plan, const RareEffort& effort,
                              const std::vector<RareCell>& cells);
 CommandResult MakeStratifiedResult(const StudyPlan& plan, const StratifiedEffort& effort,

@@ -26,11 +26,11 @@ std::string PilotAsJson(const SplittingPilot& pilot) {
 }
 
 bool AreShares(const std::vector<double>& numbers) {
-  constexpr double kRounding = 1e-9;  // of a mean of shares
+  constexpr double kRounding = 1e-9;  // rounding error of a mean of shares
   return std::ranges::all_of(numbers, [](double x) { return x >= 0.0 && x <= 1.0 + kRounding; });
 }
 
-// Of every particle: its first, and one for each move above each of so many levels.
+// The number of values of all particles: one at the start, and one per move at each level.
 std::int64_t NumValues(const SplittingEffort& effort, size_t num_levels) {
   return effort.num_particles * (1 + static_cast<std::int64_t>(num_levels) * effort.num_moves);
 }
@@ -78,7 +78,7 @@ SplittingReplicate ReplicateFrom(const Json& json, const SplittingEffort& effort
   return replicate;
 }
 
-// Beside the numbers of the effort; empty for failures.
+// Follows the numbers of the effort; empty for failures.
 std::string DescribeEvent(const RareEvent& event) {
   if (event.kind == RareEvent::Kind::kFailure) return "";
   return fmt::format("event: {}, risk {}\n", Name(event.kind), event.risk);
@@ -121,7 +121,7 @@ WorkPlan PlanSplitting(const StudyPlan& plan, std::uint64_t seed, const RareEffo
 std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort,
                                     Runner* runner) {
   std::vector<RareCell> cells = MakeCells(plan);
-  std::vector<FailingMotion> systems;  // all made first: bad input ends it before any work
+  std::vector<FailingMotion> systems;  // made first, so that bad input throws before any work
   for (RareCell& cell : cells) {
     const FailingMotion& system =
         systems.emplace_back(plan, plan.conditions[cell.condition], cell.estimator, effort.event);

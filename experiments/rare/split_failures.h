@@ -1,4 +1,4 @@
-// Failure rates far below what can be counted, by multilevel splitting.
+// Failure rates too low to be counted, by multilevel splitting.
 #pragma once
 
 #include <vector>
@@ -21,17 +21,18 @@ struct RareCell {
   SplittingPilot pilot;
   std::vector<SplittingReplicate> replicates;
   SplittingRate rate;
-  // Of the first draws (FailingMotion); if it is all of them there is no pilot, and why.
+  // Of the first draws (FailingMotion). If no draw could be simulated, there is no pilot, and this is why.
   int num_not_simulated = 0;
   std::string why_not_simulated = {};
 };
 
-// The runner's work: each cell's pilot, then its replicates.
+// The runner's work: the pilot of each cell, then its replicates.
 WorkPlan PlanSplitting(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort);
 
-// The rate of the event (of failure: HasFailed) of every estimator in every condition, the estimators of the
-// first condition first. A replicate is a pure function of (study, seed, condition, estimator, effort, its
-// number), `seed` in the place of the study's. Throws InputError as FailingMotion does, and as Runner::Get.
+// The rate of the event (for a failure: HasFailed) of every estimator in every condition; the estimators of
+// the first condition come first. A replicate is a pure function of (study, seed, condition, estimator,
+// effort, its number); `seed` replaces the study's. Throws InputError as FailingMotion does, and as
+// Runner::Get.
 std::vector<RareCell> SplitFailures(const StudyPlan& plan, std::uint64_t seed, const RareEffort& effort,
                                     Runner* runner);
 

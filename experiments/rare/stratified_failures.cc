@@ -23,9 +23,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Of the streams that decide which trials are run, beside the purposes of a trial's streams (StreamPurpose).
+// The purpose of the streams that decide which trials are run, besides those of a trial's streams
+// (StreamPurpose).
 constexpr std::uint32_t kThinningPurpose = 101;
-// The pilot's trials: far beyond those of any run.
+// The pilot's trials. Their numbers are far beyond those of any run.
 constexpr std::uint32_t kFirstPilotTrial = 4'000'000'000, kNumPilotTrials = 1000;
 constexpr std::uint32_t kTrialsOfRareItem = 100;
 
@@ -33,17 +34,17 @@ double ComputeTail(double bound_deg, double variance) {
   return std::erfc(RadFromDeg(bound_deg) / std::sqrt(2.0 * variance));
 }
 
-// The strata of one condition: what is known of a trial before any estimator is called.
+// The strata of one condition, computed before any estimator is called.
 class Strata {
  public:
   Strata(const StudyPlan& plan, const Condition& condition, double run_share)
       : plan_(plan), condition_(condition), make_(StudyCases(plan, condition)) {
-    std::vector<double> chances;  // of the trials that can be simulated
+    std::vector<double> chances;  // of the trials that could be simulated
     for (std::uint32_t i = 0; i < kNumPilotTrials; ++i) {
       if (const std::optional<double> chance = FindChance(kFirstPilotTrial + i)) chances.push_back(*chance);
     }
-    // The share that is run falls as p_hard rises.
-    double lower = -700.0, upper = 50.0;  // of its logarithm
+    // The share of trials that are run decreases with p_hard.
+    double lower = -700.0, upper = 50.0;  // of log p_hard
     for (int i = 0; i < 60; ++i) {
       log_hard_ = 0.5 * (lower + upper);
       double num_run = 0.0;
@@ -52,7 +53,7 @@ class Strata {
     }
   }
 
-  // Nothing: the trial could not be simulated.
+  // Nullopt if the trial could not be simulated.
   std::optional<int> FindStratum(std::uint32_t trial) const {
     const std::optional<double> chance = FindChance(trial);
     return chance ? std::optional(StratumOfChance(*chance)) : std::nullopt;
@@ -64,7 +65,7 @@ class Strata {
   }
 
  private:
-  // 1 where the matches do not determine the motion; nothing where there is no trial.
+  // 1 if the matches do not determine the motion; nullopt if the trial could not be simulated.
   std::optional<double> FindChance(std::uint32_t trial) const {
     const auto simulated =
         SimulateDraw(plan_.study, [&] { return make_(NameOfTrial(plan_, condition_, trial)); });
@@ -91,9 +92,10 @@ TrialRange FindStratumTrials(const StratifiedEffort& effort, const ItemPlace& pl
 
 constexpr char kNotSimulatedMark = '-';
 
-// Runs some trials: for each its stratum, a character 0, ..., 6 for one that is run, a, ..., g for another,
-// and kNotSimulatedMark for one that could not be simulated; of each that is run its weight; and for each
-// estimator a character a trial, 1 where it failed.
+// Runs some trials and returns a JSON list of three entries. First, one character per trial for its stratum:
+// 0, ..., 6 if it was run, a, ..., g if not, kNotSimulatedMark if it could not be simulated. Second, the
+// weight of each trial that was run. Third, one text per estimator with a character per trial that was run: 1
+// if it failed, else 0.
 std::string RunBlock(const StudyPlan& plan, const Condition& condition, const Strata& strata,
                      TrialRange trials) {
   std::string chosen;
@@ -116,12 +118,12 @@ std::string RunBlock(const StudyPlan& plan, const Condition& condition, const St
   return Json::array({chosen, weights, has_failed}).dump();
 }
 
-// What the trials of one condition say of each estimator.
+// The sums of each estimator over the trials of one condition.
 class StrataSum {
  public:
   explicit StrataSum(size_t num_estimators) : strata_(num_estimators), events_(num_estimators) {}
 
-  // What RunBlock has made of so many trials.
+  // Adds a result of RunBlock for this many trials.
   void Add(const Json& json, size_t num_trials) {
     RequireSize(json, 3);
     const std::string chosen = json[0].get<std::string>();
@@ -158,7 +160,8 @@ class StrataSum {
     StratifiedCell cell{condition,          estimator, strata_[estimator], events_[estimator].num_trials,
                         num_not_simulated_, {}};
     WeightedEvents events = events_[estimator];
-    events.num_trials = num_trials - num_not_simulated_;  // what is not run counts nothing, but was drawn
+    // trials that were not run have no weight but were drawn
+    events.num_trials = num_trials - num_not_simulated_;
     cell.rate = EstimateWeightedRate(events);
     return cell;
   }
@@ -175,7 +178,7 @@ class StrataSum {
     return weight;
   }
 
-  std::vector<std::array<StratumCount, kNumStrata>> strata_;  // per estimator, as events_
+  std::vector<std::array<StratumCount, kNumStrata>> strata_;  // per estimator, like events_
   std::vector<WeightedEvents> events_;
   std::int64_t num_not_simulated_ = 0;
 };

@@ -1,19 +1,19 @@
-// Failure rates from plain trials of which hard ones are run and most easy ones are not: stratification by
-// the Cramer-Rao bound.
+// Failure rates from plain trials. Hard trials are run and most easy ones are not: stratification by the
+// Cramer-Rao bound.
 //
-// A trial's scene and outliers are drawn as ever, and the bound of its motion is computed: some 10
-// microseconds, where an estimator may take milliseconds. If errors were normal with that covariance, the
-// failure would have the probability
+// The scene and the outliers of a trial are drawn as usual, and the bound of its motion is computed. This
+// takes about 10 microseconds, an estimator up to milliseconds. If errors were normal with this covariance,
+// the probability of failure would be
 //   p = max over rotation and direction of P(|Normal(0, lambda)| > bound),  lambda the greatest eigenvalue,
 // and Neyman's allocation would run trials in proportion to sqrt(p), the standard deviation of the outcome.
-// So the trials form strata k = 0, ..., 6, of which one in 2^k is run, with 2^-k near sqrt(p / p_hard), never
-// below 1 / 64; p_hard is set by a pilot such that a wanted share of all is run. A trial that is run counts
-// 2^k times.
+// So the trials are divided into strata k = 0, ..., 6, of which one in 2^k is run. 2^-k is near
+// sqrt(p / p_hard), but at least 1 / 64. A pilot sets p_hard such that the wanted share of all trials is run.
+// A trial that is run counts 2^k times.
 //
-// Whether a trial is run is drawn from a stream of its own, never from its outcome: the estimate is unbiased
-// whether or not p has to do with failures, and for any estimator, noise and outliers. What is gained depends
-// on both: where failures are a matter of hard scenes it is up to the ratio of the costs, where they are not
-// (wrong modes in easy scenes) it is nothing or less, and the interval says so.
+// Whether a trial is run is drawn from a stream of its own and never depends on its outcome. So the estimate
+// is unbiased for any estimator, noise and outliers, whether or not p is related to failures. The gain
+// depends on this relation: if hard scenes cause the failures, it is up to the ratio of the costs. If they do
+// not (wrong modes in easy scenes), there is no gain or a loss, and the interval shows it.
 #pragma once
 
 #include <array>
@@ -29,8 +29,8 @@ namespace rcme {
 inline constexpr int kNumStrata = 7;  // stratum k: one trial in 2^k is run
 
 struct StratifiedEffort {
-  std::uint32_t num_trials = 100'000;  // drawn, per condition
-  double run_share = 0.1;              // of them, wanted
+  std::uint32_t num_trials = 100'000;  // trials drawn per condition
+  double run_share = 0.1;              // wanted share of them that is run
 };
 
 struct StratumCount {
@@ -42,16 +42,16 @@ struct StratifiedCell {
   size_t condition = 0, estimator = 0;
   std::array<StratumCount, kNumStrata> strata;
   std::int64_t num_run = 0;
-  std::int64_t num_not_simulated = 0;  // of the trials drawn: in no stratum (trial/simulate_draw.h)
+  std::int64_t num_not_simulated = 0;  // of the trials drawn; they are in no stratum (trial/simulate_draw.h)
   WeightedRate
       rate;  // cautious_upper: as if the next failure were in the easiest stratum of which a trial was run
 };
 
-// The greatest of the two probabilities above, from a bound (5x5, [rotation, direction], rad^2).
+// The greater of the two probabilities above, from a bound (5x5, [rotation, direction], rad^2).
 double FailureChanceOfBound(const Matrix5d& bound, const FailureBounds& bounds);
 
-// The runner's work: an item is a hundred trials of a condition. Throws InputError: match files; repeated
-// scenes.
+// The runner's work: an item is a hundred trials of a condition. Throws InputError for match files and
+// repeated scenes.
 WorkPlan PlanStrata(const StudyPlan& plan, const StratifiedEffort& effort);
 
 // Trials 0, ..., num_trials - 1 of every condition, as `rcme run` would draw them. Throws as Runner::Get.

@@ -7,7 +7,7 @@
 
 namespace rcme {
 
-// A row for each condition and estimator; in JSON also the events at every level that was asked.
+// One row per condition and estimator; JSON also has the events at every level examined.
 CommandResult MakeCrossingsResult(const Study& study, const CrossingQuestion& question,
                                   const CrossingAnswer& answer);
 

@@ -21,7 +21,7 @@
 namespace rcme {
 namespace {
 
-// From the place of a level in [0, 1], where the rate rises, to the setting.
+// Converts the place of a level in [0, 1], with which the rate increases, to the setting.
 class Scale {
  public:
   Scale(const CrossingQuestion& question, bool is_whole) : question_(question), is_whole_(is_whole) {}
@@ -56,8 +56,8 @@ Study MakeStudyAt(Study study, const CrossingQuestion& question, const std::stri
   return study;
 }
 
-// The levels of the conditions, the same wherever the setting is. Whole plans are made here alone, in the
-// middle and at both ends: what is not allowed is said before any trial.
+// The conditions, which are the same for every value of the setting. Whole plans are made only here, in the
+// middle and at both ends, so that a value that is not allowed is reported before any trial.
 StudyPlan PlanConditions(const Study& study, const CrossingQuestion& question, const Scale& scale) {
   const auto plan_at = [&](double place) {
     return MakePlan(MakeStudyAt(study, question, scale.TextAt(place)));
@@ -74,7 +74,7 @@ StudyPlan PlanConditions(const Study& study, const CrossingQuestion& question, c
   return plan;
 }
 
-// Whether the setting has no values but whole numbers: then the middle between two of them is refused.
+// Whether the setting takes only whole numbers; then the middle between two of them is refused.
 bool IsWhole(const Study& study, const CrossingQuestion& question) {
   if (question.from != std::round(question.from) || question.to != std::round(question.to)) return false;
   Study between = study;
@@ -84,7 +84,7 @@ bool IsWhole(const Study& study, const CrossingQuestion& question) {
     return false;
   } catch (const InputError&) {
     Override(&between, question.setting, fmt::format("{}", question.from));
-    MakePlan(between, PlanEstimators::kNotMade);  // says what is wrong where that is something else
+    MakePlan(between, PlanEstimators::kNotMade);  // throws if something else is wrong
     return true;
   }
 }
@@ -97,7 +97,7 @@ void CheckTrial(const TrialResult& result, const CrossingQuestion& question) {
     throw InputError("solve: the truth of this study's pairs is not known");
 }
 
-// Asks one estimator in one condition.
+// Counts the events of one estimator in one condition.
 class Asker {
  public:
   Asker(const Study& study, const CrossingQuestion& question, const Scale& scale,
@@ -115,7 +115,7 @@ class Asker {
     study_.estimators = {study.estimators[estimator]};
   }
 
-  // Of the trials those that could be simulated.
+  // Returns the events among those of the trials that could be simulated.
   EventsAtLevel Ask(double place, std::int64_t num_trials) {
     const std::string level = scale_.TextAt(place);
     std::int64_t& next = levels_[level].next_trial;
@@ -139,7 +139,7 @@ class Asker {
     std::int64_t num_events = 0, num_trials = 0;
   };
 
-  // Of the trials first, ..., first + num_trials - 1.
+  // Counts the events in trials first, ..., first + num_trials - 1.
   Events Count(const std::string& level, std::int64_t first, std::int64_t num_trials) {
     if (!*progress_) progress_->emplace("trials", total_, *num_done_);
     std::optional<StudyPlan>& made = levels_[level].plan;
@@ -162,14 +162,14 @@ class Asker {
   Study study_;
   const CrossingQuestion& question_;
   const Scale& scale_;
-  std::vector<std::string> condition_;  // its levels
+  std::vector<std::string> condition_;  // the levels of the condition
   int num_threads_;
   KeptSteps* steps_;
-  std::optional<Progress>* progress_;  // begins with the first trial that is not kept
+  std::optional<Progress>* progress_;  // starts with the first trial whose result is not kept
   std::int64_t total_;
   std::int64_t* num_done_;
   struct Level {
-    std::optional<StudyPlan> plan;  // of the condition alone, made for its first trial
+    std::optional<StudyPlan> plan;  // of this condition only, made for its first trial
     std::int64_t next_trial = 0;
   };
   std::map<std::string, Level> levels_;

@@ -1,5 +1,5 @@
-// The level of a setting at which a rate of an estimator crosses a value (stats/level_crossing.h), in each
-// condition of a study and for each of its estimators.
+// Finds the level of a setting at which a rate of an estimator crosses a value (stats/level_crossing.h), for
+// each condition of a study and each of its estimators.
 #pragma once
 
 #include <string>
@@ -13,23 +13,23 @@
 namespace rcme {
 
 struct CrossingQuestion {
-  std::string setting;  // what `--set` may name: of the data, a failure bound, or an option of estimators
-  double from = 0.0, to = 1;  // where to look, from < to, in its units
+  std::string setting;        // a name for `--set`: of the data, a failure bound, or an option of estimators
+  double from = 0.0, to = 1;  // the range of the search, from < to, in the setting's units
   bool is_logarithmic = false;
-  bool is_falling = false;  // the rate falls with the setting
+  bool is_falling = false;  // whether the rate decreases with the setting
   TrialEvent event = TrialEvents().front();
   double rate = 0.01;
-  std::int64_t num_trials = 10'000;  // for each estimator in each condition
+  std::int64_t num_trials = 10'000;  // per estimator and condition
 };
 
 struct RateCrossing {
   std::vector<std::string> levels;  // of the condition, one per factor of CrossingAnswer
   std::string estimator;            // its label
-  // In units of the setting, ascending; ends are infinite where the crossing may lie beyond the range.
+  // In units of the setting, ascending. An end is infinite if the crossing may lie beyond the range.
   double estimate = 0.0;
   Interval interval, logistic_interval;
   std::vector<EventsAtLevel> searched, fresh;
-  std::int64_t num_trials() const;  // that could be simulated
+  std::int64_t num_trials() const;  // trials that could be simulated
 };
 
 struct CrossingAnswer {
@@ -37,13 +37,14 @@ struct CrossingAnswer {
   std::vector<RateCrossing> crossings;
 };
 
-// Steps: batches of trials at one level.
+// The work; its steps are batches of trials at one level.
 WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question);
 
-// A pure function of study and question. Every level has scenes of its own, whatever `common_scenes` says:
-// the intervals need independent trials. Trials of one level are the same for all estimators. Throws
-// InputError for a setting that the study does not have or that is no number, for real pairs, for weighted
-// trials, for scenes that are repeated, and where the event needs a truth that is not known; Stopped.
+// A pure function of study and question. Every level has its own scenes, even with `common_scenes`, because
+// the intervals need independent trials. At one level, all estimators get the same trials.
+//
+// Throws InputError for a setting that the study does not have or that is not a number, for real pairs, for
+// weighted trials, for repeated scenes, and if the event needs a truth that is unknown. Throws Stopped.
 CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& question, int num_threads,
                              KeptSteps* steps);
 

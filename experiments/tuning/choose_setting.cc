@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-constexpr double kPower = 0.9;  // of the number of trials that is called enough
+constexpr double kPower = 0.9;  // with which the recommended number of trials certifies
 
 double RateOrOne(const ErrorCount& count) {
   return count.n > 0 ? static_cast<double>(count.errors) / static_cast<double>(count.n) : 1.0;
@@ -26,7 +26,7 @@ std::string DescribeRate(const ErrorCount& count) {
                      100.0 * interval.upper, count.n);
 }
 
-// What is to be least among the settings that meet the target.
+// The rate to minimise among the settings that meet the target.
 double Objective(const Tuning& tuning, const SettingCount& count) {
   return RateOrOne(tuning.target == TuneTarget::kFalseRefusal ? count.Failure() : count.Refusal());
 }
@@ -37,8 +37,9 @@ double PValue(const Tuning& tuning, const SettingCount& count) {
   return HasRefusalLimit(tuning) ? std::max(p, ExcessPValue(count.Refusal(), tuning.max_refusal)) : p;
 }
 
-// The settings worth testing: no other has a lower rate of what the target limits and as good an objective.
-// Those that tie in that rate all stay: the exploration may be too small to tell a safe one from a lucky one.
+// The settings worth testing: those for which no other has a lower rate of what the target limits and as good
+// an objective. Settings that tie in this rate all stay, because the exploration may be too small to tell a
+// safe one from a lucky one.
 std::vector<size_t> Proposed(const Tuning& tuning, const std::vector<SettingCount>& counts) {
   std::vector<double> limited, objective;
   for (const SettingCount& count : counts) {
@@ -48,8 +49,8 @@ std::vector<size_t> Proposed(const Tuning& tuning, const std::vector<SettingCoun
   return ParetoFront(limited, objective, TiesOfFirst::kStay);
 }
 
-// In the order of how surely they meet the target; of equals first the one with most of what is to be least,
-// which is the more careful one.
+// The proposed settings, ordered by how surely they meet the target. Of equals, the one with the greatest
+// objective comes first, because it is the more careful one.
 std::vector<size_t> OrderSettings(const Tuning& tuning, const std::vector<SettingCount>& explored) {
   std::vector<std::tuple<double, double, size_t>> path;
   for (const size_t s : Proposed(tuning, explored)) {
@@ -61,7 +62,7 @@ std::vector<size_t> OrderSettings(const Tuning& tuning, const std::vector<Settin
   return settings;
 }
 
-// The setting that is nearest to being certified; where all are hopeless, nearest to the target's limits.
+// The setting nearest to being certified; if all are hopeless, the one nearest to the target's limits.
 size_t NearestSetting(const Tuning& tuning, const std::vector<SettingCount>& calibrated) {
   const auto key = [&](size_t s) {
     const SettingCount& count = calibrated[s];
@@ -81,7 +82,7 @@ std::int64_t DivideRoundingUp(std::int64_t numerator, std::int64_t denominator) 
   return (numerator + denominator - 1) / denominator;
 }
 
-// What stands between a count and its limit: nothing, trials, or the rate itself.
+// Why a count does not certify its limit: too few trials, or the rate itself. Empty if it does.
 std::string Obstacle(const Tuning& tuning, const char* what, const ErrorCount& count, double at_most) {
   if (ExcessPValue(count, at_most) <= tuning.delta) return {};
   if (count.n == 0) {
@@ -139,7 +140,7 @@ Choice ChooseLeastRisk(const Tuning& tuning, const std::vector<SettingCount>& ex
   }
   choice.setting = best;
   choice.path = {best};
-  const double half = 0.5 * tuning.delta;  // each of the two bounds may fail
+  const double half = 0.5 * tuning.delta;  // either bound may fail
   choice.risk_bound = tuning.cost_of_failure * UpperBound(calibrated[best].Failure(), half) +
                       tuning.cost_of_refusal * UpperBound(calibrated[best].Refusal(), half);
   return choice;

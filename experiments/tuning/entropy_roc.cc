@@ -43,8 +43,8 @@ TrialEntropies MeasureTrialEntropies(const LoopInspection& estimator, const Tria
   return entropies;
 }
 
-// The estimators of the plan without their quality test; null where an estimator's loop cannot be taken
-// apart.
+// The estimators of the plan without their quality test; null for an estimator whose loop cannot be
+// inspected.
 std::vector<std::unique_ptr<const LoopInspection>> WithoutQualityTest(const StudyPlan& plan) {
   std::vector<std::unique_ptr<const LoopInspection>> estimators;
   for (const auto& estimator : plan.estimators) {
@@ -58,14 +58,14 @@ std::vector<std::unique_ptr<const LoopInspection>> WithoutQualityTest(const Stud
   return estimators;
 }
 
-// Not all the same number: an estimator without entropies leaves psi at zero.
+// Whether the numbers differ. An estimator without entropies leaves psi at zero.
 bool AreDifferent(const std::vector<double>& good, const std::vector<double>& bad) {
   const auto differs = [&](double psi) { return psi != good.front(); };
   return std::ranges::any_of(good, differs) || std::ranges::any_of(bad, differs);
 }
 
-// For each trial of all conditions the number of its scene: pairs of one real scene share images, a simulated
-// trial draws a scene of its own.
+// The scene of each trial of all conditions. Pairs of one real scene share images; a simulated trial draws
+// its own scene.
 std::vector<size_t> NumberScenes(const StudyPlan& plan, std::int64_t trials_per_condition) {
   std::vector<size_t> scenes;
   std::map<std::string, size_t> common;

@@ -1,5 +1,5 @@
-// Whether psi, the mean entropy of an inlier set, tells good models from others: what a threshold mu can do
-// at all.
+// How well psi, the mean entropy of an inlier set, separates good models from others. This limits what any
+// threshold mu can achieve.
 #pragma once
 
 #include <optional>
@@ -13,29 +13,28 @@
 namespace rcme {
 
 struct EntropyRoc {
-  size_t estimator = 0;  // in the study
-  // "samples": of a trial the first model of eight true matches (good) and the first of a sample with a wrong
-  // one (bad), among those that pass the sample test. "winners": the model that is selected without a quality
-  // test, good where the estimate is within the bounds.
+  size_t estimator = 0;  // index in the study
+  // "samples": from each trial, the first model of eight true matches (good) and the first of a sample with a
+  // wrong match (bad), among those that pass the sample test. "winners": the model selected without a quality
+  // test; it is good if the estimate is within the bounds.
   std::string population;
   std::vector<double> good, bad;  // psi; at most one of each per trial
-  // P(psi of a good one < psi of a bad one); clustered by scene, which is a trial's own where it is
-  // simulated.
+  // P(psi of a good one < psi of a bad one), clustered by scene. A simulated trial has a scene of its own.
   AreaUnderCurve area;
 };
 
-// psi of what a trial shows of each kind to one estimator.
+// psi of the models of each kind in one trial of one estimator.
 struct TrialEntropies {
   std::optional<double> good_sample, bad_sample, good_winner, bad_winner;
 };
 
-// [estimator][trial], the conditions one after the other; nothing of estimators whose loop cannot be taken
-// apart.
+// [estimator][trial], the conditions one after the other. Empty for estimators whose loop cannot be
+// inspected.
 using EntropiesOfTrials = std::vector<std::vector<TrialEntropies>>;
 EntropiesOfTrials MeasureEntropies(const StudyPlan& plan, TrialRange trials);
 
-// For every estimator of the plan that has entropies; without those where no good or no bad one was seen. The
-// trials are the same of every condition.
+// The ROC of every estimator of the plan that has entropies. Left out if there was no good or no bad model.
+// Every condition has the same trials.
 std::vector<EntropyRoc> ComputeRocs(const StudyPlan& plan, const EntropiesOfTrials& entropies);
 
 }  // namespace rcme

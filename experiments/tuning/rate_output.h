@@ -1,4 +1,4 @@
-// A rate of a tuning in tables and figures' data.
+// Formats a rate of a tuning for tables and the data of figures.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,16 +9,16 @@
 
 namespace rcme {
 
-// NaN where n is 0.
+// NaN if n is 0.
 double ComputeRate(const ErrorCount& count);
 
 // With the exact 95 % interval.
 Estimate EstimateRate(const ErrorCount& count);
 
-// "1.23 % [1.01, 1.50]"; "-" where n is 0.
+// "1.23 % [1.01, 1.50]"; "-" if n is 0.
 std::string RateForTable(const ErrorCount& count);
 
-// {"value", "lower", "upper", "n"}: the rate with its exact 95 % interval; value null where n is 0.
+// {"value", "lower", "upper", "n"}: the rate with its exact 95 % interval; value is null if n is 0.
 nlohmann::ordered_json RateAsJson(const ErrorCount& count);
 
 }  // namespace rcme

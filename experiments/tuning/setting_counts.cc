@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-// All settings in one trial.
+// Decides all settings in one trial.
 class TrialDecisions {
  public:
   TrialDecisions(const StreamName& name, const FailureBounds& bounds, TrialData data)
@@ -23,7 +23,7 @@ class TrialDecisions {
       throw InputError("tune: tilted_to: weighted trials cannot be used to tune; leave it out");
   }
 
-  // How each setting of the group ends, and how it would without its limits.
+  // The outcome of each setting of the group, with and without its limits.
   template <typename Visit>
   void ForEachSetting(const SettingPlan& plan, const TraceGroup& group, Visit visit) {
     refinements_.clear();
@@ -50,7 +50,8 @@ class TrialDecisions {
     TrialOutcome outcome = TrialOutcome::kRefusal;
     double failure_probability = kNaN;  // as stated
   };
-  // What follows from a loop depends on the candidates it hands over, and on the share they have to explain.
+  // The steps after a loop depend on the candidates that it hands over and on the share that they must
+  // explain.
   using Handover = std::pair<std::vector<HypothesisId>, double>;
 
   Decided DecideOnce(const MotionEstimator& estimator) {
@@ -122,7 +123,7 @@ SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, 
   SettingCounts counts(plan.conditions.size(), std::vector<SettingCount>(settings.settings.size()));
   const std::int64_t per_condition = trials.end - trials.first;
   ForEachTrial(plan, trials, [&](const Condition& condition, std::uint32_t trial, std::int64_t index) {
-    // By its place in the plan, which may be a part of a study's.
+    // By its index in the plan, which may be a part of a study's plan.
     std::vector<SettingCount>& of_condition = counts[static_cast<size_t>(index / per_condition)];
     const StreamName name = NameOfTrial(plan, condition, trial);
     auto simulated = SimulateDraw(plan.study, [&] { return condition.source->Make(name); });

@@ -1,4 +1,4 @@
-// What every setting of a tuning does in the same trials.
+// The outcomes of every setting of a tuning in the same trials.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace rcme {
 
-// Over some trials, of which `n` could be simulated (trial/simulate_draw.h). A trial is good where the
-// setting without its limits (SettingPlan) returns a motion within the bounds; refused nevertheless, it is a
-// false refusal.
+// Counts over some trials, of which `n` could be simulated (trial/simulate_draw.h). A trial is good if the
+// setting without its limits (SettingPlan) returns a motion within the bounds. A good trial that is refused
+// is a false refusal.
 struct SettingCount {
   std::int64_t n = 0, failures = 0, refusals = 0, good = 0, false_refusals = 0;
 
@@ -27,11 +27,11 @@ struct SettingCount {
 // [condition][setting].
 using SettingCounts = std::vector<std::vector<SettingCount>>;
 
-// The same trials of every condition of the plan. A function of the plan, the settings and the range alone.
-// Throws InputError if a condition has weighted trials, or its trials are not fresh (real pairs).
+// Counts the outcomes of the same trials in every condition of the plan. Depends only on the plan, the
+// settings and the range. Throws InputError if a condition has weighted trials or no fresh ones (real pairs).
 SettingCounts CountOutcomes(const StudyPlan& plan, const SettingPlan& settings, TrialRange trials);
 
-// One per setting: the sum over some conditions.
+// The sum over some conditions, one per setting.
 std::vector<SettingCount> SumOver(const SettingCounts& counts, const std::vector<std::uint32_t>& conditions);
 
 }  // namespace rcme

@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-// What the options have in common of those that share a trace, as text.
+// The options that settings with one trace have in common, as text.
 std::string TraceKey(const Settings& options) {
   std::string key;
   for (const auto& [option, value] : options) {
@@ -28,8 +28,8 @@ std::string MakeSettingKey(const Settings& options) {
   return key;
 }
 
-// An inspection whose trace serves all of the settings: as many hypotheses as any looks at, with likelihoods
-// if any selects by them, none left out by an early stop.
+// An inspection whose trace serves all of the settings. It has the most hypotheses that any of them needs,
+// with likelihoods if any selects by them, and no early stop.
 std::shared_ptr<const LoopInspection> MakeTracer(const SettingPlan& plan,
                                                  const std::vector<size_t>& settings) {
   const LoopInspection& first = *FindInspection(*plan.estimators[settings.front()]);
@@ -43,7 +43,7 @@ std::shared_ptr<const LoopInspection> MakeTracer(const SettingPlan& plan,
   return first.With(options);
 }
 
-// The value of kProbabilityLimit where the options differ from those without limits in it alone.
+// The value of kProbabilityLimit if the options differ only in it from those without limits.
 std::optional<double> FindProbabilityLimit(const Settings& options, const Settings& without_limits) {
   std::optional<double> limit;
   for (size_t i = 0; i < options.size(); ++i) {
@@ -78,7 +78,8 @@ bool AddEstimators(SettingPlan* plan) {
 
 void AddGroups(SettingPlan* plan) {
   std::map<std::string, std::vector<size_t>> groups;
-  std::map<const MotionEstimator*, size_t> in_one_piece;  // the group of each estimator without limits
+  // the group of each estimator without limits that is not inspected
+  std::map<const MotionEstimator*, size_t> in_one_piece;
   for (size_t s = 0; s < plan->settings.size(); ++s) {
     if (FindInspection(*plan->estimators[s])) {
       groups[TraceKey(plan->settings[s].spec.options)].push_back(s);

@@ -1,4 +1,4 @@
-// The settings of a tuning, and how few estimations they take: settings that differ in decision options alone
+// The settings of a tuning, grouped to save estimations: settings that differ only in decision options
 // (estimator/loop_inspection.h) share one trace per trial.
 #pragma once
 
@@ -19,28 +19,28 @@ struct TunedSetting {
   EstimatorSpec spec;               // the study's estimator with these levels
 };
 
-// Settings that share a trace; or, where the estimator cannot be inspected (null), the estimator without its
-// limits.
+// Settings that share a trace. If the estimator cannot be inspected (`tracer` is null), settings that share
+// the estimator without its limits.
 struct TraceGroup {
   std::shared_ptr<const LoopInspection> tracer;
   std::vector<size_t> settings;
 };
 
-// An option of this name refuses the motions whose stated probability of failure is greater, and changes
-// nothing else: settings that differ in it alone share one call.
+// The option of this name refuses motions with a greater stated probability of failure and has no other
+// effect. So settings that differ only in it share one call.
 inline constexpr const char* kProbabilityLimit = "max_failure_probability";
 
 struct SettingPlan {
-  std::vector<TunedSetting> settings;                              // the first option slowest
-  std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // of each setting
-  // The same with its limits lifted (EstimatorModel). Settings that differ in limits alone share one.
+  std::vector<TunedSetting> settings;                              // the first option varies slowest
+  std::vector<std::shared_ptr<const MotionEstimator>> estimators;  // one per setting
+  // The same with their limits lifted (EstimatorModel). Settings that differ only in limits share one.
   std::vector<std::shared_ptr<const MotionEstimator>> without_limits;
-  // Of each setting the kProbabilityLimit that is all that its limits are; nothing: they are something else.
+  // kProbabilityLimit of each setting that has no other limit; nullopt for other settings.
   std::vector<std::optional<double>> greatest_probability;
   std::vector<TraceGroup> groups;
 };
 
-// The tuning is one that was read for the study (tuning_file.h).
+// The tuning must have been read for this study (tuning_file.h).
 SettingPlan MakeSettingPlan(const Study& study, const Tuning& tuning);
 
 }  // namespace rcme

@@ -18,7 +18,7 @@ std::string DescribeCondition(const StudyPlan& plan, const Condition& condition)
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-// A condition of a one-at-a-time study in short: what differs from the first condition.
+// The short name of a condition of a one-at-a-time study: its difference from the first condition.
 std::string DescribeDifference(const StudyPlan& plan, const Condition& condition) {
   std::vector<std::string> words;
   for (size_t f = 0; f < plan.factor_names.size(); ++f) {

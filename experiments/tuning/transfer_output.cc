@@ -29,7 +29,7 @@ std::vector<std::string> OthersWith(Verdict verdict, const Tuning& tuning, const
   return words;
 }
 
-// A row per family tuned on and family verified on, but for families without a choice.
+// One row per family tuned on and family verified on, without families that have no choice.
 Table MakeTransferCells(const StudyPlan& plan, const TransferResult& result) {
   const Tuning& tuning = *plan.study.tuning;
   Table table{{Column::Key("tuned_on"), Column::Text("setting"), Column::Key("verified_on")}};

@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// For people what each family is tuned to, and on how many of the others the target holds; in files every
-// cell of the matrix.
+// The result of a transfer. The screen shows the setting of each family, and on how many of the others the
+// target holds; files hold every cell of the matrix.
 CommandResult MakeTransferResult(const StudyPlan& plan, const SettingPlan& settings,
                                  const TransferResult& result);
 

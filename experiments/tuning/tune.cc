@@ -16,7 +16,7 @@ std::vector<std::uint32_t> AllConditions(const StudyPlan& plan) {
   return all;
 }
 
-// What the plain estimator does must be what was decided from traces.
+// The plain estimator must do what was decided from traces.
 void CheckAgreement(const VerifiedEstimator& plain, const SettingCount& decided) {
   if (plain.failure.errors == decided.failures && plain.refusal.errors == decided.refusals) return;
   throw std::logic_error(

@@ -34,7 +34,7 @@ bool IsNumber(const std::string& text) {
   return ParseReal(text, &number);
 }
 
-// The options, a number in place of a word where the word stands for one.
+// The options. A word that stands for a number is replaced by it.
 Settings InNumbers(EstimatorSpec spec) {
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
   if (const LoopInspection* ransac = FindInspection(*estimator)) {
@@ -47,8 +47,8 @@ Settings InNumbers(EstimatorSpec spec) {
   return spec.options;
 }
 
-// The levels of the tuned options at which another estimator is the tuned one; null if it differs in more, or
-// has a word ("auto") where the levels are numbers.
+// The levels of the tuned options at which another estimator equals the tuned one. Null if it differs in
+// other options, or has a word ("auto") where the levels are numbers.
 Json RenderTunedLevels(const Tuning& tuning, const EstimatorSpec& tuned, const EstimatorSpec& other) {
   if (tuned.name != other.name) return nullptr;
   const Settings tuned_options = InNumbers(tuned), other_options = InNumbers(other);
@@ -82,8 +82,7 @@ Json OthersAsJson(const Tuning& tuning, const std::vector<VerifiedEstimator>& es
   return others;
 }
 
-// Accepted is what has psi at most mu. A good model is a positive, and the lower its psi the higher its
-// score.
+// A model is accepted if its psi is at most mu. A good model is a positive; a lower psi is a higher score.
 std::vector<RocPoint> ComputeEntropyCurve(const EntropyRoc& roc) {
   const auto scores = [](std::vector<double> psi) {
     for (double& x : psi) x = -x;
@@ -131,8 +130,8 @@ Json RocAsJson(const StudyPlan& plan, const EntropyRoc& roc) {
                                   {"true_accept_rate", at_mu.true_positive_rate}}})}};
 }
 
-// Per setting, whether it is on the Pareto front: none fails and is refused as seldom, and one of the two
-// less often.
+// For each setting, whether it is on the Pareto front: no other setting has lower or equal rates of failure
+// and refusal, one of them lower.
 std::vector<bool> AreOnFront(const std::vector<SettingCount>& counts) {
   std::vector<double> refusals, failures;
   for (const SettingCount& count : counts) {

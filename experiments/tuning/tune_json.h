@@ -1,4 +1,4 @@
-// A tuning for plots/tune.py, and what the plot of a transfer shares with it.
+// A tuning as JSON for plots/tune.py, and the parts that the plot of a transfer shares.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,8 +10,8 @@
 
 namespace rcme {
 
-// Rates of every setting, the path, the choice, the other estimators, the ROC curves (thinned to a few hundred
-// points).
+// Rates of every setting, the path, the choice, the other estimators, the ROC curves (thinned to a few
+// hundred points).
 std::string TuneAsJson(const StudyPlan& plan, const SettingPlan& settings, const TuneResult& result,
                        const std::vector<EntropyRoc>& rocs);
 

@@ -30,7 +30,7 @@ std::string DescribeTrials(const StudyPlan& plan) {
                      c * tuning.explore, c * tuning.calibrate, c * tuning.verify);
 }
 
-// Of all trials of the tuning.
+// How many of all trials of the tuning could not be simulated.
 std::string DescribeMissingTuningTrials(const StudyPlan& plan, const TuneResult& result) {
   const Tuning& tuning = *plan.study.tuning;
   std::int64_t num_trials = 0, num_simulated = 0;
@@ -45,7 +45,7 @@ std::string DescribeMissingTuningTrials(const StudyPlan& plan, const TuneResult&
   return FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials));
 }
 
-// Tuned, verified and the optimism of the tuned figure, rate by rate.
+// For each rate: the tuned figure, the verified one, and the optimism of the former.
 Table MakeVerifiedTable(const TuneResult& result) {
   const SettingCount& tuned = result.calibrated[*result.choice.setting];
   const SettingCount& verified = result.verified[*result.choice.setting];
@@ -62,7 +62,7 @@ Table MakeVerifiedTable(const TuneResult& result) {
   return table;
 }
 
-// The tuned estimator is the first.
+// The first of the estimators is the tuned one.
 Table MakeEstimatorTable(const std::vector<VerifiedEstimator>& estimators) {
   Table table{{Column::Key("estimator"), Column::Estimated("failure", kPercent),
                Column::Estimated("refusal", kPercent), Column::Estimated("failure or refusal", kPercent),
@@ -121,7 +121,7 @@ std::string DescribeVerdict(const Tuning& tuning, const TuneResult& result) {
   return "on fresh trials too few to decide whether the target holds (95 % intervals)";
 }
 
-// The settings that were chosen at all, the most frequent first.
+// The settings that were chosen at least once, the most frequent first.
 std::vector<size_t> ByTimesChosen(const Repetitions& repetitions) {
   std::vector<size_t> chosen;
   for (size_t s = 0; s < repetitions.num_chosen.size(); ++s) {
@@ -131,7 +131,7 @@ std::vector<size_t> ByTimesChosen(const Repetitions& repetitions) {
   return chosen;
 }
 
-// The first rows of `chosen`, and every setting whose target is not known to hold.
+// The first rows of `chosen`, and every setting for which the target is not known to hold.
 Table MakeChosenTable(const Tuning& tuning, const SettingPlan& settings, const Repetitions& repetitions,
                       const std::vector<size_t>& chosen) {
   const std::vector<std::string> names = DescribeEachSetting(tuning, settings);

@@ -10,18 +10,18 @@
 
 namespace rcme {
 
-// What was asked, tuned and verified, for people. Without a choice: what was tried.
+// The question, the tuning and the verification as a table; without a choice, what was tried.
 std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result, const std::vector<EntropyRoc>& rocs);
 
-// In files, a row per setting: its levels, its rates on the trials for verification, and whether it was on
-// the path of the tuning, certified, chosen. Without a row if nothing was verified.
+// The table for files, one row per setting: its levels, its rates on the trials for verification, and whether
+// it was on the path of the tuning, certified, chosen. Empty if nothing was verified.
 Table MakeSettingTable(const StudyPlan& plan, const SettingPlan& settings, const TuneResult& result);
 
-// How often a repeated tuning violated its target, for people.
+// How often a repeated tuning violated its target, as a table.
 std::string RepetitionsAsTable(const StudyPlan& plan, const SettingPlan& settings,
                                const Repetitions& repetitions);
 
-// Where the tuned estimator comes from and what it was seen to do: (key, text) pairs for its file.
+// The origin of the tuned estimator and its measured rates: (key, text) pairs for its file.
 std::vector<std::pair<std::string, std::string>> DescribeProvenance(const StudyPlan& plan,
                                                                     const TuneResult& result);
 

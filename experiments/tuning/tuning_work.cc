@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kTrialsOfItem = 10;
 
-// What is done with the trials of a group; a group of each kind for every condition, in this order.
+// The use of a group's trials. Every condition has one group of each kind, in this order.
 enum class Kind : size_t { kExplore, kCalibrate, kVerify, kEntropies, kPlainCalls };
 constexpr std::array<const char*, 5> kKinds = {"explore", "calibrate", "verify", "entropies", "plain calls"};
 
@@ -45,14 +45,14 @@ TrialRange FindItemTrials(const StudyPlan& plan, const ItemPlace& place) {
   return {first, std::min(first + kTrialsOfItem, all.end)};
 }
 
-// The plan with one of its conditions alone.
+// The plan with only one of its conditions.
 StudyPlan OneCondition(const StudyPlan& plan, size_t condition) {
   StudyPlan one = plan;
   one.conditions = {plan.conditions[condition]};
   return one;
 }
 
-// What the results depend on, a line for each thing.
+// Everything on which the results depend, one line each.
 std::string Identity(const StudyPlan& plan) {
   Tuning tuning = *plan.study.tuning;
   std::string identity;
@@ -85,7 +85,7 @@ Json CountsAsJson(const std::vector<SettingCount>& counts) {
   return json;
 }
 
-// Of so many trials, or of those of them that could be simulated.
+// Adds the counts of this many trials, or of those that could be simulated.
 void AddCounts(const Json& json, std::int64_t num_trials, bool is_drawn, std::vector<SettingCount>* counts) {
   RequireSize(json, counts->size());
   for (size_t s = 0; s < counts->size(); ++s) {
@@ -113,7 +113,8 @@ Json VerifiedAsJson(const std::vector<VerifiedEstimator>& estimators) {
   return json;
 }
 
-// One estimator's counts of a piece, and how many trials of it the first estimator failed or refused.
+// The counts of one estimator in a piece, and in how many of its trials the first estimator failed or
+// refused.
 VerifiedEstimator VerifiedFrom(const Json& json, std::int64_t n, std::int64_t num_bad_of_first) {
   RequireSize(json, 7);
   const auto number = [&](size_t i) { return CountFrom(json[i], n); };
@@ -135,7 +136,7 @@ void AddVerified(const Json& json, std::int64_t num_trials, bool is_drawn,
   RequireSize(json, estimators->size());
   if (estimators->empty()) return;
   RequireSize(json[0], 7);
-  std::int64_t n = 0;  // of them could be simulated
+  std::int64_t n = 0;  // trials that could be simulated
   for (size_t i = 3; i < 7; ++i) n += CountFrom(json[0][i], num_trials - n);
   RequirePossible(n == num_trials || is_drawn, "counts", "the pairs are not the trials");
   const std::int64_t num_bad_of_first = CountFrom(json[0][2], n);
@@ -168,7 +169,7 @@ Json EntropiesAsJson(const EntropiesOfTrials& entropies) {
   return json;
 }
 
-// Those of a piece, to the trials `first` and those after it.
+// Writes the entropies of a piece to trial `first` and those after it.
 void SetEntropies(const Json& json, size_t first, size_t num_trials, EntropiesOfTrials* entropies) {
   RequireSize(json, entropies->size());
   for (size_t e = 0; e < json.size(); ++e) {
@@ -202,7 +203,7 @@ std::int64_t CountTrialsIn(const StudyPlan& plan, const ItemPlace& place) {
   return trials.end - trials.first;
 }
 
-// What the tuning of another seed chooses: the number of a setting, or null.
+// The choice of the tuning with another seed: the number of a setting, or null.
 std::string ComputeRepetition(const StudyPlan& plan, const SettingPlan& settings, size_t number) {
   StudyPlan fresh = plan;
   fresh.study.seed += number + 1;
@@ -241,7 +242,7 @@ void GetTuningResults(const StudyPlan& plan, const SettingPlan& settings, const 
     runner->Get(ListItems(work.items, {}, first, end),
                 [&](const ItemPlace& place) { return ComputeBlock(plan, settings, tuned, place); });
   };
-  // Parts are to have the whole first round, so that every shard that lacks some of it is named.
+  // The parts must have the whole first round, so that every shard that lacks some of it is named.
   if (runner->ReadsParts() || work.num_first == num_groups) get(0, work.num_first);
   if (work.num_first == num_groups) return;
   get(0, work.num_choosing);
@@ -311,8 +312,8 @@ EntropiesOfTrials EntropiesIn(const StudyPlan& plan, const TuningWork& work, con
   return entropies;
 }
 
-// The reference in the groups that a tuning has for its verification; those before it are empty. The tunings
-// in one more.
+// The groups that a tuning has for its verification hold the reference; the groups before them are empty. One
+// further group holds the tunings.
 WorkPlan PlanRepetitions(const StudyPlan& plan, int n) {
   const Tuning& tuning = *plan.study.tuning;
   CheckTrialsSuffice(tuning, plan.conditions.size());

@@ -1,5 +1,5 @@
-// The tuned estimator and those of the study on trials that played no part in tuning: plain calls, the same
-// problems for all.
+// Measures the tuned estimator and those of the study on trials that played no part in tuning: by plain
+// calls, on the same problems for all.
 #pragma once
 
 #include <string>
@@ -15,11 +15,12 @@ namespace rcme {
 struct VerifiedEstimator {
   EstimatorSpec spec;
   ErrorCount failure, refusal, failure_or_refusal;
-  // In how many trials failure or refusal happened to the first estimator (first) and to this one (second).
+  // Number of trials in which failure or refusal happened to the first estimator (first) and to this one
+  // (second).
   PairedCounts against_first;
 };
 
-// Every estimator of the plan in these trials of every condition, in the plan's order.
+// Measures every estimator of the plan in these trials of every condition, in the plan's order.
 std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRange trials);
 
 }  // namespace rcme
