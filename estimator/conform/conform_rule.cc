@@ -77,7 +77,7 @@ ConformJudge::ConformJudge(ConformRule rule) : rule_(std::move(rule)) {
     }
     const double median = values.empty() ? 0.0 : ComputeMedian(values);
     for (const double x : values) distances.push_back(std::abs(x - median));
-    constexpr double kLeastScale = 1e-6;  // all alike
+    constexpr double kLeastScale = 1e-6;  // if all values are equal
     usual_.push_back({median, std::fmax(ComputeMedian(std::move(distances)), kLeastScale)});
   }
   for (size_t i = 0; i < n; ++i) {

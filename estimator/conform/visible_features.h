@@ -15,10 +15,12 @@ enum class VisibleFeature {
   kMatches,        // log(1 + matches)
   kAgreeing,       // log(1 + matches that agree with the motion at the assumed sigma)
   kAgreeingShare,  // log-odds of their share, with one added on either side
-  kResidual,       // log of the residuals' scale over the assumed sigma: median |Sampson distance| / .6745 of
-                   // the estimator's inliers, at least .001
-  kParallax,       // log of the median parallax over its noise: what the rotation leaves of an agreeing match
-                   // over sqrt(2) sigma, at least .001
+  // log of the residuals' scale, median |Sampson distance| / .6745 of the estimator's inliers, over the
+  // assumed sigma; a ratio of at least .001
+  kResidual,
+  // log of the median parallax over its noise: residuals of the agreeing matches under the rotation alone,
+  // over sqrt(2) sigma; a ratio of at least .001
+  kParallax,
   // log-odds of the share of agreeing matches that one homography explains, with one added on either side
   kPlanarity,
   kSpread,       // log of the standard deviation of agreeing points of image 1 over the focal length

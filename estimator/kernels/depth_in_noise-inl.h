@@ -1,10 +1,12 @@
 // How far in front of the cameras matches lie, as an angle (rad) along the epipolar plane.
 //
-// With a = R ray1, b = ray2 and m = a x b, the depths are lambda1 = (b x t)'m / |b x t|^2 and lambda2 = (a x
-// t)'m / |a x t|^2. The parallax, the angle between the rays, is |m| / (|a| |b|). Its component within the
-// epipolar plane is (b x t)'m / (|b x t| |a| |b|); for camera 2, a x t replaces b x t. Both are positive in
-// front of the cameras. Products of cross products are expressed by scalar products (Lagrange's identity)
-// with |t| = 1.
+// With a = R ray1, b = ray2 and m = a x b, the depths are
+//
+//   lambda1 = (b x t)'m / |b x t|^2,   lambda2 = (a x t)'m / |a x t|^2.
+//
+// The parallax, the angle between the rays, is |m| / (|a| |b|). Its component within the epipolar plane is (b
+// x t)'m / (|b x t| |a| |b|); for camera 2, a x t replaces b x t. Both are positive in front of the cameras.
+// Products of cross products are expressed by scalar products (Lagrange's identity) with |t| = 1.
 #if defined(RCME_ESTIMATOR_KERNELS_DEPTH_IN_NOISE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_ESTIMATOR_KERNELS_DEPTH_IN_NOISE_INL_H_
 #undef RCME_ESTIMATOR_KERNELS_DEPTH_IN_NOISE_INL_H_

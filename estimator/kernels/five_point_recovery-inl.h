@@ -177,7 +177,7 @@ HWY_INLINE void StoreCoordinates(const Vec4& c, int first, double (*to)[Brackets
   Store(c.z, to[2] + first);
   Store(c.w, to[3] + first);
 }
-// With Frobenius norm sqrt(2).
+// Stores the matrices with Frobenius norm sqrt(2).
 HWY_INLINE void StoreMatrices(const SampleBasis& basis, const Vec4& c, int first,
                               double (*to)[Brackets::kCapacity]) {
   const Mat3 E = basis(Times(c, Set(1.41421356237309504880) / hn::Sqrt(Dot(c, c))));

@@ -9,16 +9,16 @@
 //   V_ij = v_0 [i = j] + v_1 [same key point] + sum_k v_k c_ij(l_k),   l = 30, 90, 270 px
 //   c_ij(l) = u_i1' u_j1 exp(-d_ij1 / l) + u_i2' u_j2 exp(-d_ij2 / l)
 //
-// Here u_i = J' / |J| (4x1). Its halves belong to the two images, the normals of the epipolar lines, so that
-// c_ii = 1. All matches of a key point are placed where its first match is. With the residuals' derivatives
-// J_i (1x5) along the motion and A = sum J_i' J_i, the motion has the covariance A^-1 (sum_ij V_ij J_i' J_j)
-// A^-1, a sandwich with an estimated kernel (Conley 1999: with a given one).
+// Here u_i = J' / |J| (4x1). Its two halves, one per image, are normals of the epipolar lines, and c_ii = 1.
+// All matches of a key point are placed where its first match is. With the residuals' derivatives J_i (1x5)
+// along the motion and A = sum J_i' J_i, the motion has the covariance A^-1 (sum_ij V_ij J_i' J_j) A^-1, a
+// sandwich with an estimated kernel (Conley 1999: with a given one).
 //
 // The v are fitted by the method of moments (Haseman and Elston 1972): least squares of q - T v with
 //
-//   q_0 = sum over key points of the mean r_i^2          W_0
-//   q_1 = sum over key points of the mean r_i r_j, i != j  W_1
-//   q_k = sum over pairs of key points g, h of c_gh(l_k) times the product of their mean residuals  W_k
+//   q_0 = sum over key points of the mean r_i^2
+//   q_1 = sum over key points of the mean r_i r_j, i != j
+//   q_k = sum over pairs of key points g, h of c_gh(l_k) times the product of their mean residuals
 //
 // Each q_a is a quadratic form r' W_a r, so that T_ab = tr(W_a P K_b P). P = I - U U' with U = J A^-1/2
 // projects out the five parameters that were fitted; K_b is the matrix that v_b multiplies. A key point

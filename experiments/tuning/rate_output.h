@@ -12,7 +12,7 @@ namespace rcme {
 // NaN if n is 0.
 double ComputeRate(const ErrorCount& count);
 
-// With the exact 95 % interval.
+// The rate with its exact 95 % interval.
 Estimate EstimateRate(const ErrorCount& count);
 
 // "1.23 % [1.01, 1.50]"; "-" if n is 0.

@@ -18,12 +18,12 @@ std::vector<CaseClaim> MleCalibration();         // coverage of maximum likeliho
 CaseClaim EstimatorCalibration(const std::string& label, const std::string& reading,
                                std::shared_ptr<const MotionEstimator> estimator, const FailureBounds& bounds);
 
-// That the estimator's motions do not exceed the bounds more often than its answers say, and that its stated
-// probabilities of failure, if any, are right.
+// Claims that the estimator's motions do not exceed the bounds more often than its answers say, and that its
+// stated probabilities of failure, if any, are right.
 CaseClaim FailureCalibration(const std::string& label, const std::string& reading,
                              std::shared_ptr<const MotionEstimator> estimator, const FailureBounds& bounds);
 
-// That the stated noise level, if any, is right.
+// Claims that the stated noise level, if any, is right.
 CaseClaim SigmaCalibration(const std::string& label, const std::string& reading,
                            std::shared_ptr<const MotionEstimator> estimator);
 
