@@ -42,8 +42,8 @@ struct Interval {
 constexpr std::array<Interval, kNumNodes> MakeIntervals() {
   std::array<Interval, kNumNodes> intervals{};
   for (int n = 0; n < kNumNodes; ++n) {
-    const Node a = ComputeNode(n),
-               b = ComputeNode((n + 1) % kNumNodes);  // t of 1 and -1 is the same in both charts
+    // The charts agree at t = 1 and t = -1.
+    const Node a = ComputeNode(n), b = ComputeNode((n + 1) % kNumNodes);
     intervals[static_cast<size_t>(n)] = {a.t, b.t, a.is_inverse || b.is_inverse ? 1.0 : 0.0};
   }
   return intervals;

@@ -32,8 +32,8 @@ HWY_INLINE void NormalBasis(const EssentialBasis& e, Vec (&N)[3][9]) {
 // Lower Cholesky factor of an m x m matrix (lower triangle). Pivots that rounding made negative count as 0.
 template <int m>
 HWY_INLINE void Cholesky(const Vec (&S)[m][m], Vec (&L)[m][m]) {
-  Vec pivots[m],
-      scaled[m][m];  // S = L1 diag(pivots) L1' first, scaled = L1 diag(pivots): no root on the long chain
+  // First S = L1 diag(pivots) L1', scaled = L1 diag(pivots): no root in the long chain.
+  Vec pivots[m], scaled[m][m];
   for (int j = 0; j < m; ++j) {
     Vec pivot = S[j][j];
     for (int k = 0; k < j; ++k) pivot = FusedNegMulAdd(scaled[j][k], L[j][k], pivot);

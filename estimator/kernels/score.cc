@@ -161,8 +161,8 @@ void SumEntropies(const double* spreads, int count, double offset, double* mean,
   const auto entropy = [&](int i) {
     return FusedMulAdd(half, ComputeLog(Tag(), hn::LoadU(Tag(), spreads + i)), shift);
   };
-  HWY_ALIGN double
-      stored[512];  // entropies of the first 512 inliers: their logarithms need not be taken twice
+  // Entropies of the first 512 inliers, so that their logarithms are taken only once.
+  HWY_ALIGN double stored[512];
   const double sum = SumOverBlocks(count, [&](int first, Vec* values) {
     for (int v = 0; v < kVectors; ++v) {
       values[v] = entropy(first + v * kLanes);

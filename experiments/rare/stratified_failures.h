@@ -43,8 +43,9 @@ struct StratifiedCell {
   std::array<StratumCount, kNumStrata> strata;
   std::int64_t num_run = 0;
   std::int64_t num_not_simulated = 0;  // of the trials drawn; they are in no stratum (trial/simulate_draw.h)
-  WeightedRate
-      rate;  // cautious_upper: as if the next failure were in the easiest stratum of which a trial was run
+  // Its cautious_upper is the upper end as if the next failure were in the easiest stratum with a trial that
+  // was run.
+  WeightedRate rate;
 };
 
 // The greater of the two probabilities above, from a bound (5x5, [rotation, direction], rad^2).

@@ -20,8 +20,8 @@ std::vector<Claim> ComplexityClaims();
 // Comparisons of failure rates: the paper's three, and every other estimator against standard.
 std::vector<Claim> FailureClaims(const std::vector<EstimatorEntry>& estimators);
 std::vector<Claim> EarlyStopClaims();
-std::vector<Claim> EstimatorClaims(
-    const std::vector<EstimatorEntry>& estimators);  // any estimator, as a black box
+// Any estimator, as a black box.
+std::vector<Claim> EstimatorClaims(const std::vector<EstimatorEntry>& estimators);
 // The assumptions of OpenCV's estimators; empty if these are not among the peers.
 std::vector<Claim> PeerClaims(const std::vector<EstimatorEntry>& peers);
 
