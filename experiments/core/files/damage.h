@@ -6,13 +6,13 @@
 
 namespace rcme {
 
-// Something in a result file that no run can have written. The message says what and where, without the path.
+// A result file has content that no run can have written. The message says what and where, without the path.
 class Damage : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// The same as the user hears of it: with the path, and with the command that says what can be saved.
+// The same error for the user: it adds the path and the command that shows what can be recovered.
 class DamagedFileError : public InputError {
  public:
   using InputError::InputError;

@@ -17,7 +17,7 @@ std::string TypeName(const SQLite::Column& column) {
   return column.isInteger() ? "a whole number" : "a real number";
 }
 
-// What an error means for a result file, as the end of "PATH: ...".
+// Describes an error of a result file; the text follows "PATH: ".
 std::string DescribeFileError(const SQLite::Exception& error) {
   switch (error.getErrorCode()) {
     case SQLITE_NOTADB:
@@ -42,8 +42,8 @@ std::string DescribeFileError(const SQLite::Exception& error) {
 }  // namespace
 
 SQLite::Database OpenDatabase(const std::string& path, int flags, FileLocks locks) {
-  // By the absolute path: SQLite reads '', ':memory:' and 'file:...' as something else than a file of that
-  // name. Without SQLite's own locks, which cost a tenth of an insertion: a store has one caller at a time.
+  // The absolute path is needed because SQLite gives '', ':memory:' and 'file:...' a meaning of their own.
+  // SQLite's mutexes are off, as they cost a tenth of an insertion and a store has one caller at a time.
   SQLite::Database database(std::filesystem::absolute(path).string(), flags | SQLite::OPEN_NOMUTEX,
                             kBusyTimeoutMs, locks == FileLocks::kUsed ? "" : "unix-none");
   sqlite3_db_config(database.getHandle(), SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);

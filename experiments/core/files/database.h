@@ -1,4 +1,4 @@
-// A connection to an untrusted SQLite file; its errors are sentences.
+// Opens and reads SQLite files that are not trusted. Errors become messages for the user.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -10,16 +10,16 @@
 
 namespace rcme {
 
-// No views, triggers or functions of the file are run, and its internal tables cannot be written by SQL.
-// `flags` are SQLite's. Throws SQLite::Exception.
-enum class FileLocks { kUsed, kNone };  // none: for file systems without; who opens knows that nobody writes
+// Opens a database without running its views, triggers or functions; SQL cannot write its internal tables.
+// `flags` are those of SQLite. Throws SQLite::Exception.
+enum class FileLocks { kUsed, kNone };  // kNone: for file systems without locks, if nobody writes
 SQLite::Database OpenDatabase(const std::string& path, int flags, FileLocks locks = FileLocks::kUsed);
 
-// Throws what an error of the database or damage means to the user: an InputError that names the file.
+// Translate a database error or damage into an InputError that names the file.
 [[noreturn]] void ThrowForFile(const std::string& path, const SQLite::Exception& error);
 [[noreturn]] void ThrowForFile(const std::string& path, const Damage& damage);
 
-// Runs `action`, and turns its errors into those.
+// Runs `action` and translates its errors by ThrowForFile.
 template <typename Action>
 auto NamingFile(const std::string& path, Action action) {
   try {

@@ -4,9 +4,9 @@
 
 namespace rcme {
 
-// A name of a study or a scene as part of a file's name: what is no letter, digit, '_', '-' or '.' becomes
-// '_', and a '.' in front gets one before it. Whatever a file calls its scene, the result lies in the folder
-// that was asked for.
+// Makes a file name from the name of a study or a scene. Characters other than letters, digits, '_', '-' and
+// '.' become '_'; an empty name or one that begins with '.' gets a '_' in front. The result never leaves the
+// folder into which it is written, whatever name a file gives its scene.
 std::string MakeFileName(std::string name);
 
 }  // namespace rcme

@@ -16,7 +16,7 @@
 namespace rcme {
 namespace {
 
-// A device, a pipe, a folder: nothing can be renamed over it.
+// Returns whether `path` is a device, a pipe or a folder: nothing can be renamed over it.
 bool IsSpecial(const std::string& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
@@ -72,13 +72,13 @@ void WriteFileWhole(const std::string& path, const std::string& text) {
 
 void CheckCanBeWritten(const std::string& path) {
   if (std::filesystem::is_directory(path)) ThrowCannotWrite(path, EISDIR);
-  if (IsSpecial(path)) return;  // to open a pipe may take a reader
+  if (IsSpecial(path)) return;  // opening a pipe may wait for a reader
   CheckIsNoResultStore(path);
   const FileInPieces opened(path);
 }
 
 void CheckIsNoInput(const std::string& path, const std::vector<std::string>& inputs) {
-  std::error_code ignored;  // of a file that is not there
+  std::error_code ignored;  // a file may not exist
   for (const std::string& input : inputs) {
     if (std::filesystem::equivalent(path, input, ignored)) {
       throw InputError(fmt::format("--out: '{}' is the input itself; give another file", path));

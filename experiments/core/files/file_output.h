@@ -9,13 +9,15 @@
 
 namespace rcme {
 
-// Writes a text file whole or not at all: to a temporary neighbour first (pending_file.h), then renamed over
-// `path`. It is on the disk when this returns. A device or pipe is written directly; a result store is never
-// replaced: it may hold hours of work. Throws InputError that names the path and the reason.
+// Writes a text file completely or not at all: first to a temporary file beside it (pending_file.h), which
+// is then renamed to `path`. The file is on disk when this returns. Devices and pipes are written directly.
+// A result store is never replaced, as it may hold hours of work. Throws InputError that names the path and
+// the reason.
 void WriteFileWhole(const std::string& path, const std::string& text);
 
-// A file that is written piece by piece, whole or not at all: it takes its place at Finish, and without that
-// call nothing is left of it. Standard output where `path` is empty. Errors are those of WriteFileWhole.
+// Writes a file piece by piece, completely or not at all: the file appears at `path` when Finish is called,
+// and without that call nothing is left behind. An empty `path` means standard output. Throws the errors of
+// WriteFileWhole.
 class FileInPieces {
  public:
   explicit FileInPieces(const std::string& path);
@@ -28,21 +30,22 @@ class FileInPieces {
 
  private:
   const std::string path_;              // as the user gave it
-  std::optional<PendingFile> pending_;  // nothing: written in place
+  std::optional<PendingFile> pending_;  // empty: the file is written in place
   std::FILE* file_ = nullptr;
 };
 
-// Before long work whose result goes to this file: throws as WriteFileWhole would, changes nothing.
+// Call this before long work whose result goes to `path`: throws if WriteFileWhole would, and changes
+// nothing.
 void CheckCanBeWritten(const std::string& path);
 
-// Throws InputError if the file to be written is one of those that are read.
+// Throws InputError if `path` is one of the input files.
 void CheckIsNoInput(const std::string& path, const std::vector<std::string>& inputs);
 
-// WriteFileWhole, or to standard output where `path` is empty.
+// Writes `text` by WriteFileWhole, or to standard output if `path` is empty.
 void PrintOrWrite(const std::string& path, const std::string& text);
 
-// Makes a folder for results, with its parents, before the work whose results go there. Throws InputError
-// that names the path and the reason if that fails or the folder cannot be written to.
+// Makes a folder for results and its parents; call this before the work whose results go there. Throws
+// InputError that names the path and the reason if the folder cannot be made or written to.
 void MakeResultFolder(const std::string& path);
 
 }  // namespace rcme

@@ -46,7 +46,7 @@ void GzipLines::Fail(const std::string& what) const {
   throw InputError(fmt::format("{}:{}: {}", path_, line_number_, what));
 }
 
-// At the end of a file that is cut off, or in the middle of a damaged one, there is an error to be read.
+// zlib reports an error at the end of a truncated file or inside a damaged one.
 void GzipLines::CheckEnd() const {
   int error = Z_OK;
   const char* reason = gzerror(file_.get(), &error);

@@ -10,22 +10,23 @@ struct gzFile_s;
 
 namespace rcme {
 
-// The lines of a text file, plain or gzip, one at a time: memory does not grow with the file, and neither a
-// line without an end nor a small file that unpacks to a huge one is followed far.
+// Reads a plain or gzip text file line by line. Memory does not grow with the file; the limits below stop a
+// line that never ends and a small file that unpacks to a huge one.
 class GzipLines {
  public:
   static constexpr size_t kMaxLineBytes = size_t{64} << 10;
-  static constexpr size_t kMaxBytes = size_t{256} << 20;  // of text, unpacked
+  static constexpr size_t kMaxBytes = size_t{256} << 20;  // unpacked
 
   // Throws InputError as RegularFile does.
   GzipLines(const std::string& path, const FileKind& kind);
-  // Of standard input, which messages call so.
+  // Reads standard input; messages call it "standard input".
   static GzipLines OfStandardInput();
 
-  // The next line without its end, valid until the next call; false after the last one. Throws InputError: a
-  // damaged or truncated gzip file, one packed twice, a line or a file that is too long.
+  // Reads the next line, without its end; it is valid until the next call. Returns false after the last
+  // line. Throws InputError if the gzip file is damaged, truncated or packed twice, or if a line or the file
+  // is too long.
   bool Next(std::string_view* line);
-  // InputError that names the file and the line that Next gave last.
+  // Throws InputError with the file and the number of the last line read.
   [[noreturn]] void Fail(const std::string& what) const;
   int line_number() const { return line_number_; }  // from 1
 

@@ -10,15 +10,15 @@
 namespace rcme {
 namespace {
 
-// Of a file for writing, which network file systems want for a lock; of a folder for reading. Closes with the
-// process and is not handed to the programs it starts.
+// Opens a file for writing, as network file systems require for a lock, and a folder for reading. The
+// descriptor is closed with the process; programs that it starts do not inherit it.
 int OpenToLock(const std::string& path) {
   constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
   const int file = open(path.c_str(), O_RDWR | kFlags);
   return file < 0 && errno == EISDIR ? open(path.c_str(), O_RDONLY | O_DIRECTORY | kFlags) : file;
 }
 
-// Whether the path still names what the descriptor is open on.
+// Returns whether `path` still names what `descriptor` is open on.
 bool IsStillThere(const std::string& path, int descriptor) {
   struct stat by_path {
   }, by_descriptor{};
@@ -42,7 +42,7 @@ bool LockOwn(const std::string& path, int descriptor) {
 void RemoveIfAbandoned(const std::string& path, void (*remove)(const std::string& path)) {
   const int descriptor = OpenToLock(path);
   if (descriptor < 0) return;
-  // The lock is held until it is gone, so that nobody can begin to use it meanwhile.
+  // The lock is held during the removal, so nobody can begin to use the file meanwhile.
   if (IsOfThisUser(descriptor) && flock(descriptor, LOCK_EX | LOCK_NB) == 0 && IsStillThere(path, descriptor))
     remove(path);
   close(descriptor);

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 constexpr std::string_view kSuffix = ".part";
 constexpr int kMaxAttempts = 100;
 
-// The network name of this machine, as a file name can hold it.
+// The network name of this machine; characters that could confuse a file name become '_'.
 std::string HostName() {
   std::array<char, 65> name{};
   if (gethostname(name.data(), name.size() - 1) != 0) return "unknown";
@@ -37,7 +37,7 @@ std::string HostName() {
   return host;
 }
 
-// The same in the names of all that this machine makes.
+// The part of a file name that marks temporary files of this machine.
 const std::string& MarkOfHost() {
   static const std::string mark = fmt::format(".rcme-{}-", HostName());
   return mark;
@@ -48,14 +48,14 @@ fs::path FindFolder(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-// Cut where it would be longer than a file system allows.
+// The name is cut if it would be longer than a file system allows.
 std::string MakePartPath(const std::string& path, int number) {
   const std::string mark = fmt::format("{}{}-{}{}", MarkOfHost(), getpid(), number, kSuffix);
   const std::string name = fs::path(path).filename().string().substr(0, NAME_MAX - mark.size());
   return (fs::path(path).parent_path() / (name + mark)).string();
 }
 
-// NAME.rcme-HOST-PROCESS-NUMBER.part, made on this machine.
+// Returns whether `name` is NAME.rcme-HOST-PROCESS-NUMBER.part with this machine as HOST.
 bool IsPartOfThisHost(std::string_view name) {
   const size_t mark = name.rfind(MarkOfHost());
   if (mark == std::string_view::npos || !name.ends_with(kSuffix)) return false;
@@ -65,7 +65,7 @@ bool IsPartOfThisHost(std::string_view name) {
 }
 
 void RemoveAbandonedParts(const fs::path& folder) {
-  std::error_code error;  // whatever cannot be looked at or removed stays
+  std::error_code error;  // files that cannot be looked at or removed stay
   fs::directory_iterator entry(folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     if (!IsPartOfThisHost(entry->path().filename().string())) continue;
@@ -73,7 +73,7 @@ void RemoveAbandonedParts(const fs::path& folder) {
   }
 }
 
-// Once a process: a folder may get a file for each of a million trials.
+// Runs once per process and folder: a folder may get a file for each of a million trials.
 void RemoveAbandonedPartsOnce(const fs::path& folder) {
   static std::mutex mutex;
   static std::set<fs::path> seen;
@@ -83,8 +83,8 @@ void RemoveAbandonedPartsOnce(const fs::path& folder) {
   if (!error && seen.insert(absolute).second) RemoveAbandonedParts(absolute);
 }
 
-// Renamed files are found again after a power failure once their folder is on the disk. What cannot be done
-// is no reason to call the file not written: it is there.
+// Syncs a folder, so that a renamed file survives a power failure. Errors are ignored, because the file
+// itself is written.
 void SyncFolder(const fs::path& folder) {
   const int descriptor = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
@@ -92,8 +92,8 @@ void SyncFolder(const fs::path& folder) {
   close(descriptor);
 }
 
-// False with errno where the bytes are not on the disk; file systems that know no such request are taken at
-// their word.
+// Returns false and sets errno if the bytes are not on disk. File systems without this request count as
+// synced.
 bool SyncFile(int descriptor) { return fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP; }
 
 }  // namespace

@@ -4,9 +4,9 @@
 
 namespace rcme {
 
-// A file in the making, beside the place that it takes at PutInPlace; without that call nothing is left of
-// it. What a killed process leaves is removed by the next that makes a file in the same folder: its name says
-// which host made it, and the lock on it whether its process still runs (owner_lock.h).
+// A temporary file beside its final path. PutInPlace moves it there; without that call nothing is left.
+// Files of killed processes are removed when a process makes its first temporary file in the same folder:
+// the name says which host made the file, and the lock says whether its process still runs (owner_lock.h).
 class PendingFile {
  public:
   // Makes an empty file. Throws InputError that names `path` and the reason.
@@ -15,17 +15,17 @@ class PendingFile {
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;
 
-  // Where it is made: PATH.rcme-HOST-PROCESS-NUMBER.part.
+  // The path of the temporary file: PATH.rcme-HOST-PROCESS-NUMBER.part.
   const std::string& part() const { return part_; }
   int descriptor() const { return descriptor_; }  // open for reading and writing
 
-  // What was written, by whatever descriptor, goes to the disk first and then takes its place. Throws
+  // Syncs the content to disk, whichever descriptor wrote it, and renames the file to its final path. Throws
   // InputError.
   void PutInPlace();
 
  private:
   const std::string path_;
-  std::string part_;  // empty: it has taken its place
+  std::string part_;  // empty after PutInPlace
   int descriptor_ = -1;
 };
 

@@ -29,7 +29,8 @@ RegularFile::RegularFile(const std::string& path, const FileKind& kind) : path_(
   if (path.empty())
     throw InputError(fmt::format("'' is not allowed; give the path of {}", kind.article_name));
   struct stat status {};
-  // Non-blocking, else a pipe without a writer would hold us here. A socket cannot be opened at all.
+  // Non-blocking, because opening a pipe without a writer would wait for ever. A socket cannot be opened at
+  // all.
   descriptor_ = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   const int error = errno;
   if ((descriptor_ >= 0 ? fstat(descriptor_, &status) : stat(path.c_str(), &status)) != 0)

@@ -5,12 +5,13 @@
 
 namespace rcme {
 
-// What the messages call a file: "no such `name`", "is a folder, not `article_name`".
+// The names of a kind of file for messages: "no such `name`", "is a folder, not `article_name`".
 struct FileKind {
   std::string name, article_name;
 };
 
-// A file opened for reading. Not a folder, a pipe, a socket or a device: reading one may take for ever.
+// A file opened for reading. Folders, pipes, sockets and devices are refused: reading one may block for
+// ever.
 class RegularFile {
  public:
   // Throws InputError that names the path and what is wrong with it.
@@ -19,9 +20,10 @@ class RegularFile {
   RegularFile(const RegularFile&) = delete;
   RegularFile& operator=(const RegularFile&) = delete;
 
-  // The next bytes, as many as there are up to `max_bytes`. Throws InputError if they cannot be read.
+  // Reads up to `max_bytes` of the following bytes; fewer at the end of the file. Throws InputError if
+  // reading fails.
   std::string Read(size_t max_bytes);
-  // The descriptor for another owner, who closes it.
+  // Hands over the descriptor; the caller closes it.
   int Release();
 
  private:

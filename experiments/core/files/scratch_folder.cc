@@ -20,7 +20,7 @@ constexpr const char* kPrefix = "rcme_scratch_";
 }  // namespace
 
 ScratchFolder::ScratchFolder() {
-  // Between making the folder and locking it another process may take it for abandoned: then again.
+  // Another process may take the folder for abandoned before it is locked; then make it again.
   for (int attempt = 0; attempt < 100; ++attempt) {
     std::string name = (fs::temp_directory_path() / kPrefix).string() + "XXXXXX";
     if (!mkdtemp(name.data())) throw InputError(fmt::format("{}: cannot be made", name));
@@ -41,7 +41,7 @@ ScratchFolder::~ScratchFolder() {
 }
 
 void RemoveAbandonedScratchFolders() {
-  std::error_code error;  // whatever cannot be looked at or removed stays
+  std::error_code error;  // folders that cannot be looked at or removed stay
   fs::directory_iterator entry(fs::temp_directory_path(error), error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     std::error_code ignored;

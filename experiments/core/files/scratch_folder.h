@@ -4,8 +4,8 @@
 
 namespace rcme {
 
-// A folder in the system's place for temporary files, gone with everything in it when this object is. Its
-// process holds a lock on it, which ends with the process however that ends.
+// A folder in the system's temporary directory that is deleted with its content when this object is
+// destroyed. The process holds a lock on it, which is released however the process ends.
 class ScratchFolder {
  public:
   ScratchFolder();  // throws InputError that names the path if it cannot be made
@@ -19,7 +19,7 @@ class ScratchFolder {
   int lock_ = -1;  // file descriptor of the folder
 };
 
-// Removes what killed processes of this user left behind: scratch folders that nobody holds a lock on.
+// Removes the scratch folders that killed processes of this user left behind, which nobody has locked.
 void RemoveAbandonedScratchFolders();
 
 }  // namespace rcme

@@ -82,7 +82,7 @@ std::vector<std::pair<std::string, YAML::Node>> Entries(const Place& place, cons
     }
     if (!seen.insert(key).second)
       place.Fail(entry.first, fmt::format("{}: key {} stands twice", name, Quoted(key)));
-    // The node of an empty value stands where the next token does, maybe lines below.
+    // yaml-cpp places an empty value at the next token, which may be lines below, so report the key's place.
     if (entry.second.IsNull())
       place.Fail(entry.first, fmt::format("{}: the value of {} is missing", name, Quoted(key)));
     entries.emplace_back(key, entry.second);

@@ -1,4 +1,4 @@
-// Reads YAML files that people write. Every error message names file, line and key.
+// Reads YAML files written by people. Every error message names file, line and key.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -13,7 +13,7 @@
 
 namespace rcme {
 
-// Where a message points to: "file:line: key".
+// Creates messages that point to a place in a file: "file:line: key".
 class Place {
  public:
   explicit Place(std::string path) : path_(std::move(path)) {}
@@ -23,7 +23,7 @@ class Place {
   std::string Text(const YAML::Node& node) const { return Text(node.Mark()); }
   [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& what) const;
   [[noreturn]] void Fail(const YAML::Node& node, const std::string& what) const;
-  // Runs `action`; an InputError from it gets file and line.
+  // Runs `action` and adds file and line to an InputError from it.
   template <typename Action>
   void At(const YAML::Node& node, Action action) const {
     try {
@@ -37,25 +37,24 @@ class Place {
   std::string path_;
 };
 
-// The text of a node that is one value, without control characters.
+// Returns the text of a scalar node. Throws InputError if the node is no scalar or has control characters.
 std::string Scalar(const Place& place, const YAML::Node& node, const std::string& key);
 
-// The same without tabs and line ends.
+// Like Scalar, but tabs and line ends are errors, too.
 std::string Line(const Place& place, const YAML::Node& node, const std::string& key);
 
-// A line of at most 200 bytes: tables, figures and pages show it.
+// Like Line, but at most 200 bytes: tables, figures and pages show the name.
 std::string Name(const Place& place, const YAML::Node& node, const std::string& key);
 
-// The entries of a map; unknown keys (if `known` is not empty) and repeated ones are errors.
+// Returns the entries of a map. Repeated keys are errors, and so are unknown keys unless `known` is empty.
 std::vector<std::pair<std::string, YAML::Node>> Entries(const Place& place, const YAML::Node& map,
                                                         const std::string& name,
                                                         const std::set<std::string>& known);
 
-// The bytes of a regular file, or one more than ParseYaml accepts. Throws InputError as RegularFile does.
+// Reads a regular file, at most one byte more than ParseYaml accepts. Throws InputError as RegularFile does.
 std::string ReadInputText(const std::string& path, const FileKind& kind);
 
-// The one document of a text of at most 1 MiB, 20 levels and 20,000 values; `path` is what the messages call
-// it.
+// Parses a text of one YAML document: at most 1 MiB, 20 levels and 20,000 values. Messages call it `path`.
 YAML::Node ParseYaml(const std::string& yaml, const std::string& path, const FileKind& kind);
 
 }  // namespace rcme

@@ -15,8 +15,8 @@ constexpr size_t kMaxValues = 20'000;
 constexpr size_t kMaxScalarBytes = 10'000;
 constexpr size_t kBytesOfOneValue = 64;  // a longer text counts as several values
 
-// Counts what a document holds while it is parsed, so that it is refused before it is built: depth, and
-// values, with those that an alias (*a) stands for, so that few lines cannot become many values.
+// Counts depth and values while a document is parsed, so that it is refused before it is built. An alias
+// (*a) counts with the values that it stands for, so a few lines cannot become many values.
 class SizeCheck : public YAML::EventHandler {
  public:
   explicit SizeCheck(const Place& place) : place_(place) {}

@@ -1,4 +1,4 @@
-// The result of a command, and the one place where it is rendered in the formats of --format.
+// The result of a command. RenderResult is the only place that renders it in the formats of --format.
 #pragma once
 
 #include <string>
@@ -10,30 +10,30 @@
 namespace rcme {
 
 struct CommandResult {
-  std::string text = {};  // table: tables and sentences for people
-  Table rows = {};        // csv, latex, markdown
-  std::string json = {};  // json: a document, one of whose arrays has the same rows
+  std::string text = {};  // format table: tables and sentences for people
+  Table rows = {};        // formats csv, latex, markdown
+  std::string json = {};  // format json: a document; one of its arrays has the same rows
 };
 
-// table, csv, json, latex, markdown
+// Returns table, csv, json, latex, markdown.
 const std::vector<std::string>& ListResultFormats();
 
-// `format` is one of these.
+// Renders `result` in one of these formats.
 std::string RenderResult(const CommandResult& result, const std::string& format);
 
-// What is said of a result as a whole, by key.
+// Values that describe a result as a whole, by key.
 using Facts = std::vector<std::pair<std::string, Value>>;
 
-// The rows of a table as an array of a JSON document.
+// A table that becomes an array of a JSON document.
 struct NamedTable {
   std::string name;
   Table table;
 };
 
-// A JSON document: its format (core/text/json_output.h), the facts, an array for each table.
+// Renders a JSON document: its format (core/text/json_output.h), the facts, and an array for each table.
 std::string RenderDocument(const char* format, const Facts& facts, const std::vector<NamedTable>& tables);
 
-// A result that has no more than this: the document's first array is `rows`.
+// Makes a result whose JSON document has the facts, the array `rows`, and the arrays `more`.
 CommandResult MakeResult(const std::string& text, const char* format, const Facts& facts, const Table& rows,
                          const std::vector<NamedTable>& more = {});
 

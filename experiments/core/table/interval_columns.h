@@ -1,12 +1,12 @@
-// Tables for files.
+// Interval columns for table files.
 #pragma once
 
 #include "experiments/core/table/table.h"
 
 namespace rcme {
 
-// The same with the interval of each estimate in a column of its own, after the estimate's: "NAME_lower,
-// NAME_upper" in CSV, "NAME_interval" in JSON.
+// Adds a column with the interval after each column of estimates: "NAME_lower,NAME_upper" in CSV,
+// "NAME_interval" in JSON.
 Table WithIntervalColumns(const Table& table);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// Tables that a script of the program has written.
+// Reads tables that a script of the program has written.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// The table of a CSV file with a heading, a line per row. A column is of whole numbers, of numbers or of
-// texts: the first that all its fields are; an empty field among numbers is not known.
+// Parses a CSV file: a heading line, then a line per row. A column has the first type that fits all its
+// fields: integers, numbers, texts. An empty field in a column of numbers means "not known" (NaN).
 Table ReadCsvTable(const std::string& text);
 
 }  // namespace rcme

@@ -20,7 +20,7 @@ struct Overloaded : Visitors... {
 template <typename... Visitors>
 Overloaded(Visitors...) -> Overloaded<Visitors...>;  // clang 14 does not deduce it
 
-// How a format of people writes what is no letter or digit.
+// The symbols of an output format for people.
 struct Signs {
   const char *minus, *infinity, *plus_minus, *unknown, *n_begin, *n_end;
   bool has_units, has_notes;  // beside the numbers
@@ -35,7 +35,7 @@ std::string FormatNumber(double x, const std::string& format, const Signs& signs
   return digits.starts_with('-') ? signs.minus + digits.substr(1) : digits;
 }
 
-// Empty where it says nothing: not known, or everything.
+// Empty if an end is not known or both ends are infinite.
 std::string FormatInterval(const Interval& interval, double scale, const std::string& format,
                            const Signs& signs) {
   if (std::isnan(interval.lower) || std::isnan(interval.upper)) return "";
@@ -44,7 +44,8 @@ std::string FormatInterval(const Interval& interval, double scale, const std::st
                      FormatNumber(scale * interval.upper, format, signs));
 }
 
-// What has a standard error and an interval is of weighted trials: it may be far below a hundredth.
+// An estimate with both a standard error and an interval comes from weighted trials. It may be far below a
+// hundredth, so it gets significant digits instead of decimals.
 std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format, const Signs& signs) {
   if (std::isnan(estimate.value)) return signs.unknown;
   const bool has_error = !std::isnan(estimate.standard_error);
@@ -74,7 +75,7 @@ std::string FormatValue(const Value& value, const Column& column, const Signs& s
       value);
 }
 
-// In a cell, line ends are spaces.
+// Appends a cell; line ends become spaces.
 void AppendCell(std::string text, std::vector<std::string>* row) {
   std::ranges::replace_if(
       text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
@@ -89,7 +90,7 @@ Cells FormatCells(const Table& table) {
 
 constexpr size_t kGap = 2;  // between columns
 
-// Of column c, whose cells below the heading go on in further lines where they are wider than `most`.
+// The width of column c if cells below the heading are broken into lines of at most `most`.
 size_t FindWidth(const Cells& cells, size_t c, size_t most = std::string::npos) {
   size_t width = cells[0][c].size();
   for (size_t r = 1; r < cells.size(); ++r) {
@@ -103,8 +104,8 @@ size_t FindWidth(const Cells& cells, size_t c, size_t most = std::string::npos) 
   return width;
 }
 
-// What a cell of each column may take: a text half of `width`, and not more than the keys leave of it; the
-// only column beside the keys all that they leave.
+// The greatest width of a cell by column. A text column gets half of `width`, or less if the keys leave
+// less; the only column beside the keys gets all that they leave.
 std::vector<size_t> FindMostWidths(const std::vector<Column>& columns, const Cells& cells, size_t width) {
   const size_t half = width / 2;
   size_t keys_width = 0, num_others = 0;
@@ -120,7 +121,7 @@ std::vector<size_t> FindMostWidths(const std::vector<Column>& columns, const Cel
   return most;
 }
 
-// Cells that are wider than they may be go on in rows of their own, whose other cells are empty.
+// Breaks cells that are too wide: their further lines become rows whose other cells are empty.
 Cells BreakCells(Cells cells, const std::vector<size_t>& most) {
   const auto is_whole = [&](const std::vector<std::string>& row) {
     return std::ranges::equal(row, most, [](const std::string& cell, size_t m) { return cell.size() <= m; });
@@ -141,8 +142,8 @@ Cells BreakCells(Cells cells, const std::vector<size_t>& most) {
   return broken;
 }
 
-// Takes the headings and cells of these columns, of which the keys alone are left, without rows that say
-// nothing beside their keys, but for the first block.
+// Takes the headings and cells of a block's columns out of `cells`; key columns are copied. Rows without a
+// value beside their keys are omitted, except in the first block.
 Cells TakeBlock(const std::vector<Column>& columns, const std::vector<size_t>& block, bool is_first,
                 Cells* cells) {
   Cells part;
@@ -158,7 +159,7 @@ Cells TakeBlock(const std::vector<Column>& columns, const std::vector<size_t>& b
   return part;
 }
 
-// Pads counts on the left, so that they end below each other.
+// Pads counts on the left to align them at their last digit.
 void AlignCounts(const std::vector<Column>& columns, Cells* cells) {
   for (size_t c = 0; c < columns.size(); ++c) {
     if (columns[c].type != ColumnType::kCount) continue;
@@ -168,8 +169,8 @@ void AlignCounts(const std::vector<Column>& columns, Cells* cells) {
   }
 }
 
-// The columns of each block: the keys, and as many others as fit. most: the width of each that cells may
-// have.
+// Divides the columns into blocks: each has the keys and as many other columns as fit. most: the greatest
+// width of a cell by column.
 std::vector<std::vector<size_t>> SplitIntoBlocks(const std::vector<Column>& columns, const Cells& cells,
                                                  const std::vector<size_t>& most, size_t max_width) {
   std::vector<size_t> keys;

@@ -14,21 +14,22 @@
 
 namespace rcme {
 
-// For a terminal: text to the left, counts to the right; a text of more than half of `width` (of the
-// only column beside the keys: all), or of more than the keys leave of it, goes on in the next line. Columns
-// that do not fit follow in further blocks, each after the key columns and without the rows that have nothing
-// there; a block without any row is left out. Only a column that does not fit beside the keys is wider than
-// `width`. Line ends within a cell become spaces. "12.34 % [10.10, 14.80] (n 12): a note", "1.23 +- 0.04";
-// "-": not known.
+// Renders a table for a terminal. Texts are aligned left, counts right. An estimate looks like "12.34 %
+// [10.10, 14.80] (n 12): a note" or "1.23 +- 0.04"; "-" means not known. Line ends within a cell become
+// spaces.
+// Text columns are broken into several lines at half of `width`, or at the width that the key columns leave;
+// a text column that is the only one beside the keys gets all of that. Columns that do not fit follow in
+// further blocks, which repeat the key columns and omit rows without a value in the block; a block without
+// rows is omitted. The result is wider than `width` only if a single column does not fit beside the keys.
 std::string RenderText(const Table& table, size_t width = kTextWidth);
 
-// The texts of a table's cells, of the headings, then of each row.
+// The texts of a table's cells: the headings, then each row.
 using Cells = std::vector<std::vector<std::string>>;
 void AppendCells(const Table& rows, Cells* cells);
 std::string RenderCells(const std::vector<Column>& columns, Cells cells, size_t width = kTextWidth);
 
-// A table of some of the items after the other: all values of a large table take several times as much memory
-// as their texts.
+// Makes a table from 1000 items at a time and visits it. The values of a whole large table would take
+// several times as much memory as their texts.
 template <typename Item, typename Visit>
 void ForEachPart(const std::vector<ColumnOf<Item>>& columns, const std::vector<Item>& items, Visit visit) {
   constexpr size_t kNumTogether = 1000;
@@ -49,13 +50,13 @@ std::string RenderText(const std::vector<ColumnOf<Item>>& columns, const std::ve
   return RenderCells(heading.columns, std::move(cells));
 }
 
-// A cell of RenderText.
+// Formats an estimate as in a cell of RenderText.
 std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format);
 
-// RFC 4180 but for line ends, which are "\n". Texts are fields of field_text.h; what
-// is not known is empty, as are infinite ends of an interval. An estimate is its value alone.
+// Renders CSV as in RFC 4180, but with "\n" as line end. Texts are fields of field_text.h. Unknown values
+// and infinite interval ends are empty. An estimate is written as its value alone.
 std::string RenderCsv(const Table& table);
-// Its parts: that of all rows is the heading and the rows of any division of them.
+// The parts of RenderCsv: the heading, followed by the rows in any number of parts.
 std::string RenderCsvHeading(const Table& table);
 std::string RenderCsvRows(const Table& table);
 // RenderCsv(MakeTable(columns, items)), given to `write` piece by piece.
@@ -66,21 +67,21 @@ void WriteCsv(const std::vector<ColumnOf<Item>>& columns, const std::vector<Item
   ForEachPart(columns, items, [&](const Table& rows) { write(RenderCsvRows(rows)); });
 }
 
-// An array with an object per row. Numbers have all digits; null: not known, or infinite. An interval is a
-// list of its ends.
+// Renders an array with an object per row. Numbers have all digits; null means not known or infinite. An
+// interval is a list of its two ends.
 nlohmann::ordered_json RenderJson(const Table& table);
-// One estimate outside of a table: value, interval, and n where it has one; an interval is a list of its
-// ends.
+// Renders an estimate that is not in a table: value, interval as a list of its ends, and n if it is set.
 nlohmann::ordered_json RenderJson(const Estimate& estimate);
 nlohmann::ordered_json RenderJson(const Interval& interval);
 // {"value", "lower", "upper"}.
 nlohmann::ordered_json RenderJsonBounds(const Estimate& estimate);
 
-// A tabular with the rules of the package booktabs, in which every text is escaped. The columns of the group
-// `levels` are printed only where one of them changes, with space between. Notes are left out.
+// Renders a LaTeX tabular with the rules of the package booktabs; all texts are escaped. The columns of the
+// group `levels` are printed only in rows where one of them changes, with extra space above. Notes are
+// omitted.
 std::string RenderLatex(const Table& table);
 
-// A table of Markdown with the cells of RenderText. Line ends within a cell become spaces.
+// Renders a Markdown table with the cells of RenderText. Line ends within a cell become spaces.
 std::string RenderMarkdown(const Table& table);
 
 }  // namespace rcme

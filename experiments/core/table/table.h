@@ -1,5 +1,5 @@
-// The result of a command: rows under typed columns. A column describes everything that a renderer needs to
-// know about its values; no renderer knows a quantity by its name.
+// The result of a command: rows under typed columns. A column tells renderers all they need to know about
+// its values; no renderer knows a quantity by its name.
 #pragma once
 
 #include <cstdint>
@@ -16,43 +16,44 @@
 
 namespace rcme {
 
-// A number with what says how far to trust it.
+// A number and its uncertainty.
 struct Estimate {
   double value = std::numeric_limits<double>::quiet_NaN();  // NaN: not known
   Interval interval{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   double standard_error = std::numeric_limits<double>::quiet_NaN();
-  std::optional<std::int64_t> n = std::nullopt;  // where it is not that of the row
+  std::optional<std::int64_t> n = std::nullopt;  // if not that of the row
   std::string note = {};                         // a verdict or a flag
-  int decimals = -1;                             // for people; negative: those of the column
+  int decimals = -1;                             // decimals for people; negative: those of the column
 };
 
-// Nothing: the row has no such value. It is an empty cell, and no key of a row in JSON.
+// monostate: the row has no such value; the cell is empty, and the key is missing from the row in JSON.
 using Value = std::variant<std::monostate, std::string, std::int64_t, double, bool, Interval, Estimate>;
 
 enum class ColumnType { kText, kCount, kNumber, kFlag, kInterval, kEstimate };
 
-// How numbers of a column are written; JSON has all digits of them.
+// How the numbers of a column are formatted. JSON always has all digits.
 struct NumberFormat {
   double scale = 1.0;
-  std::string unit;            // "%"; in LaTeX it is in the heading
-  std::string value = ".3g";   // of fmt, of a value and its interval
-  std::string spread = ".2g";  // of a standard error
-  std::string file = ".8g";    // of fmt, in CSV
+  std::string unit;            // such as "%"; LaTeX has it in the heading
+  std::string value = ".3g";   // fmt format of a value and its interval
+  std::string spread = ".2g";  // fmt format of a standard error
+  std::string file = ".8g";    // fmt format in CSV
 };
 inline const NumberFormat kPercent{100.0, "%", ".2f", ".2g"};
 inline const NumberFormat kSignificant{};
 
+// As a json_name: the column is not written to JSON.
 inline constexpr const char* kNotInJson = "-";
 
 struct Column {
-  std::string name;  // in CSV; of an interval that of both ends: "lower,upper"; empty: not in CSV
+  std::string name;  // in CSV; an interval has the names of both ends: "lower,upper"; empty: not in CSV
   ColumnType type = ColumnType::kText;
   NumberFormat format = {};
-  std::string json_name = {};  // empty: the name, of which an interval has "interval"
+  std::string json_name = {};  // empty: the name; for an interval: "interval"
   std::string heading = {};    // for people; empty: the name
-  std::string group = {};      // the object of JSON that holds it; empty: the row
-  bool is_key = false;         // says what the row is of
-  bool is_symbol = false;      // the heading is a symbol of mathematics
+  std::string group = {};      // JSON object that holds the value; empty: the row itself
+  bool is_key = false;         // identifies the row
+  bool is_symbol = false;      // the heading is a mathematical symbol
 
   static Column Key(const std::string& name) { return {.name = name, .is_key = true}; }
   static Column Text(const std::string& name) { return {.name = name}; }
@@ -70,14 +71,14 @@ struct Column {
 
 struct Table {
   std::vector<Column> columns;
-  std::vector<std::vector<Value>> rows = {};  // a value for each column
+  std::vector<std::vector<Value>> rows = {};  // each row has a value per column
 
   void AddColumns(const std::vector<Column>& more) {
     columns.insert(columns.end(), more.begin(), more.end());
   }
 };
 
-// A column, and its value in a row made of an Item.
+// A column and the function that computes its value from an item.
 template <typename Item>
 struct ColumnOf {
   Column column;
@@ -95,7 +96,8 @@ Table MakeTable(const std::vector<ColumnOf<Item>>& columns, const Items& items) 
   return table;
 }
 
-// A column per factor: its level, in JSON within the object `levels`. levels_of(item): a level per factor.
+// A key column for each factor with its level; in JSON they are in the object `levels`. levels_of(item)
+// returns a level for each factor.
 template <typename Item, typename LevelsOf>
 std::vector<ColumnOf<Item>> LevelColumns(const std::vector<std::string>& factors, LevelsOf levels_of) {
   std::vector<ColumnOf<Item>> columns;
@@ -105,7 +107,7 @@ std::vector<ColumnOf<Item>> LevelColumns(const std::vector<std::string>& factors
   }
   return columns;
 }
-// Of items that have the member `levels`.
+// For items with the member `levels`.
 template <typename Item>
 std::vector<ColumnOf<Item>> LevelColumns(const std::vector<std::string>& factors) {
   return LevelColumns<Item>(

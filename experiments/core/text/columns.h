@@ -7,16 +7,16 @@ namespace rcme {
 
 inline constexpr size_t kTextWidth = 80;
 
-// The words of a text in lines of at most `width` columns; a longer word has a line of its own.
+// Breaks a text into lines of at most `width` columns. A word that is longer gets a line of its own.
 std::vector<std::string> BreakLines(const std::string& text, size_t width);
 
-// The same as lines of text, which begin with the blanks that the text begins with.
+// Breaks a text into lines of kTextWidth; each line is indented by the leading blanks of the text.
 std::string FormatParagraph(const std::string& text);
 
-// Rows of text as columns padded to equal width, the headings of the first row underlined.
+// Formats rows as columns padded to equal width; the first row is the heading and is underlined.
 std::string FormatColumns(const std::vector<std::vector<std::string>>& rows);
 
-// The same as a table of Markdown; what would end a cell or begin a tag is escaped.
+// Formats rows as a Markdown table; characters that would end a cell or begin a tag are escaped.
 std::string FormatMarkdown(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace rcme

@@ -5,8 +5,8 @@
 
 namespace rcme {
 
-// "55m", "1h30m", "90s", "1.5h" in seconds, up to 1000 days; nothing for any other text, or for no time at
-// all.
+// Parses "55m", "1h30m", "90s" or "1.5h" to seconds, up to 1000 days. Returns nothing for any other text and
+// for a duration of zero.
 std::optional<double> ParseDuration(const std::string& text);
 
 }  // namespace rcme

@@ -11,11 +11,11 @@
 namespace rcme {
 namespace {
 
-// What a formula begins with, in spreadsheets of East Asia also in full width.
+// The first characters of a formula; East Asian spreadsheets also accept them in full width.
 constexpr std::string_view kFormulaBeginnings[] = {"=", "+", "-", "@", "\t", "\r", "＝", "＋", "－", "＠"};
 
-// Whether a formula begins behind the apostrophes and blanks of the beginning. What already has an apostrophe
-// gets one more, so that reading takes off what writing put on.
+// Returns whether a formula begins after leading apostrophes and blanks. A text that already has an
+// apostrophe gets another one, so that reading removes exactly what writing added.
 bool LooksLikeFormula(std::string_view text) {
   const std::string_view rest = text.substr(std::min(text.find_first_not_of("' "), text.size()));
   const auto begins = [&](std::string_view beginning) { return rest.starts_with(beginning); };
@@ -23,7 +23,7 @@ bool LooksLikeFormula(std::string_view text) {
   return std::ranges::any_of(kFormulaBeginnings, begins) && !ParseReal(std::string(text), &number);
 }
 
-// As it was before CsvField.
+// Undoes the apostrophe that CsvField added.
 std::string TextOfField(const std::string& field) {
   const bool is_marked = field.starts_with('\'') && LooksLikeFormula(field);
   return is_marked ? field.substr(1) : field;

@@ -7,22 +7,25 @@
 
 namespace rcme {
 
-// Names and numbers as the result files hold them; what is not known is an empty field, or null.
+// Formats names and numbers for result files. Unknown values become an empty field, or null in JSON.
 
-// Quoted where it has to be. A text that a spreadsheet would take for a formula (one that begins with =, +,
-// -, @ and is no number) gets an apostrophe in front, as OWASP's page "CSV Injection" says.
+// Formats a CSV field, quoted where necessary. A text that a spreadsheet would take for a formula (it begins
+// with =, +, - or @ and is no number) gets an apostrophe in front, as OWASP's page "CSV Injection"
+// recommends.
 std::string CsvField(const std::string& text);
-// The fields of a line as CsvField wrote them, each as it was.
+// Parses a line of fields that CsvField wrote; returns the original texts.
 std::vector<std::string> CsvFields(std::string_view line);
-// Eight digits, or as a format of fmt says; empty for NaN.
+// Formats a number with eight digits or by the given fmt format; empty for NaN.
 std::string CsvNumber(double x, const std::string& format = ".8g");
-// The same, empty for infinite ones too.
+// Like CsvNumber, but infinite numbers are empty as well.
 std::string CsvFinite(double x, const std::string& format = ".8g");
-// As LaTeX prints it: no character of it is a command, or an argument of the command before it.
+// Escapes a text for LaTeX: none of its characters acts as a command, or as an argument of the command
+// before it.
 std::string LatexText(const std::string& text);
-// As XML holds it in an element or an attribute; control characters, of which XML allows few, become spaces.
+// Escapes a text for an XML element or attribute. Control characters, most of which XML forbids, become
+// spaces.
 std::string XmlText(const std::string& text);
-// All digits; null for what is not finite.
+// A number with all digits; null if it is not finite.
 nlohmann::ordered_json JsonNumber(double x);
 
 }  // namespace rcme

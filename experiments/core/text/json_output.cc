@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 std::string Dump(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace); }
 
-// A row of an array that is in an object: on lines of their own, two levels deep.
+// Formats a row of an array within an object: on a line of its own, two levels deep.
 void AppendRow(const Json& row, std::string* text) {
   *text += "\n  ";
   for (const char c : Dump(row)) {
@@ -30,7 +30,7 @@ std::string JsonText(const char* format, const Json& object) {
 void WriteJson(const char* format, const Json& object, const std::string& key,
                const std::function<Json()>& next_rows, const WriteText& write) {
   const std::string text = JsonText(format, object);
-  const std::string empty = "\n " + Json(key).dump() + ": []";  // no string holds the end of a line
+  const std::string empty = "\n " + Json(key).dump() + ": []";  // no JSON string contains a line end
   const size_t inside = text.find(empty) + empty.size() - 1;
   write(text.substr(0, inside));
   bool is_first = true;

@@ -1,4 +1,4 @@
-// The JSON that the program writes: one object that begins with its format.
+// The JSON documents that the program writes: each is an object whose first key is its format.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace rcme {
 
-// A program that reads one of these refuses a format that it does not know; the number rises whenever a key
-// goes or changes its meaning. docs/output_formats.md has the same list.
+// A program that reads these documents should refuse a format that it does not know. The number is increased
+// whenever a key is removed or changes its meaning. docs/output_formats.md has the same list.
 inline constexpr const char* kAnswerFormat = "rcme answer 1";
 inline constexpr const char* kAuditFormat = "rcme audit 1";
 inline constexpr const char* kAuditPlanFormat = "rcme audit plan 1";
@@ -51,12 +51,12 @@ inline constexpr const char* kTwinFormat = "rcme twin 1";
 inline constexpr const char* kValidationFormat = "rcme validation 3";
 inline constexpr const char* kWorstFormat = "rcme worst 1";  // written by plots/worst_search/report.py
 
-// The text of an object with `format` as its first key. Names are whatever bytes the input held: what is no
-// UTF-8 is replaced.
+// Returns the text of `object` with `format` as its first key. Bytes that are not UTF-8, for instance in
+// names from the input, are replaced.
 std::string JsonText(const char* format, const nlohmann::ordered_json& object);
-// The same, given to `write` piece by piece, for an array of millions of rows, the empty array `key` of
-// `object`, which are never all there as JSON: next_rows() gives some of them as an array, and an empty one
-// where there are no more.
+// Writes the same text piece by piece, for an array of millions of rows that should not be in memory as JSON
+// at once. `object` has an empty array at `key`; next_rows() returns the next rows of that array, and an
+// empty array at the end.
 void WriteJson(const char* format, const nlohmann::ordered_json& object, const std::string& key,
                const std::function<nlohmann::ordered_json()>& next_rows, const WriteText& write);
 

@@ -1,4 +1,4 @@
-// Messages for people on standard error. If one cannot be written it is lost; no work ends because of it.
+// Messages for people on standard error. A message that cannot be written is lost; the program goes on.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,14 +9,14 @@ namespace rcme {
 
 void WriteMessage(const std::string& text);
 
-// As fmt::print to standard error, which throws where the stream is full or closed.
+// Like fmt::print to standard error, which, however, throws if the stream is full or closed.
 template <typename... Args>
 void PrintMessage(fmt::format_string<Args...> format, Args&&... args) {
   WriteMessage(fmt::format(format, std::forward<Args>(args)...));
 }
 
-// Standard streams that the program was started without are opened on /dev/null, not to be written: else the
-// next file opened, a result perhaps, would take their place and the messages.
+// Opens missing standard streams on /dev/null. Otherwise the next opened file, perhaps a result, would get
+// the number of a standard stream, and messages would be written into it.
 void HoldStandardStreams();
 
 }  // namespace rcme

@@ -4,14 +4,14 @@
 
 namespace rcme {
 
-// What result files call this program: "rcme 0.1.0", or for one with estimators of its own "own_rcme (rcme
-// 0.1.0)".
+// The name of this program in result files: "rcme 0.1.0"; a program with its own estimators is "own_rcme
+// (rcme 0.1.0)".
 const std::string& ProgramName();
 
-// To be called first, with the path the program was started by: argv[0].
+// Sets the name from argv[0]. Call this first.
 void NameProgram(const std::string& path);
 
-// Who computes trials: last bits may depend on it.
+// The program and machine code that computed trials: the last bits of the results may depend on them.
 struct TrialOrigin {
   std::string program;          // ProgramName()
   std::string instruction_set;  // estimator/instruction_set.h

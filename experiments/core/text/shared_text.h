@@ -1,6 +1,5 @@
-// A text that millions of rows have in common: a pointer to the one copy that the program keeps of it for
-// good. For names of a few kinds (estimators, quantities), never for texts of which each row may have its
-// own.
+// A text that millions of rows share: a pointer to its only copy, which the program keeps until it ends. Use
+// it for names of a few kinds (estimators, quantities), never for texts that may differ in each row.
 #pragma once
 
 #include <concepts>
@@ -12,7 +11,7 @@ namespace rcme {
 class SharedText {
  public:
   SharedText() : SharedText(std::string_view()) {}
-  // As its text, wherever one is expected.
+  // Converts implicitly from and to a text.
   SharedText(std::string_view text);
   SharedText(const std::string& text) : SharedText(std::string_view(text)) {}
   SharedText(const char* text) : SharedText(std::string_view(text)) {}

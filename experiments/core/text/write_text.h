@@ -1,4 +1,4 @@
-// Takes a long text piece by piece, as FileInPieces does (core/files/file_output.h).
+// A function that takes a long text piece by piece, such as FileInPieces::Write (core/files/file_output.h).
 #pragma once
 
 #include <functional>
