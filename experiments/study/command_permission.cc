@@ -12,11 +12,11 @@
 namespace rcme {
 namespace {
 
-// As peers/outside_estimators.cc calls them.
+// The names of peers/outside_estimators.cc.
 constexpr const char *kProcess = "process", *kCommand = "command", *kNoCommand = "none",
                      *kConformFile = "file";
 
-// The whole command, with escapes in place of what a terminal would not show as it is.
+// The whole command; characters that a terminal would not show as they are become escapes.
 std::string ShownCommand(const std::string& command) {
   return fmt::format("'{}'", Printable(command, kMaxCommandBytes));
 }
@@ -50,8 +50,9 @@ void SetOwnOptions(EstimatorSpec* spec, const Settings& options) {
   for (const auto& [option, value] : options) {
     if (IsCommand(*spec, option)) spec->command_place.clear();
     if (spec->name != kConformEstimator || option != kConformFile) continue;
-    SetOptions(spec, ConformOptions(value));  // with the digest: another file is not what was looked at
-    NoteCommandPlace(value, spec);            // a command in it is not his own
+    SetOptions(spec,
+               ConformOptions(value));  // with the digest, so that the file cannot be exchanged unnoticed
+    NoteCommandPlace(value, spec);      // a command in the file still needs permission
   }
 }
 

@@ -1,7 +1,7 @@
-// Commands that files bring. An estimator `process` runs a command of the shell, and whoever wrote the file
-// that names it wrote the command. So none of them runs before the caller has allowed it: a study, an
-// estimator file and a result file are data, whoever they come from. What the caller gives himself (--set
-// mine.command=..., an option of a call of Python or C++) is his own, and runs.
+// Permission for commands that come from files. The estimator `process` runs a shell command, and whoever
+// wrote the file that names it wrote the command. No such command runs before the caller has allowed it,
+// because studies, estimator files and result files are data that may come from anybody. Options that the
+// caller gives directly (--set mine.command=..., an option of a call from Python or C++) need no permission.
 #pragma once
 
 #include <string>
@@ -11,26 +11,27 @@
 
 namespace rcme {
 
-inline constexpr size_t kMaxCommandBytes = 2000;  // so that a message shows all of it
+inline constexpr size_t kMaxCommandBytes = 2000;  // short enough for a message to show all of it
 
-// The command that the estimator, or the one that it conforms, runs; empty: none.
+// Returns the command that the estimator runs, or that the estimator which it conforms runs; empty if none.
 std::string FindCommand(const EstimatorSpec& spec);
 
-// Whether this option of the estimator is such a command, or a file that may bring one.
+// Returns whether this option of the estimator is a command or names a file that may contain one.
 bool IsCommand(const EstimatorSpec& spec, const std::string& option);
 
-// Notes that the estimator was read from a file, at `place` ("study.yaml:7"). Throws InputError for a command
-// of more than kMaxCommandBytes.
+// Records that the estimator was read from a file, at `place` ("study.yaml:7"). Throws InputError if its
+// command is longer than kMaxCommandBytes.
 void NoteCommandPlace(const std::string& place, EstimatorSpec* spec);
 
-// SetOptions of options that the caller gives himself: a command among them is his own.
+// SetOptions for options that the caller gives directly: a command among them needs no permission. A command
+// inside a file of `rcme conform` still does.
 void SetOwnOptions(EstimatorSpec* spec, const Settings& options);
 
-// Throws InputError that shows every command that a file brought and nobody allowed, and says where it
-// stands.
+// Throws InputError if a command from a file has not been allowed; the message shows every such command and
+// where it is.
 void RequireAllowedCommands(const std::vector<EstimatorSpec>& estimators);
 
-// Allows them. Returns a sentence for each, to be shown before the first of them runs.
+// Allows all commands. Returns a sentence for each, to be shown before the first of them runs.
 std::vector<std::string> AllowCommands(std::vector<EstimatorSpec>* estimators);
 
 }  // namespace rcme

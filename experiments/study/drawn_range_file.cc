@@ -17,7 +17,7 @@ namespace rcme {
 namespace {
 
 constexpr const char *kAny = "any", *kLog = "log", *kAnyOf = "any of ", *kLogOf = "log ";
-constexpr size_t kMaxDepth = 4;  // of words in words
+constexpr size_t kMaxDepth = 4;  // nesting of words with ranges of their own
 
 template <typename Entry>
 std::vector<std::string> NamesOfEntries(const std::vector<Entry>& registry) {
@@ -26,7 +26,7 @@ std::vector<std::string> NamesOfEntries(const std::vector<Entry>& registry) {
   return names;
 }
 
-// The names that a choice of the data has.
+// The names that a choice of the data allows.
 std::vector<std::string> NamesOfChoice(const std::string& key) {
   if (key == "scene") return NamesOfEntries(SceneRegistry());
   if (key == "cameras") return NamesOfEntries(CameraRegistry());
@@ -40,7 +40,7 @@ bool IsNumber(const YAML::Node& node) {
   return node.IsScalar() && ParseReal(node.Scalar(), &value);
 }
 
-// Two numbers, the first less than the second.
+// Reads two numbers, the first less than the second.
 DrawnRange ReadEnds(const Place& place, const YAML::Node& node, const std::string& key,
                     DrawnRange::Kind kind) {
   DrawnRange range{kind, 0.0, 0.0, {}};
@@ -68,7 +68,7 @@ DrawnRange ReadList(const Place& place, const YAML::Node& node, const std::strin
   return ReadEnds(place, node, key, DrawnRange::Kind::kUniform);
 }
 
-// "log [0.1, 3]", "any of [a, b]", "any", or what the key always is.
+// Parses "log [0.1, 3]", "any of [a, b]", "any", or a fixed value.
 DrawnRange ReadWord(const Place& place, const YAML::Node& node, const std::string& key) {
   const std::string text = Line(place, node, key);
   const auto rest = [&](const char* beginning) {
@@ -103,7 +103,7 @@ DrawnRange ReadWord(const Place& place, const YAML::Node& node, const std::strin
 void AddRanges(const Place& place, const YAML::Node& node, const std::string& name, const Settings& with,
                std::vector<DrawnKey>* keys);
 
-// A map: {log: ...}, {any: ...}, or the names of a choice, each with what is drawn in it.
+// Reads a map: {log: ...}, {any: ...}, or the names of a choice, each with the keys that are drawn with it.
 void ReadMap(const Place& place, const YAML::Node& node, const std::string& key, const Settings& with,
              std::vector<DrawnKey>* keys) {
   const auto entries = Entries(place, node, key, {});
@@ -163,7 +163,7 @@ void WriteRange(const DrawnRange& range, YAML::Emitter* out) {
   *out << YAML::EndMap;
 }
 
-// The keys that are drawn with exactly `with`.
+// Writes the keys that are drawn with exactly `with`.
 void WriteRangesWith(const std::vector<DrawnKey>& keys, const Settings& with, YAML::Emitter* out) {
   *out << YAML::BeginMap;
   for (const DrawnKey& drawn : keys) {
@@ -178,7 +178,7 @@ void WriteRangesWith(const std::vector<DrawnKey>& keys, const Settings& with, YA
       continue;
     }
     *out << YAML::BeginMap;
-    for (const std::string& word : drawn.range.words) {  // each once: they are keys of a map
+    for (const std::string& word : drawn.range.words) {  // each word once: they are keys of a map
       Settings deeper = with;
       deeper.emplace_back(drawn.key, word);
       *out << YAML::Key << word << YAML::Value;

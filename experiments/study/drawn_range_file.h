@@ -1,4 +1,4 @@
-// The ranges of a population in a file: what each key may be, and with which names it is drawn
+// Reads and writes the ranges of a population: what each key may be, and with which choices it is drawn
 // (population_file.h shows the forms).
 #pragma once
 
@@ -10,13 +10,13 @@
 
 namespace rcme {
 
-// Words or numbers, at least one.
+// Reads a list of words or numbers, at least one.
 std::vector<std::string> ReadWords(const Place& place, const YAML::Node& node, const std::string& key);
 
-// `name`: of the block, for messages.
+// `name` is the name of the block in messages.
 std::vector<DrawnKey> ReadRanges(const Place& place, const YAML::Node& node, const std::string& name);
 
-// ReadRanges gives the same back.
+// Writes ranges as ReadRanges reads them.
 void WriteRanges(const std::vector<DrawnKey>& keys, YAML::Emitter* out);
 
 }  // namespace rcme

@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-// Those of the entry, the others at their defaults, as the estimator writes them.
+// The options of the entry, and the others at their defaults, as the estimator formats them.
 void ReadOptions(const Place& place, const YAML::Node& node, EstimatorSpec* spec) {
   const std::unique_ptr<EstimatorModel> model = Configure(*spec);
   const std::vector<Parameter> parameters = model->Parameters();
@@ -25,7 +25,8 @@ void ReadOptions(const Place& place, const YAML::Node& node, EstimatorSpec* spec
 }
 
 // {process: COMMAND} is short for the estimator `process` with that command, {answers: FILE} for `answers`
-// and {conform: FILE} for `conform` with that file, seen from the folder of the file that names it.
+// with that file, {conform: FILE} for `conform` with that file. Paths are relative to the folder of the file
+// that has the entry.
 void ReadShortForm(const Place& place, const YAML::Node& value, const std::string& key, EstimatorSpec* spec) {
   const std::string text = Scalar(place, value, key);
   if (text.empty()) place.Fail(value, fmt::format("{}: is empty", key));

@@ -1,4 +1,5 @@
-// An estimator with its options as a map of YAML: an entry of a study's list, or a file (estimator_file.h).
+// An estimator with its options as a YAML map: an entry of a study's list, or a whole file
+// (estimator_file.h).
 #pragma once
 
 #include "experiments/core/files/yaml_input.h"
@@ -6,12 +7,13 @@
 
 namespace rcme {
 
-// Reads {name, label, options, budget_ms, provenance}; the label is the name if it is missing, the provenance
-// is for people. `block` is what the messages call the map; they list the keys that the caller reads, too.
+// Reads {name, label, options, budget_ms, provenance}. The label defaults to the name; the provenance is for
+// people and is not kept. `block` is the name of the map in messages, which also list the keys that the
+// caller reads itself.
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller = {});
 
-// The keys name, label, options and budget_ms, with every option written out, into the map that is open.
+// Writes the keys name, label, options and budget_ms into the open map, with the value of every option.
 void WriteEstimatorKeys(const EstimatorSpec& spec, YAML::Emitter* out);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// An estimator with its options as a file of its own, such as a tuned one:
+// An estimator with its options in a file of its own, such as a tuned estimator:
 //
 //   name: rcme
 //   label: rcme_tuned
@@ -14,21 +14,22 @@
 
 namespace rcme {
 
-// Where an estimator comes from, in the words of whoever wrote its file; each key once.
+// Where an estimator comes from, as texts for people; each key occurs once.
 using Provenance = std::vector<std::pair<std::string, std::string>>;
 
-// Reads and validates an estimator file: a path, or the name of one that comes with the program
-// (core/files/shared_files.h). Throws InputError as LoadStudy does.
+// Reads and validates an estimator file, given by its path or by the name of one that is installed with the
+// program (core/files/shared_files.h). Throws InputError as LoadStudy does.
 EstimatorSpec LoadEstimatorFile(const std::string& name);
 
-// The same from text; `path` is what the messages call it.
+// The same from text; messages call it `path`.
 EstimatorSpec ParseEstimatorFile(const std::string& yaml, const std::string& path);
 
-// The estimator of a file of `rcme conform`, before it is conformed. Its command, if it has one, is the file's.
-// Throws InputError as ReadConformFile.
+// Returns the estimator that a file of `rcme conform` wraps. A command of it counts as one from that file
+// (command_permission.h). Throws InputError as ReadConformFile does.
 EstimatorSpec LoadConformedEstimator(const std::string& path);
 
-// A file with every option written out, defaults included: ParseEstimatorFile gives the same estimator back.
+// Formats an estimator file with the value of every option, defaults included. ParseEstimatorFile returns
+// the same estimator.
 std::string EstimatorFileText(const EstimatorSpec& spec, const Provenance& provenance);
 
 }  // namespace rcme

@@ -34,7 +34,7 @@ std::optional<EstimatorSpec> FindConformed(const EstimatorSpec& spec) {
   const std::string file = FindParameter(model->Parameters(), "file").Value();
   if (file == "none") return std::nullopt;
   ConformRule rule = ReadConformFile(file).rule;
-  if (rule.estimator == kConformEstimator) return std::nullopt;  // refused where it is made
+  if (rule.estimator == kConformEstimator) return std::nullopt;  // Make refuses it
   return EstimatorSpec{spec.label, rule.estimator, rule.options, {}};
 }
 

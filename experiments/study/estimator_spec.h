@@ -10,42 +10,43 @@
 
 namespace rcme {
 
-// One estimator of a study. In a result file it may be one that this program does not know.
+// One estimator of a study. Result files may have estimators that this program does not know.
 struct EstimatorSpec {
-  std::string label;  // unique in the study; what tables and plots show
-  std::string name;   // in the estimator registry
-  Settings options;   // every option that the estimator has, with its value as the option itself writes it
-  std::optional<double> budget_ms;  // the time of a call that its effort was chosen for (rcme budget)
-  // "study.yaml:7": where its command stands, if a file brought one that nobody has allowed
-  // (command_permission.h).
+  std::string label;                // unique in the study; shown in tables and plots
+  std::string name;                 // in the estimator registry
+  Settings options;                 // value of every option of the estimator, formatted by the option
+  std::optional<double> budget_ms;  // time per call that set its effort (rcme budget)
+  // The place of its command, such as "study.yaml:7", if the command comes from a file and has not been
+  // allowed (command_permission.h).
   std::string command_place = {};
 };
 
-// An estimator with its default options, labelled by its name. Throws InputError that lists the known names.
+// Returns an estimator with default options whose label is its name. Throws InputError that lists the known
+// names.
 EstimatorSpec DefaultEstimator(const std::string& name);
 
-// Gives options other values. Throws InputError that lists the options the estimator has, or what is allowed.
+// Changes options. Throws InputError that lists the estimator's options, or what a value may be.
 void SetOptions(EstimatorSpec* spec, const Settings& options);
 
-// The options of the estimator `answers` for a file: with the digest of its content. Throws InputError for a
-// file that holds no answers.
+// Returns the options of the estimator `answers` for a file, with the digest of its content. Throws
+// InputError if the file does not contain answers.
 Settings AnswersOptions(const std::string& path);
 
-// The estimator that one called `conform` wraps, from its file; nothing for another. Throws InputError as
-// ReadConformFile.
+// Returns the estimator that an estimator `conform` wraps, read from its file; nothing for other estimators.
+// Throws InputError as ReadConformFile does.
 std::optional<EstimatorSpec> FindConformed(const EstimatorSpec& spec);
 
-// What limits the work of a call, in words: "num_iterations 200", "3.1 ms a call (num_iterations 1840)",
-// "own rule, max_iterations 5000"; empty: nobody knows.
+// Describes what limits the work of a call: "num_iterations 200", "3.1 ms a call (num_iterations 1840)",
+// "own rule, max_iterations 5000". Empty if not known.
 std::string DescribeEffort(const EstimatorSpec& spec);
 
-// Throws InputError where the command of an estimator that is a process is not allowed (command_permission.h)
-// or cannot be used (RequireCommandAnswers of peers/peer_registry.h). To be called before work that is asked
-// of these estimators begins.
+// Checks the estimators that are processes; call this before their first work. Throws InputError if a
+// command is not allowed (command_permission.h) or does not work (RequireCommandAnswers in
+// peers/peer_registry.h).
 void CheckProcessEstimators(const std::vector<EstimatorSpec>& specs);
 
-// The estimator, configured or made. Throw InputError as ConfigureEstimator does; Make also for a command
-// that nobody has allowed.
+// Returns the configured model, or the estimator itself. Both throw InputError as ConfigureEstimator does;
+// Make also throws if the command has not been allowed.
 std::unique_ptr<EstimatorModel> Configure(const EstimatorSpec& spec);
 std::unique_ptr<MotionEstimator> Make(const EstimatorSpec& spec);
 

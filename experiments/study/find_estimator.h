@@ -1,4 +1,4 @@
-// The estimator that a label names, of a study or of a run.
+// Finds an estimator of a study or a run by its label.
 #pragma once
 
 #include <string>
@@ -6,11 +6,11 @@
 
 namespace rcme {
 
-// The place of a label among those of the estimators. Throws InputError that begins with `owner`
-// ("--estimator: the study") and lists them.
+// Returns the index of `label` in `labels`. Throws InputError that begins with `owner` ("--estimator: the
+// study") and lists the labels.
 size_t FindLabel(const std::vector<std::string>& labels, const std::string& label, const std::string& owner);
 
-// The same of anything that has a label: EstimatorSpec, DescribedEstimator.
+// The same for types with a label: EstimatorSpec, DescribedEstimator.
 template <typename Estimator>
 size_t FindEstimator(const std::vector<Estimator>& estimators, const std::string& label,
                      const std::string& owner) {

@@ -20,7 +20,7 @@ namespace {
 constexpr const char *kDrawsLine = "# draws: ", *kChosenLine = "# chosen draws: ", *kDrawLine = "# draw ",
                      *kOutsideWord = ": outside of given: ";
 
-// The last value of a key; null: there is none.
+// Returns the last value of a key, or null if there is none.
 const std::string* FindValue(const Settings& settings, const std::string& key) {
   const auto found = std::find_if(settings.rbegin(), settings.rend(),
                                   [&](const auto& setting) { return setting.first == key; });
@@ -34,7 +34,7 @@ bool IsWith(const DrawnKey& drawn, const Settings& settings) {
   });
 }
 
-// The value at u in [0, 1), in six digits.
+// The value at u in [0, 1), formatted with six digits.
 std::string ValueAt(const DrawnRange& range, bool is_whole, double u) {
   if (range.kind == DrawnRange::Kind::kAnyOf)
     return range.words[static_cast<size_t>(u * static_cast<double>(range.words.size()))];
@@ -42,12 +42,12 @@ std::string ValueAt(const DrawnRange& range, bool is_whole, double u) {
   const double value = range.kind == DrawnRange::Kind::kUniform
                            ? range.from + u * (to - range.from)
                            : range.from * std::exp(u * std::log(to / range.from));
-  // Rounding may put the greatest u on `to`.
+  // Rounding may move the greatest u to `to`.
   if (is_whole) return fmt::format("{:.0f}", std::min(std::floor(value), range.to));
   return fmt::format("{:.6g}", value);
 }
 
-// A side of a restriction as a number; false: the draw has none.
+// Reads a side of a restriction as a number; returns false if the draw does not have it.
 bool ReadSide(const Settings& resolved, const std::string& side, double* number) {
   if (ParseReal(side, number)) return true;
   const std::string* value = FindValue(resolved, side);
@@ -113,7 +113,7 @@ class Drawer {
     return static_cast<size_t>(std::ranges::find(keys_, key) - keys_.begin());
   }
 
-  // The keys that settings with these choices have, and whether they are whole numbers.
+  // Returns the keys that settings with these choices have, and whether they are whole numbers.
   const std::map<std::string, bool>& KeysWith(const Settings& settings) {
     std::string choices;
     for (const auto& [key, value] : settings) choices += IsChoice(key) ? key + "=" + value + "\n" : "";
@@ -125,7 +125,7 @@ class Drawer {
     return found->second;
   }
 
-  // Of each key that is no choice and is there, what it is drawn from: what stands deepest.
+  // Returns the range of each key that is not a choice and that the draw has. The range nested deepest wins.
   std::map<std::string, const DrawnKey*> ListDrawnNumbers(const Settings& resolved,
                                                           const std::map<std::string, bool>& known) const {
     std::map<std::string, const DrawnKey*> numbers;

@@ -19,7 +19,7 @@ const FileKind& PopulationFileKind() {
   return kind;
 }
 
-// Numbers of draws, ascending, each once.
+// Reads numbers of draws, ascending and each once.
 std::vector<int> ReadDraws(const Place& place, const YAML::Node& node) {
   std::vector<int> draws;
   for (const std::string& word : ReadWords(place, node, "draws")) {
@@ -67,7 +67,8 @@ Settings ReadTexts(const Place& place, const YAML::Node& node, const std::string
   return texts;
 }
 
-// `more` takes the place of the keys of that name, and what was drawn with them; new ones come last.
+// Merges ranges: those in `more` replace keys of the same name and what was drawn with them; new keys come
+// last.
 void PutInPlace(const std::vector<DrawnKey>& more, std::vector<DrawnKey>* keys) {
   const auto is_of = [](const DrawnKey& drawn, const std::string& key) {
     return drawn.with.empty() ? drawn.key == key : drawn.with.front().first == key;

@@ -1,5 +1,5 @@
-// What a reader of results has to know of a run, in plain values and texts: a result file holds it, and no
-// estimator and no data are needed to read it.
+// Describes a run for readers of its results, in plain values and texts. Result files contain it, so reading
+// them needs neither the estimators nor the data.
 #pragma once
 
 #include <cstdint>
@@ -13,49 +13,50 @@
 namespace rcme {
 
 struct DescribedCondition {
-  std::vector<std::string> levels;  // one per factor
-  std::int64_t num_trials = 0;      // asked for
+  std::vector<std::string> levels;  // one level per factor
+  std::int64_t num_trials = 0;      // planned
 };
 
 struct DescribedEstimator {
-  std::string label, name, effort;  // the last in words (DescribeEffort)
-  Settings options;                 // by name
+  std::string label, name, effort;  // effort: as text (DescribeEffort)
+  Settings options;                 // sorted by name
 };
 
 struct RunDescription {
-  std::string study, description;  // its name, and its own words
-  Settings ademp;                  // the parts of its ADEMP block that are not empty
+  std::string study, description;  // name and description of the study
+  Settings ademp;                  // the non-empty parts of its ADEMP block
   std::uint64_t seed = 1;
-  int trials = 0;  // asked for per condition; for a folder of pairs, passes over each pair
+  int trials = 0;  // planned per condition; for a folder of pairs, passes over each pair
   int repeats_per_scene = 1;
   FailureBounds failure;
   std::vector<std::string> factors;
   std::vector<DescribedCondition> conditions;
   std::vector<DescribedEstimator> estimators;
-  std::string study_yaml, identity;  // as in StudyPlan: for who runs the study
+  std::string study_yaml, identity;  // as in StudyPlan; needed to continue the run
 
-  // Not empty: the number of trials depended on their outcomes, in these words.
+  // If the number of trials depended on their outcomes: the rule, as text. Empty otherwise.
   std::string stopping_rule;
-  // Options of `rcme run` that alone gave `until_trials` trials in all; empty: none.
+  // Options with which a single `rcme run` computes exactly these trials, `until_trials` in all; empty:
+  // none.
   std::string until_options;
   std::int64_t until_trials = 0;
-  // The text of the lock file (study_lock.h) that the run was begun with, empty: none; and why the study
-  // departs from it, a line each time that a run was begun or continued so.
+  // The text of the lock file (study_lock.h) with which the run began; empty: none. The reasons for
+  // departing from it, one line for each time that the run was begun or continued so.
   std::string lock, despite_lock;
-  std::int64_t retried_trials = 0;  // run again because an answer from outside the program was missing
-  // Which shards of the study: "3/64" (core/work/shard.h), of several that were merged "1-3,7/64", "none/64"
-  // if every one of them lacks trials; empty: all of it.
+  std::int64_t retried_trials = 0;  // repeated because an answer from outside the program was missing
+  // The shards of the study that the run has: "3/64" (core/work/shard.h), "1-3,7/64" after a merge,
+  // "none/64" if every shard lacks trials; empty: the whole study.
   std::string shard;
-  bool keeps_counts = false;  // of the trials, not the trials themselves (run/store/counts_tables.h)
-  TrialOrigin origin;         // of all trials; several names are separated by commas, none known is empty
+  bool keeps_counts = false;  // only counts, not the trials themselves (run/store/counts_tables.h)
+  TrialOrigin origin;         // of all trials; several names are separated by commas; empty: not known
 
   std::int64_t NumTrials() const;
 };
 
-// Of a run that has not begun.
+// Describes a run that has not begun.
 RunDescription Describe(const StudyPlan& plan);
 
-// The failure bounds, one by one, as (name, text): "max_rotation_error_deg", "3".
+// Returns the failure bounds as (name, text), such as ("max_rotation_error_deg", "3").
 Settings ListBounds(FailureBounds bounds);
 
 }  // namespace rcme

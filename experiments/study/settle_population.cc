@@ -11,7 +11,8 @@
 namespace rcme {
 namespace {
 
-// What can be drawn: `data` with the first word of each choice, and that with each other word of one choice.
+// Returns possible settings: `data` with the first word of each choice, and for each further word of one
+// choice the same with that word.
 std::vector<Settings> PossibleSettings(const Study& study) {
   const Settings first = ChooseFirstDraw(study);
   std::vector<Settings> all = {first};
@@ -32,7 +33,7 @@ bool Has(const Settings& resolved, const Settings& with) {
                              [&](const auto& choice) { return std::ranges::count(resolved, choice) > 0; });
 }
 
-// With each setting of `possible` that has the key: the ends of its range are allowed. Words become
+// Checks the ends of the key's range with all elements of `possible` that have the key. Words become
 // canonical.
 void SettleKey(const std::vector<std::pair<Settings, Settings>>& possible, DrawnKey* drawn) {
   bool is_anywhere = false;

@@ -1,4 +1,4 @@
-// Whether what a population draws can be drawn.
+// Checks that the ranges of a population are possible.
 #pragma once
 
 #include "experiments/core/files/yaml_input.h"
@@ -6,12 +6,12 @@
 
 namespace rcme {
 
-// Throws InputError with the line of `node` unless every key that is drawn exists, and every end of its range
-// is allowed, with each scene and law it may be drawn with; also where `data` has a key that one of these
-// lacks. Makes single words and numbers what their parameters write.
+// Throws InputError with the line of `node` unless every drawn key exists, and both ends of its range are
+// allowed, with every scene and law with which it may be drawn. A key in `data` that one of these lacks is
+// an error too. Words and fixed numbers become canonical: as their parameters format them.
 void SettlePopulation(const Place& place, const YAML::Node& node, Study* study);
 
-// Settings of a draw that there could be: the first word of each choice, beside `data`.
+// Returns the settings of a possible draw: `data` and the first word of each choice.
 Settings ChooseFirstDraw(const Study& study);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// Whether what a study says can be, and in the words of the parameters themselves.
+// Checks that the settings of a study are possible, and makes them canonical: formatted by their parameters.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace rcme {
 
-// A study's settings with the first level of every factor: enough to know which keys there are.
+// Returns a study's settings with the first level of every factor: enough to know which keys exist.
 Settings ChooseFirstSettings(const Study& study);
 
-// The value of a setting as its parameter writes it, so that equal values are equal texts.
+// Returns the value of a setting as its parameter formats it, so equal values are equal texts.
 std::string MakeCanonical(Settings settings, const std::string& key, const std::string& value);
 
-// Data settings are checked one by one, each with the study's choices, so that an error names its line; then
-// each level of each factor. All become canonical.
+// Checks the data settings one by one, each together with the study's choices, so an error names its line;
+// then each level of each factor, and the population. All become canonical.
 void SettleData(const Place& place, const YAML::Node& root, Study* study);
 
 }  // namespace rcme

@@ -37,7 +37,7 @@ const char* NameOfBound(StatedDirection direction) {
   }
 }
 
-// Throws with the names that are allowed.
+// Throws InputError that lists the allowed names.
 std::string OneOfNames(const Place& place, const YAML::Node& node, const std::string& key,
                        const std::vector<std::string>& allowed) {
   std::string text = Line(place, node, key);
@@ -72,7 +72,7 @@ Settings ReadWhere(const Place& place, const YAML::Node& node, const StatableNam
   return where;
 }
 
-// What an entry must have beside its quantity and estimator.
+// Checks the keys that an entry needs beside its quantity and estimator.
 void CheckIsWhole(const Place& place, const YAML::Node& node) {
   for (const char* key : {"quantity", "estimator"}) {
     if (!node[key]) place.Fail(node, fmt::format("hypotheses: key '{}' is missing", key));

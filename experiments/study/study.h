@@ -14,7 +14,7 @@
 
 namespace rcme {
 
-// When a returned motion counts as failed.
+// A returned motion with a greater error counts as failed.
 struct FailureBounds {
   double max_rotation_error_deg = 3.0;
   double max_direction_error_deg = 15.0;
@@ -24,7 +24,7 @@ std::vector<Parameter> Parameters(FailureBounds& bounds);
 inline constexpr size_t kMaxConditions = 100'000;  // of a study
 inline constexpr int kMaxRepeatsPerScene = 10'000;
 
-// One data setting, or one option of one estimator ("opencv_usac.threshold_sigma"), and the values it takes.
+// What varies: a data setting, or an option of an estimator ("opencv_usac.threshold_sigma"), and its values.
 struct Factor {
   std::string key;
   std::vector<std::string> levels;
@@ -32,16 +32,16 @@ struct Factor {
 
 enum class Design {
   kFullFactorial,  // all combinations of all factors
-  kOneAtATime,     // the values in `data`, and each level of each factor with the other factors as in `data`
+  kOneAtATime,     // the values in `data`, then each other level of each factor with the other factors as in
+                   // `data`
 };
 
-// What a reader of a simulation study wants to know (Morris, White & Crowther 2019), in the study's own
-// words.
+// The plan of a simulation study as text, structured by ADEMP (Morris, White & Crowther 2019).
 struct Ademp {
   std::string aims, data, estimands, methods, performance;
 };
 
-// A simulation study: what is varied, what is compared, how often, from which seed.
+// A simulation study: what varies, which estimators are compared, how many trials, which seed.
 struct Study {
   std::string name;
   std::string description;
@@ -49,46 +49,48 @@ struct Study {
   std::uint64_t seed = 1;
   int trials = 100;  // per condition; for a folder of pairs, passes over each pair
   Settings data;     // fixed settings
-  // One set of scenes, noise and outliers for all conditions whose scene is shaped alike, so that differences
-  // between levels of the outlier ratio or the noise level are paired.
+  // Conditions whose settings for the scene agree share scenes, noise and outliers, so differences between
+  // levels of the outlier ratio or the noise level are paired.
   bool common_scenes = false;
-  // Each scene, with its noise and outliers, is met by so many trials, one after the other, that differ in
-  // the samples the estimators draw: trial k is of scene k / repeats_per_scene.
+  // The number of consecutive trials that share a scene with its noise and outliers. They differ in the
+  // samples that the estimators draw; trial k has scene k / repeats_per_scene.
   int repeats_per_scene = 1;
   Design design = Design::kFullFactorial;
   std::vector<Factor> factors;
-  // Not empty: every draw of it is a condition, or as many as the factors make of it.
+  // If set, every draw is a condition, or one condition for each combination of the factors.
   std::optional<Population> population;
   std::vector<EstimatorSpec> estimators;
   FailureBounds failure;
-  std::vector<StatedHypothesis> hypotheses;  // what its run is expected to show; no run depends on them
-  std::optional<Tuning> tuning;              // what `rcme tune` does with it
+  std::vector<StatedHypothesis> hypotheses;  // expected results; runs do not depend on them
+  std::optional<Tuning> tuning;              // for `rcme tune`
 };
 
-// The parts of an Ademp with their keys, in order.
+// Returns the parts of an Ademp with their keys, in order.
 std::vector<std::pair<std::string, std::string*>> Parts(Ademp& ademp);
 
-// What a row of the design has a level of: of a population kDrawFactor and its keys, then the factors.
+// Returns the names of the columns of the design: for a population kDrawFactor and its keys; then the
+// factors.
 std::vector<std::string> FactorNames(const Study& study);
 
-// One row per condition, one level per factor, the first factor slowest; of a population those of the draws
-// that meet its restrictions. Throws InputError: more than kMaxConditions; a one-at-a-time design whose
-// `data` lacks a factor's base value.
+// Returns the design: a row per condition with a level per factor, the first factor slowest. For a
+// population, only draws that meet its restrictions. Throws InputError if there are more than kMaxConditions
+// rows, or if a one-at-a-time design lacks a factor's base value in `data`.
 std::vector<std::vector<std::string>> DesignRows(const Study& study);
-// Those of the factors alone, and the levels of a draw with such a row.
+// FactorRows returns the design of the factors alone; JoinLevels joins the levels of a draw and such a row.
 std::vector<std::vector<std::string>> FactorRows(const Study& study);
 std::vector<std::string> JoinLevels(const PopulationDraw& draw, const std::vector<std::string>& of_factors);
 
-// The settings of a condition: those of `data`, then its levels but for options of estimators.
+// Returns the settings of a condition: `data`, then its levels except those of estimator options.
 Settings CombineSettings(const Study& study, const std::vector<std::string>& levels);
 
-// Whether a factor is an option of an estimator: LABEL.OPTION.
+// Returns whether a factor is an option of an estimator, LABEL.OPTION.
 bool IsEstimatorOption(const std::string& factor);
 
-// The estimators of a condition: those of the study with the options that are levels of it.
+// Returns the estimators of a condition: those of the study, with the options that are levels of the
+// condition.
 std::vector<EstimatorSpec> ResolveEstimators(const Study& study, const std::vector<std::string>& levels);
 
-// Throws InputError where options of estimators are factors; `who` cannot take them.
+// Throws InputError if estimator options are factors, because `who` does not support them.
 void RequireFixedOptions(const Study& study, const std::string& who);
 
 }  // namespace rcme

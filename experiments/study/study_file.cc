@@ -64,7 +64,8 @@ Parameter CommonScenesParameter(bool* common_scenes) {
                                  "the same scenes in all conditions whose scene is shaped alike");
 }
 
-// An entry of the list of estimators; {file: tuned.yaml} is that file's, seen from the study's folder.
+// Reads an entry of the list of estimators. {file: tuned.yaml} names an estimator file, relative to the
+// study's folder.
 EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
   if (!node.IsMap() || !node["file"])
     return ReadEstimatorEntry(place, node, "estimators", ListStudyKeys("estimators"));
@@ -101,7 +102,7 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
   }
 }
 
-// What the hypotheses of a study may name, after its factors' levels are canonical.
+// The names that hypotheses may refer to; call this after the levels of the factors are canonical.
 StatableNames ListStatableNames(const Study& study) {
   StatableNames names;
   for (const EstimatorSpec& spec : study.estimators) names.estimators.push_back(spec.label);
@@ -126,8 +127,8 @@ Design ReadDesign(const Place& place, const YAML::Node& node) {
   return design;
 }
 
-// Every data parameter with its value; where a factor chooses a part of the simulation, so that the
-// parameters differ from condition to condition, only those that were given.
+// Returns every data parameter with its value. If a factor chooses a part of the simulation, the parameters
+// differ between conditions; then only the given ones are returned.
 Settings WrittenData(const Study& study) {
   const bool has_choice = study.population || std::ranges::any_of(study.factors, IsChoice, &Factor::key);
   return has_choice ? study.data : ResolveSettings(study.data);
@@ -164,7 +165,7 @@ void OverrideOption(const std::string& option, const std::string& value, Estimat
   Configure(*spec)->Make();  // throws if options contradict each other
 }
 
-// A key of the population takes one value, or `--set conditions.number=512`.
+// Applies `--set conditions.number=512`, or fixes a drawn key at one value.
 void OverridePopulation(const std::string& key, const std::string& value, Population* population) {
   FindParameter(
       {PopulationDesignParameter(&population->design), PopulationNumberParameter(&population->number)}, key)
@@ -212,8 +213,8 @@ EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
       fmt::join(BoundKeys(), ", "), options.empty() ? "none" : fmt::format("{}", fmt::join(options, ", "))));
 }
 
-// An estimator that states the probability of a failure has bounds of its own: the study's, where its entry
-// gives no others. Those of estimator files stay as they are there.
+// Estimators that state a failure probability have failure bounds of their own. They get those of the study
+// unless their entry gives others. Estimator files keep theirs.
 void FollowFailureBounds(const YAML::Node& entries, Study* study) {
   for (size_t i = 0; i < study->estimators.size(); ++i) {
     EstimatorSpec& spec = study->estimators[i];
@@ -228,7 +229,7 @@ void FollowFailureBounds(const YAML::Node& entries, Study* study) {
 // The settings whose values are paths.
 constexpr const char* kPathKeys[] = {"folder", kCalibrationKey, kNoiseFileKey, kTruthInDoubtKey};
 
-// A path in a study is seen from the study's folder.
+// Makes a path in a study relative to the study's folder.
 std::string SeenFrom(const std::filesystem::path& folder, const std::string& path) {
   if (folder.empty() || path.empty() || std::filesystem::path(path).is_absolute()) return path;
   return (folder / path).lexically_normal().string();
@@ -246,7 +247,7 @@ void SeePathsFrom(const std::filesystem::path& folder, Study* study) {
   }
 }
 
-// `folder`: that the paths of its data are seen from.
+// `folder`: the paths in the data are relative to it.
 Study ReadStudy(const std::string& yaml, const std::string& path, const std::filesystem::path& folder) {
   const Place place(path);
   const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());

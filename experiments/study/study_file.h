@@ -15,11 +15,11 @@
 //   estimators:
 //     - {name: standard}
 //     - {name: rcme, label: rcme_rank_aware, options: {reading: rank_aware}}
-//     - {file: tuned.yaml, label: other}  # of estimator_file.h, beside the study; the label is optional
+//     - {file: tuned.yaml, label: other}  # an estimator file (estimator_file.h); the label is optional
 //   failure: {max_rotation_error_deg: 3, max_direction_error_deg: 15}
 //   hypotheses:                       # see stated_hypothesis.h
 //     - {quantity: failure, estimator: other, against: standard, direction: lower}
-//   tune: {estimator: rcme_rank_aware, options: {mu: [3, 6, 9]}}    # see tuning/tuning_file.h
+//   tune: {estimator: rcme_rank_aware, options: {mu: [3, 6, 9]}}    # see study/tuning_file.h
 #pragma once
 
 #include <string>
@@ -30,27 +30,30 @@
 
 namespace rcme {
 
-// Reads and validates a study, a path or the name of one that comes with the program
-// (core/files/shared_files.h). Every path in it, of estimator files, answers, a folder of pairs or a
-// calibration, is seen from its own folder; an estimator file may also be one that comes with the program, by
-// its name. Throws InputError with file, line, key and what is allowed for anything that is not: unknown or
-// repeated keys, wrong types, values out of range, empty factors, unknown scenes and estimators.
+// Reads and validates a study, given by its path or by the name of one that is installed with the program
+// (core/files/shared_files.h). Paths in it (estimator files, answers, a folder of pairs, a calibration) are
+// relative to its own folder. An estimator file may also be given by the name of an installed one. Throws
+// InputError with file, line, key and what is allowed for unknown or repeated keys, wrong types, values out
+// of range, empty factors, unknown scenes and estimators.
 Study LoadStudy(const std::string& name);
 
-// The same from text; `path` is what the messages call it. The paths of its data are seen from the working
-// directory, as those of a result file are.
+// The same from text; messages call it `path`. Paths of its data are relative to the working directory, as
+// in a result file.
 Study ParseStudy(const std::string& yaml, const std::string& path);
 
-// One `--set key=value`: a data key; a failure bound, of the study and of all estimators that have it; or an
-// option, of all estimators that have it (`mu`), or of the one with a label (`rcme.mu`), which may be named
-// like a data key; or `conditions.number`, `conditions.design` of a population. A factor that is set, or a
-// key that is drawn, becomes that one level. Throws InputError that lists what there is, also where the
-// options of an estimator then contradict each other.
+// Applies one `--set key=value`. The key is one of these:
+// - a data key;
+// - a failure bound, of the study and of all estimators that have it;
+// - an option, of all estimators that have it (`mu`), or of the estimator with a label (`rcme.mu`), even if
+//   a data key has the same name;
+// - `conditions.number` or `conditions.design` of a population.
+// A factor or drawn key that is set gets this single level. Throws InputError that lists the possible keys
+// or values, or if the options of an estimator contradict each other.
 void Override(Study* study, const std::string& key, const std::string& value);
 
-// The study with every parameter written out, defaults and the estimators of files included: ParseStudy gives
-// the same study back but for its tuning, on which no run depends. Two runs may share a result file if this
-// text, its trials and words aside, is the same.
+// Formats a study with every parameter, defaults and the estimators of files included. ParseStudy returns
+// the same study except for its tuning, on which no run depends. Two runs may share a result file if these
+// texts agree, apart from trials and descriptions.
 std::string ToYaml(const Study& study);
 
 }  // namespace rcme

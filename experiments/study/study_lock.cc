@@ -25,8 +25,8 @@ namespace rcme {
 namespace {
 
 constexpr const char* kLockFormat = "rcme lock 1";
-constexpr const char* kTextLine = "text: |2";      // the lines that follow begin with two blanks
-constexpr size_t kMaxLockBytes = size_t{1} << 20;  // as ParseYaml takes, and so as a study has
+constexpr const char* kTextLine = "text: |2";      // the following lines begin with two blanks
+constexpr size_t kMaxLockBytes = size_t{1} << 20;  // as much as ParseYaml accepts, so any study fits
 constexpr size_t kMaxLockLine = 200;               // of the lines before the text
 
 const FileKind& LockFileKind() {
@@ -34,7 +34,7 @@ const FileKind& LockFileKind() {
   return kind;
 }
 
-// The lines of an identity that name the digests of real pairs.
+// Returns the lines of an identity with the digests of real pairs.
 std::vector<std::string> DigestsIn(const std::string& text, bool is_of_real_pairs) {
   std::vector<std::string> lines = is_of_real_pairs ? SplitText(text, '\n') : std::vector<std::string>();
   std::erase_if(lines, [](const std::string& line) { return !line.starts_with("# condition "); });
@@ -47,7 +47,8 @@ bool HasRealPairs(const YAML::Node& study) {
          data["scene"].Scalar() == kMatchFilesScene;
 }
 
-// A text of a study as "path of the key" -> value, in order; the parts of estimators have their label in it.
+// Flattens the text of a study to (path of the key, value), in order. The parts of estimators have their
+// label in the path.
 void Flatten(const YAML::Node& node, const std::string& path, Settings* flat) {
   const std::string prefix = path.empty() ? "" : path + ".";
   if (node.IsMap()) {
@@ -72,7 +73,7 @@ std::vector<std::string> LabelsIn(const YAML::Node& study) {
   return labels;
 }
 
-// All but the estimators with these labels, and the folder.
+// Omits the estimators with these labels, and the folder.
 Settings FlatStudy(const YAML::Node& study, const std::vector<std::string>& without) {
   const std::set<std::string> left_out(without.begin(), without.end());
   Settings flat;
@@ -88,7 +89,7 @@ Settings FlatStudy(const YAML::Node& study, const std::vector<std::string>& with
   return flat;
 }
 
-// In one list, not in the other.
+// Returns the elements of one list that the other lacks.
 std::vector<std::string> OnlyIn(const std::vector<std::string>& one, const std::vector<std::string>& other) {
   const std::set<std::string> known(other.begin(), other.end());
   std::vector<std::string> only;
@@ -98,7 +99,7 @@ std::vector<std::string> OnlyIn(const std::vector<std::string>& one, const std::
   return only;
 }
 
-// A value of each key; of a key that stands twice, which no text of ToYaml has, a difference.
+// Compares the values key by key. A key that occurs twice, which ToYaml never writes, is a difference.
 std::map<std::string, std::string> ByKey(const Settings& flat, std::vector<std::string>* differences) {
   std::map<std::string, std::string> values;
   for (const auto& [path, value] : flat) {
@@ -129,7 +130,7 @@ std::vector<std::string> ListStudyDifferences(const YAML::Node& locked, const YA
   for (const std::string& label : added) differences.push_back(fmt::format("estimator {}: was added", label));
   for (const std::string& label : gone)
     differences.push_back(fmt::format("estimator {}: was left out", label));
-  // Whoever wrote the lock, nothing of it is a command to a terminal, nor a further line.
+  // No text of a lock may act on a terminal or begin a further line, whoever wrote the lock.
   for (std::string& difference : differences) difference = Printable(difference);
   return differences;
 }

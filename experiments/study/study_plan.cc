@@ -16,7 +16,7 @@
 namespace rcme {
 namespace {
 
-// The settings of a condition, in words; of a population, which has many, their hash.
+// Formats the settings of a condition; those of a draw, which are many, as a hash.
 std::string TextOfSettings(const Settings& settings, bool is_drawn) {
   std::string text;
   for (const auto& [key, value] : settings) text += fmt::format(" {} {},", key, value);
@@ -26,7 +26,8 @@ std::string TextOfSettings(const Settings& settings, bool is_drawn) {
   return fmt::format(" settings {:016x}", hash.value());
 }
 
-// Where a factor chooses a part of the simulation, ToYaml cannot write out the parameters of every choice.
+// If a factor chooses a part of the simulation, ToYaml cannot write the parameters of every choice, so the
+// identity lists them by condition.
 std::string ResolvedConditions(const StudyPlan& plan) {
   const bool has_choice =
       plan.study.population || std::ranges::any_of(plan.study.factors, IsChoice, &Factor::key);
@@ -46,14 +47,14 @@ std::string Identity(const StudyPlan& plan) {
   same.description.clear();
   same.ademp.reset();
   same.hypotheses.clear();
-  // What they hold counts.
+  // The content of the files counts, not these settings.
   std::erase_if(same.data, [](const auto& setting) {
     return setting.first == "folder" || setting.first == kTruthInDoubtKey;
   });
   std::string identity = ToYaml(same) + ResolvedConditions(plan);
   if (same.population) identity += DescribePopulationIdentity(*same.population, plan.refused);
   for (const Condition& condition : plan.conditions) {
-    // Those of draws are not looked for here: the settings decide them.
+    // The settings of a draw determine its data.
     if (same.population && !condition.source->ChosenParts().empty()) continue;
     const std::string data = condition.source->Identity();
     if (!data.empty()) identity += fmt::format("# condition {}: {}\n", condition.index, data);
@@ -61,8 +62,9 @@ std::string Identity(const StudyPlan& plan) {
   return identity;
 }
 
-// Equal for two conditions that draw the same scenes, noise and outliers: those that mean the same, in any
-// study; with common_scenes those whose scene is shaped alike. `pair_scene`: which scene of a folder.
+// Returns a text that is equal for two conditions that draw the same scenes, noise and outliers. These have
+// equivalent settings, in any study; with common_scenes, equivalent settings of the scene. `pair_scene`: the
+// scene of a folder.
 std::string WhatIsDrawn(const Study& study, const Settings& settings, const std::string& pair_scene) {
   std::string text;
   for (const auto& [key, value] : DistinctiveSettings(settings, study.common_scenes)) {
@@ -120,7 +122,7 @@ void AppendPopulation(StudyPlan* plan) {
   }
 }
 
-// Estimators whose options are factors: made once for all conditions with the same options.
+// Makes estimators with varied options, once for all conditions that have the same options.
 void MakeEstimatorsOfConditions(StudyPlan* plan) {
   if (std::ranges::none_of(plan->study.factors, IsEstimatorOption, &Factor::key)) return;
   std::map<Settings, std::vector<std::shared_ptr<const MotionEstimator>>> made;
@@ -162,7 +164,7 @@ StreamName NameOfScene(const StudyPlan& plan, const Condition& condition, std::u
 
 namespace {
 
-// The plan without its conditions and estimators.
+// Makes a plan without conditions and estimators.
 StudyPlan BeginPlan(const Study& given, PlanEstimators estimators) {
   if (estimators == PlanEstimators::kMade) RequireAllowedCommands(given.estimators);
   Study study = given;

@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-// How many decimal places a number has in its shortest form: 3 for 0.125.
+// Returns the number of decimal places of a number in its shortest form: 3 for 0.125.
 int DecimalPlaces(double value) {
   char text[32];
   const char* end = std::to_chars(text, text + sizeof(text), value, std::chars_format::scientific).ptr;
@@ -23,12 +23,12 @@ int DecimalPlaces(double value) {
   return std::max(static_cast<int>(num_digits) - std::atoi(std::string(e + 1, end).c_str()), 0);
 }
 
-// Levels from, from + step, ..., to.
+// Returns the levels from, from + step, ..., to.
 struct Steps {
   double from = 0.0, to = 0.0, step = 0.0;
 
   bool IsTooFine() const { return !((to - from) / step < static_cast<double>(kMaxTunedSettings)); }
-  // A sum of decimals has no more places than its terms: rounded to them, 0.1 + 2 * 0.1 is 0.3.
+  // A sum of decimals has no more places than its terms. Rounding to them makes 0.1 + 2 * 0.1 equal 0.3.
   std::vector<std::string> Levels() const {
     const int places = std::max(DecimalPlaces(from), DecimalPlaces(step));
     std::vector<std::string> levels;
@@ -72,7 +72,7 @@ std::vector<std::string> SteppedLevels(const Place& place, const YAML::Node& nod
   return steps.Levels();
 }
 
-// The text of each level with its node, which is the whole map for levels by steps.
+// Returns the text of each level with its node; for levels by steps the node is the whole map.
 std::vector<std::pair<std::string, YAML::Node>> GivenLevels(const Place& place, const YAML::Node& node,
                                                             const std::string& name) {
   std::vector<std::pair<std::string, YAML::Node>> levels;
@@ -89,7 +89,7 @@ std::vector<std::pair<std::string, YAML::Node>> GivenLevels(const Place& place, 
   return levels;
 }
 
-// The levels as the option itself writes them, so that equal values are equal texts.
+// Formats the levels as the option does, so equal values are equal texts.
 TunedOption ReadOption(const Place& place, const YAML::Node& node, const std::string& option,
                        const EstimatorSpec& spec) {
   TunedOption tuned{option, {}};

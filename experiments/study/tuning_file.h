@@ -2,7 +2,7 @@
 //
 //   tune:
 //     estimator: rcme_rank_aware            # a label of the study
-//     target: failure                       # Parameters(Tuning&) lists this and what follows
+//     target: failure                       # Parameters(Tuning&) lists the keys except `options`
 //     at_most: 0.05
 //     explore: 100
 //     options:
@@ -15,14 +15,14 @@
 
 namespace rcme {
 
-// Reads and validates the block for a study with these estimators: every level of every option, and every
-// combination of them, is one that the estimator takes.
+// Reads and validates the block for a study with these estimators. The estimator must accept every level of
+// every option and every combination of levels.
 Tuning ReadTuning(const Place& place, const YAML::Node& node, const std::vector<EstimatorSpec>& estimators);
 
-// The estimator that is tuned. Throws InputError that lists the labels.
+// Returns the estimator to be tuned. Throws InputError that lists the labels.
 const EstimatorSpec& TunedEstimator(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators);
 
-// Throws InputError if two options of a combination contradict each other; names the combination.
+// Throws InputError that names the first combination whose options contradict each other.
 void CheckCombinations(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators);
 
 }  // namespace rcme

@@ -17,6 +17,7 @@ namespace rcme {
 // Renders a table for a terminal. Texts are aligned left, counts right. An estimate looks like "12.34 %
 // [10.10, 14.80] (n 12): a note" or "1.23 +- 0.04"; "-" means not known. Line ends within a cell become
 // spaces.
+//
 // Text columns are broken into several lines at half of `width`, or at the width that the key columns leave;
 // a text column that is the only one beside the keys gets all of that. Columns that do not fit follow in
 // further blocks, which repeat the key columns and omit rows without a value in the block; a block without
