@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-using Description = std::optional<std::string>;  // of what is wrong; nothing: all is well
+using Description = std::optional<std::string>;  // what is wrong; empty if nothing is
 
 bool IsKnown(MotionStatus status) {
   const std::vector<MotionStatus>& all = AllStatuses();
@@ -45,7 +45,7 @@ Description FaultOfCounts(const MotionEstimate& e, size_t num_matches) {
   return std::nullopt;
 }
 
-// NaN stands for "none is given".
+// NaN means that none is stated.
 Description FaultOfProbabilities(const MotionEstimate& e, size_t num_matches) {
   const auto is_probability = [](double p) { return p >= 0.0 && p <= 1.0; };
   if (!std::isnan(e.failure_probability) && !is_probability(e.failure_probability))
@@ -60,7 +60,7 @@ Description FaultOfProbabilities(const MotionEstimate& e, size_t num_matches) {
   return std::nullopt;
 }
 
-// Everything but the motion and its covariance.
+// Checks everything except the motion and its covariance.
 Description FaultOfAccount(const MotionEstimate& estimate, size_t num_matches) {
   if (!IsKnown(estimate.status))
     return fmt::format("status {} is not a known status", static_cast<int>(estimate.status));
@@ -101,7 +101,7 @@ bool IsCovariance(const Matrix5d& covariance) {
   for (int i = 0; i < 5; ++i) {
     for (int j = 0; j < 5; ++j) {
       if (i == j) continue;
-      // |C_ij| <= sd_i sd_j in every covariance: what is known exactly covaries with nothing.
+      // Every covariance has |C_ij| <= sd_i sd_j, so an exactly known coordinate has no covariances.
       const bool is_exact = sd(i) == 0.0 || sd(j) == 0.0;
       if (is_exact && covariance(i, j) != 0.0) return false;
       correlation(i, j) = is_exact ? 0.0 : covariance(i, j) / sd(i) / sd(j);
@@ -109,7 +109,7 @@ bool IsCovariance(const Matrix5d& covariance) {
   }
   if (!correlation.allFinite()) return false;
   if ((correlation - correlation.transpose()).cwiseAbs().maxCoeff() > kMaxCovarianceRounding) return false;
-  // Eigenvalues >= -tolerance: raised by the tolerance, the matrix is positive definite.
+  // The matrix plus the tolerance is positive definite if all eigenvalues are >= -tolerance.
   correlation.diagonal().array() += kMaxCovarianceRounding;
   return Eigen::LLT<Matrix5d>(correlation).info() == Eigen::Success;
 }

@@ -1,4 +1,4 @@
-// What each number of a problem's severity is, for tables and printing.
+// The columns of a problem's severity, for tables and printing.
 #pragma once
 
 #include "experiments/trial/stored_column.h"

@@ -1,6 +1,6 @@
-// What the simulator cannot make: an error where somebody has chosen the condition, an outcome of the trial
-// (MotionStatus::kNotSimulated) where the condition is a draw of a population. Every command that makes
-// trials of a study goes through here.
+// Handles conditions that the simulator cannot make. For a chosen condition this is an error; for a draw of
+// a population it is an outcome of the trial (MotionStatus::kNotSimulated). Every command that makes trials
+// of a study uses this function.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,12 @@ namespace rcme {
 
 template <typename T>
 struct SimulatedDraw {
-  std::optional<T> made;  // nothing: it could not be simulated
+  std::optional<T> made;  // empty if it could not be simulated
   std::string why_not;
 };
 
-// What `make` returns; nothing where it throws NotSimulated and the study's conditions are draws.
+// Returns what `make` returns. If it throws NotSimulated and the study has a population, the result is
+// empty.
 template <typename Make>
 SimulatedDraw<std::invoke_result_t<Make>> SimulateDraw(const Study& study, const Make& make) {
   try {
@@ -30,7 +31,8 @@ SimulatedDraw<std::invoke_result_t<Make>> SimulateDraw(const Study& study, const
   }
 }
 
-// A sentence that says how many of some trials were not simulated, and that no rate counts them. Empty: none.
+// Returns a sentence that says how many of the trials were not simulated and that no rate counts them; empty
+// if all were simulated.
 std::string DescribeNotSimulated(std::int64_t num_not_simulated, std::int64_t num_trials);
 
 }  // namespace rcme

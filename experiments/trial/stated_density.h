@@ -1,6 +1,6 @@
-// What an answer's covariance says, and how good that is: sharpness and proper scores beside the coverage.
-// The stated density is N(0, Sigma_p) of the motion's tangent coordinates [rotation, direction] (rad) at the
-// estimate, as its user has it.
+// The density that an answer's covariance states, with its sharpness and proper scores, which complement
+// coverage. The density is N(0, Sigma_p) of the motion's tangent coordinates [rotation, direction] (rad) at
+// the estimate.
 #pragma once
 
 #include "estimator/motion_estimate.h"
@@ -10,35 +10,35 @@
 namespace rcme {
 
 // Unknown numbers are NaN.
-inline constexpr double kLevelRisk = 0.01;  // integrity risk of the protection levels of every trial
+inline constexpr double kLevelRisk = 0.01;  // integrity risk of the protection levels in every record
 
 struct StatedDensity {
   enum class Kind {
-    kNone,      // no valid answer, no covariance
+    kNone,      // no valid answer, or no covariance
     kRegular,   // positive definite
-    kSingular,  // no density: it claims to know a direction exactly
+    kSingular,  // states some direction of the tangent space exactly, so there is no density
   };
 
-  int kind = 0;                    // number of the Kind
-  double rotation_sd_deg = kNaN;   // root of the trace of the rotation's block: the rms error that it states
-  double direction_sd_deg = kNaN;  // the same of the direction's block
-  // Geometric mean of the two over their Cramer-Rao bounds, which are such roots as well: no estimator
-  // without bias can rightly state less than 1.
+  int kind = 0;                    // value of the Kind
+  double rotation_sd_deg = kNaN;   // stated rms error: root of the trace of the rotation block
+  double direction_sd_deg = kNaN;  // the same for the direction block
+  // Geometric mean of the ratios of these two to their Cramer-Rao bounds, which are also roots of traces. An
+  // unbiased estimator that states less than 1 is overconfident.
   double sd_over_crb = kNaN;
   double log_det_cov = kNaN;  // ln det Sigma_p, rad^10
-  // Of the error against the truth (stats/normal_scores.h). A truth with an error of its own is a draw of the
-  // sum of both densities, and so are these scores of the sum.
+  // Scores of the error against the truth (stats/normal_scores.h). If the truth has an uncertainty of its
+  // own, they use the sum of both covariances.
   double energy_score_deg = kNaN;
   double log_score = kNaN;  // nats; finite or unknown
-  // What the errors exceed with probability kLevelRisk at most (estimator/protection_level.h).
+  // The errors exceed these with probability at most kLevelRisk (estimator/protection_level.h).
   double rotation_level_deg = kNaN, direction_level_deg = kNaN;
 
   bool HasCovariance() const { return kind != static_cast<int>(Kind::kNone); }
   bool IsSingular() const { return kind == static_cast<int>(Kind::kSingular); }
 };
 
-// Of an answer that was judged (answer_check.h). `truth` and the bounds of `severity` may be unknown; `nees`
-// is the answer's (NaN: unknown).
+// For a checked answer (answer_check.h). `truth` and the bounds in `severity` may be unknown. `nees` is that
+// of the answer (NaN: unknown).
 StatedDensity DescribeStatedDensity(const MotionEstimate& estimate, const Truth& truth,
                                     const Severity& severity, double nees);
 

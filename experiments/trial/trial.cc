@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-// Whether the status comes with a rotation, or a whole motion, that is known to be one.
+// Returns whether the status comes with a valid motion, or at least a valid rotation.
 bool HasMotion(MotionStatus status) {
   return status == MotionStatus::kOk || status == MotionStatus::kInvalidCovariance;
 }
@@ -20,15 +20,15 @@ bool HasRotation(MotionStatus status) {
   return HasMotion(status) || status == MotionStatus::kDirectionNotObservable;
 }
 
-// An answer that is not valid covers nothing. The truth's own error adds to the estimate's: the two are
-// independent.
+// An invalid answer covers nothing. The errors of truth and estimate are independent, so their covariances
+// add.
 double ComputeNees(const MotionEstimate& estimate, const Truth& truth) {
   if (estimate.status != MotionStatus::kOk) return kInfinity;
   const RelativePose& pose = estimate.cam2_from_cam1;
   Matrix5d covariance = estimate.pose_cov;
   if (truth.sd) covariance += truth.sd->CovarianceAt(pose);
   const double nees = NormalizedErrorSquared(LocalCoordinates(pose, *truth.cam2_from_cam1_true), covariance);
-  return std::isnan(nees) ? kInfinity : nees;  // beyond the range of numbers: Sigma as good as zero
+  return std::isnan(nees) ? kInfinity : nees;  // overflow: Sigma is practically zero
 }
 
 void ScoreMotion(const MotionEstimate& estimate, const Truth& truth, TrialRecord* record) {
@@ -57,7 +57,7 @@ void ScoreInliers(const MotionEstimate& estimate, const Truth& truth, TrialRecor
   if (num_true > 0) record->inlier_recall = 1.0 * num_found / num_true;
 }
 
-// NaN without probabilities or without the truth.
+// NaN if there are no probabilities or no true labels.
 double BrierOfInliers(const MotionEstimate& estimate, const Truth& truth) {
   const size_t n = estimate.inlier_probabilities.size();
   if (n == 0 || truth.is_inlier_true.size() != n) return kNaN;
@@ -158,7 +158,7 @@ TrialResult RunTrial(const StudyPlan& plan, const Condition& condition, std::uin
   result.estimates.resize(estimators.size());
   result.records.resize(estimators.size());
   for (size_t turn = 0; turn < estimators.size(); ++turn) {
-    // Whoever is first finds the problem in no cache, so that each is in its turn.
+    // The first estimator finds the problem in no cache, so the estimators take turns at being first.
     const size_t e = (turn + trial) % estimators.size();
     RandomStream sampling_rng = StreamFor(name, StreamPurpose::kSampling);
     const double start = ThreadSeconds();

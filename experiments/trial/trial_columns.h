@@ -1,4 +1,4 @@
-// The columns of the tables problems and trials, each described once, beside the field that holds it.
+// The columns of the tables `problems` and `trials`, each with the field that it holds.
 #pragma once
 
 #include <fmt/format.h>
@@ -58,7 +58,7 @@ void VisitDensityColumns(Density& density, Visitor&& visit) {
         density.direction_level_deg);
 }
 
-// Calls `visit` with the StoredColumn and the field of each column, in the file's order.
+// Calls `visit` with the StoredColumn and the field of each column, in the order of the file.
 template <IsRecord<TrialRecord> Record, typename Visitor>
 void VisitColumns(Record& record, Visitor&& visit) {
   visit(kConditionColumn, record.condition);
@@ -82,7 +82,7 @@ void VisitColumns(Record& record, Visitor&& visit) {
   visit(StoredColumn{"inlier_precision", "share",
                      "true matches among the final inliers, without undetectable wrong ones", kFromZeroToOne},
         record.inlier_precision);
-  // Beyond 1 for an estimator that names a match twice.
+  // At most 1, because an answer that repeats an inlier is invalid (answer_check.h).
   visit(StoredColumn{"inlier_recall", "share", "final inliers among the true matches", kNotNegative},
         record.inlier_recall);
   visit(StoredColumn{"num_support", "matches", "n_j of the selected hypothesis"}, record.num_support);
@@ -152,7 +152,7 @@ void VisitColumns(Record& record, Visitor&& visit) {
   for (const SeverityColumn& column : kSeverityColumns) visit(column, record.severity.*column.field);
 }
 
-// A field with all its digits; a status by its name.
+// Formats a field: numbers with all digits, a status by its name.
 inline std::string FormatField(MotionStatus status) { return StatusName(status); }
 inline std::string FormatField(bool flag) { return flag ? "yes" : "no"; }
 template <typename Number>

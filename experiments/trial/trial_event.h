@@ -1,4 +1,4 @@
-// What may happen to an estimator in a trial, by name: the events whose rates are compared and asked for.
+// The events of a trial whose rates are reported and compared, by name.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ struct TrialEvent {
   bool (*has_happened)(const TrialRecord&, const FailureBounds&);
   bool needs_truth;
 
-  // Whether the record says if it has happened: not of a trial that does not count (IsCounted), nor, if it
-  // needs the truth, of one that is not scored.
+  // Returns whether the record determines if the event has happened. The trial must count (IsCounted); for
+  // an event that needs the truth it must be scored.
   bool IsKnownFor(const TrialRecord& record) const {
     return needs_truth ? IsScored(record) : IsCounted(record);
   }

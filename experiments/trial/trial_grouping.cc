@@ -34,7 +34,7 @@ std::int64_t TrialGrouping::FindGroup(const Condition& condition, std::uint32_t 
     const auto pairs = static_cast<std::uint32_t>(condition.source->NumTrials(1));
     return MakeGroup(scenes_.at(*scene), is_new_condition ? 0 : trial % pairs);
   }
-  if (is_new_condition) {  // conditions of one draw differ in the factors alone
+  if (is_new_condition) {  // conditions of one draw differ only in the factors
     const std::optional<int> draw = FindDraw(plan_.factor_names, condition.levels);
     return MakeGroup(draw ? std::int64_t{*draw} : std::int64_t{condition.index}, 0);
   }

@@ -1,4 +1,4 @@
-// Which trials depend on each other, and what a new problem is.
+// Groups trials that depend on each other. The groups follow from what counts as a new problem.
 #pragma once
 
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace rcme {
 
-// What a new problem is, and so what is independent.
+// What counts as a new problem, and therefore as independent.
 enum class NewProblem {
-  kTrial,      // another trial of these conditions, or another pair of these real scenes
-  kCondition,  // a trial of another condition: drawn as these were, or of another real scene
+  kTrial,      // another trial of the same conditions, or another pair of the same real scenes
+  kCondition,  // a trial of another condition of the population, or of another real scene
 };
 
-// The group of a trial: trials of different groups are independent. Of one group are at least the trials of
-// one scene, of one real pair (it comes again in each pass over a folder), and, where conditions are new, of
-// one draw or real scene. The plan outlives it. Throws InputError where conditions share their scenes and are
-// to be new.
+// Assigns trials to groups; trials of different groups are independent. Trials are in one group if they
+// share a scene or a real pair (which each pass over a folder repeats) and, with kCondition, if they share a
+// draw or a real scene. Throws InputError if conditions are to be new but share their scenes. The plan must
+// outlive this object.
 class TrialGrouping {
  public:
   TrialGrouping(const StudyPlan& plan, NewProblem new_problem);
@@ -30,10 +30,10 @@ class TrialGrouping {
   std::map<std::string, std::int64_t> scenes_;
 };
 
-// Of a population of conditions, and of several real scenes: another one; otherwise another trial.
+// Returns kCondition for a population and for several real scenes, otherwise kTrial.
 NewProblem UsualNewProblem(const StudyPlan& plan);
 
-// Whether pairs are of real scenes, whose images they share.
+// Returns whether the plan has pairs of real scenes; pairs of one scene share images.
 bool HasRealScenes(const StudyPlan& plan);
 
 }  // namespace rcme

@@ -20,7 +20,7 @@ double AccuracyUpTo10(double error_deg) {
   return num_reached / 10.0;
 }
 
-// NaN where its truth is not known. A truth without a direction is judged by the rotation alone.
+// NaN if the truth is not known. If only the direction's truth is unknown, kMaxError is the rotation error.
 double ErrorDeg(const TrialRecord& record, Quantity quantity) {
   if (record.status != MotionStatus::kOk) return std::numeric_limits<double>::infinity();
   if (quantity == Quantity::kRotationError) return record.rotation_error_deg;
@@ -28,7 +28,7 @@ double ErrorDeg(const TrialRecord& record, Quantity quantity) {
   return std::fmax(record.rotation_error_deg, record.direction_error_deg);
 }
 
-// The measures, then the same without refusals.
+// Returns the measures, then the same without refusals.
 std::vector<TrialMeasure> WithAnswered(const std::vector<TrialMeasure>& of_all) {
   std::vector<TrialMeasure> measures;
   for (TrialMeasure measure : of_all) {

@@ -1,18 +1,18 @@
-// The field's measures of a motion's error: what each trial contributes, by name. All are made of one error,
-// the greater of the rotation's and the direction's, or of one of these, in degrees.
+// The usual measures of a motion's error, by name, and what each trial contributes to them. All use one
+// error in degrees: that of the rotation, that of the direction, or the greater of the two.
 //
-//   AUC at t mean over trials of max(0, 1 - error / t): the area under the recall curve (the share of trials
-//            with an error of at most u, over u) from 0 to t, divided by t; exactly, where published code
-//            often joins the points of the curve by straight lines.
-//   mAA(10)  mean over the thresholds 1, 2, ..., 10 degrees of the share of trials with an error of at most
-//            that, as in the image-matching benchmark (Jin et al. 2021); elsewhere a mean of AUCs is called
-//            so.
+//   AUC at t  mean over trials of max(0, 1 - error / t). This is the area under the recall curve (the share
+//             of trials with an error of at most u, as a function of u) from 0 to t, divided by t. It is
+//             exact; published code often joins the points of the curve by straight lines.
+//   mAA(10)   mean over the thresholds 1, 2, ..., 10 degrees of the share of trials with an error of at most
+//             the threshold, as in the image-matching benchmark (Jin et al. 2021). Others use the name for a
+//             mean of AUCs.
 //
-// The direction's error is that of the vector, 0 to 180 degrees: a motion in the opposite direction is wrong,
-// while tables of learned matchers mostly take the better of t and -t.
+// The direction error is the angle between the vectors, 0 to 180 degrees, so the opposite direction is
+// wrong. Most tables of learned matchers use the better of t and -t.
 //
-// A refusal and an answer that is not valid have an infinite error, and so score 0. A measure with the suffix
-// _answered leaves refusals out (an answer that is not valid stays); both leave out what is not scored.
+// Refusals and invalid answers have an infinite error and score 0. A measure with the suffix _answered
+// leaves out refusals but keeps invalid answers. All measures leave out trials that are not scored.
 #pragma once
 
 #include <optional>
@@ -31,14 +31,14 @@ struct TrialMeasure {
   double (*score)(double max_error_deg) = nullptr;  // in [0, 1]; for Quantity::kScore
   bool leaves_out_refusals = false;
 
-  // What the trial contributes: a score, or an error (deg). Nothing where the trial is not among those the
-  // measure is about.
+  // Returns what the trial contributes: a score, or an error in degrees. Nothing if the measure leaves the
+  // trial out.
   std::optional<double> Of(const TrialRecord& record) const;
 };
 
-// auc_5_deg, ..., maa_10_deg, then the same _answered: their means are given.
+// Measures that are averaged: auc_5_deg, ..., maa_10_deg, then the same with _answered.
 const std::vector<TrialMeasure>& TrialScores();
-// rotation_error_median_deg, ..., then the same _answered: their medians are given.
+// Measures whose median is reported: rotation_error_median_deg, ..., then the same with _answered.
 const std::vector<TrialMeasure>& TrialErrors();
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// How a trial ended for one estimator: the words for it, once for every table, file and page.
+// How a trial ended for one estimator, and the names of the outcomes for all tables, files and pages.
 #pragma once
 
 #include <string>
@@ -7,16 +7,16 @@
 
 namespace rcme {
 
-// kNotScored: the truth is not known or in doubt, or the trial was not simulated.
+// kNotScored: the truth is unknown or in doubt, or the trial was not simulated.
 enum class TrialOutcome { kSuccess, kFailure, kRefusal, kNotScored };
 
 TrialOutcome ClassifyOutcome(const TrialRecord& record, const FailureBounds& bounds);
 
-// "success", "failure", "refusal", "not_scored".
+// Returns "success", "failure", "refusal" or "not_scored".
 const char* Name(TrialOutcome outcome);
 
-// The same with the reason, where there is one: the status in the place of "refusal", of "failure" where
-// the answer is not valid, and of "not_scored" where there was no problem, or its truth is in doubt.
+// Returns the status, which names the reason of a refusal, an invalid answer, or a trial without a usable
+// truth. For status ok: "success", "failure" or "not_scored".
 std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds);
 
 }  // namespace rcme
