@@ -16,7 +16,7 @@ struct Timed {
   double effort, ms;
 };
 
-// The estimator with another effort; nothing if its options do not allow that.
+// Returns the estimator with another effort; nothing if its options do not allow it.
 std::optional<EstimatorSpec> WithEffort(EstimatorSpec spec, const std::string& option, double effort) {
   try {
     SetOptions(&spec, {{option, std::to_string(static_cast<std::int64_t>(effort))}});
@@ -29,13 +29,14 @@ std::optional<EstimatorSpec> WithEffort(EstimatorSpec spec, const std::string& o
 
 double Round(double effort) { return std::max(1.0, std::round(effort)); }
 
-// Where the line through two points in logarithms takes `ms`, at least a tenth of the bracket from its ends.
+// Returns the effort at which a line through two points, in logarithms, takes `ms`; at least a tenth of the
+// bracket away from its ends.
 double Between(const Timed& less, const Timed& more, double ms) {
   const double share = std::log(ms / less.ms) / std::log(more.ms / less.ms);
   return less.effort * std::pow(more.effort / less.effort, std::clamp(share, 0.1, 0.9));
 }
 
-// The next effort to try; that of one of the points if there is none between them.
+// Returns the next effort to try. It equals that of a known point if no effort lies between the two.
 double NextEffort(const std::optional<Timed>& less, const std::optional<Timed>& more, double ms) {
   if (less && more) return Round(Between(*less, *more, ms));
   if (less) return Round(less->effort * std::clamp(1.1 * ms / less->ms, 2.0, 16.0));
@@ -79,7 +80,7 @@ FoundEffort FindEffort(const EstimatorSpec& given, const std::vector<TimedProble
   found.spec.budget_ms.reset();
   if (!effort) return found;
   double next = std::stod(FindParameter(model->Parameters(), effort->option).Value());
-  std::optional<Timed> less, more;  // the nearest efforts on either side of the time
+  std::optional<Timed> less, more;  // the nearest efforts that take less and more than the time
   const auto end_with = [&](EffortEnd end) {
     found.end = end;
     if (end == EffortEnd::kReached) found.spec.budget_ms = time_ms;

@@ -1,4 +1,5 @@
-// Equal time: the effort at which an estimator takes a stated time on this machine.
+// Finds the effort at which an estimator takes a given time on this machine, to compare estimators at equal
+// time.
 #pragma once
 
 #include <cstdint>
@@ -11,37 +12,38 @@
 
 namespace rcme {
 
-// A problem with the name of its trial, which names the random stream of the call.
+// A problem and the name of its trial, which names the random stream of the call.
 struct TimedProblem {
   MotionProblem problem;
   StreamName name;
 };
 
-// `per_condition` trials of every condition, from `first` on; of draws those that can be simulated. Throws
-// InputError if there is none.
+// Makes trials first, ..., first + per_condition - 1 of every condition; trials of draws that cannot be
+// simulated are left out. Throws InputError if none is left.
 std::vector<TimedProblem> TimedProblems(const StudyPlan& plan, std::uint32_t first,
                                         std::uint32_t per_condition);
 
-// The processor times of a call on each problem, ms, by one thread.
+// Measures the processor time (ms) of one call on each problem, in one thread.
 Moments TimeCalls(const EstimatorSpec& spec, const std::vector<TimedProblem>& problems);
 
 enum class EffortEnd {
-  kReached,     // within kTimeTolerance of the time
+  kReached,     // within kTimeTolerance of the time, or no other effort lies between the two nearest
   kNoEffort,    // no option sets how much work a call does
-  kTooSlow,     // the least effort takes longer
-  kOwnRule,     // more effort does not take longer: the estimator stops by its own rule
-  kAtTheLimit,  // the greatest effort that its option allows takes less
+  kTooSlow,     // even the least effort takes longer
+  kOwnRule,     // more effort does not take longer, because the estimator stops by its own rule
+  kAtTheLimit,  // the greatest effort that the option allows takes less time
 };
 inline constexpr double kTimeTolerance = 0.03;
 
 struct FoundEffort {
   EffortEnd end = EffortEnd::kNoEffort;
-  EstimatorSpec spec;  // with the effort set; its budget_ms is set where the time is reached
+  EstimatorSpec spec;  // with the effort set; kReached also sets budget_ms
   std::int64_t effort = 0;
 };
 
-// Searches the effort whose mean time over the problems is `time_ms`, to a few percent: by the secant in
-// logarithms within a bracket. Times differ from run to run, and so may the effort in its last digits.
+// Searches the effort whose mean time over the problems is `time_ms`, within kTimeTolerance, by the secant
+// method in logarithms within a bracket. Times vary from run to run, so the last digits of the effort may
+// vary too.
 FoundEffort FindEffort(const EstimatorSpec& spec, const std::vector<TimedProblem>& problems, double time_ms);
 
 }  // namespace rcme

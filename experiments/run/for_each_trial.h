@@ -1,4 +1,4 @@
-// The same trials of every condition of a plan.
+// Runs the same trial numbers of every condition of a plan.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,12 @@
 
 namespace rcme {
 
-// `index` counts from 0; `trials.end - trials.first` of them are of each condition.
+// `index` counts from 0; each condition has `trials.end - trials.first` consecutive indices.
 using TrialWork = std::function<void(const Condition& condition, std::uint32_t trial, std::int64_t index)>;
 
-// Calls `work` for each, in the plan's order where there is one thread, as inside an item of long work; from
-// several at once where `num_threads` (0: one per core) is another number: then one trial of every condition
-// after the other, as the first trial of a condition finds its baseline, which its others wait for. A request
-// to stop ends it, as Stopped.
+// Calls `work` for each trial. With one thread, the order is that of the plan. With several (`num_threads`;
+// 0: one per core), all conditions take turns, because the first trial of a condition searches its baseline
+// while the condition's other trials wait. A stop request ends it with Stopped.
 void ForEachTrial(const StudyPlan& plan, TrialRange trials, const TrialWork& work, int num_threads = 1);
 
 }  // namespace rcme

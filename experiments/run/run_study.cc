@@ -10,7 +10,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Collects the records of finished trials; from time to time one thread writes them, while the others go on.
+// Collects the records of finished trials. From time to time one thread writes them while the others go on.
 class RecordBuffer : public TrialKeeper {
  public:
   explicit RecordBuffer(ResultStore* store) : store_(store) {}
@@ -33,7 +33,7 @@ class RecordBuffer : public TrialKeeper {
     }
     std::unique_lock writing(writing_mutex_, std::try_to_lock);
     if (!writing && num_waiting < kMaxWaiting) return;  // another thread writes
-    if (!writing) writing.lock();                       // ... but not fast enough
+    if (!writing) writing.lock();                       // the other thread is not fast enough
     Write();
   }
 
@@ -67,10 +67,10 @@ class RecordBuffer : public TrialKeeper {
   };
 
   ResultStore* store_;
-  std::mutex waiting_mutex_;  // of waiting_ and next_write_
+  std::mutex waiting_mutex_;  // guards waiting_ and next_write_
   Records waiting_;
   Clock::time_point next_write_ = Clock::now() + kWriteInterval;
-  std::mutex writing_mutex_;  // of written_
+  std::mutex writing_mutex_;  // guards written_
   Records written_;
 };
 

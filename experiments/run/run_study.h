@@ -5,7 +5,7 @@
 
 namespace rcme {
 
-// RunTrials, of which the store keeps every record.
+// RunTrials with a store that keeps every record.
 RunReport RunStudy(const StudyPlan& plan, int num_threads, ResultStore* store, const Shard& shard = {});
 
 }  // namespace rcme

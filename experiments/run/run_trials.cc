@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-// The trials that a run has to compute, numbered from 0 in the plan's order.
+// The trials that a run still has to compute, numbered from 0 in the plan's order.
 class TrialsToRun {
  public:
   TrialsToRun(const StudyPlan& plan, const Shard& shard, TrialKeeper* keeper) {
@@ -27,7 +27,7 @@ class TrialsToRun {
     }
   }
 
-  std::int64_t num_trials() const { return num_trials_; }  // with those that are kept
+  std::int64_t num_trials() const { return num_trials_; }  // with those kept before
   std::int64_t num_missing() const { return num_missing_; }
   std::pair<const Condition*, std::uint32_t> At(std::int64_t index) const {
     const Missing& range = *std::prev(std::ranges::upper_bound(missing_, index, {}, &Missing::first_index));
@@ -36,7 +36,7 @@ class TrialsToRun {
   }
 
  private:
-  struct Missing {  // a range of them
+  struct Missing {  // a range of missing trials
     std::int64_t first_index = 0;
     std::uint32_t first_place = 0;  // in the shard
     ShardTrials shard;

@@ -1,4 +1,4 @@
-// The one way to run the trials of a study, whatever is kept of them.
+// Runs the trials of a study, whatever is kept of them.
 #pragma once
 
 #include <cstdint>
@@ -10,15 +10,15 @@
 namespace rcme {
 
 struct RunReport {
-  std::int64_t num_trials = 0;   // of the study, or of the shard
-  std::int64_t num_run_now = 0;  // the others were kept already
+  std::int64_t num_trials = 0;   // of the study or the shard
+  std::int64_t num_run_now = 0;  // the others had been kept before
   double seconds = 0.0;
 };
 
-// Runs every trial of the plan, or of one shard of it, that is not kept yet, on `num_threads` threads (0: one
+// Runs every trial of the plan, or of one shard, that has not been kept, on `num_threads` threads (0: one
 // per core), and shows progress. The records do not depend on the number of threads or on the order in which
-// trials end. Memory does not grow with the number of trials. An error or Stopped ends it; the trials before
-// are kept.
+// trials finish. Memory does not grow with the number of trials. After an error or Stopped, the trials
+// finished so far are kept.
 RunReport RunTrials(const StudyPlan& plan, const Shard& shard, int num_threads, TrialKeeper* keeper);
 
 }  // namespace rcme

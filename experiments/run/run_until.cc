@@ -17,16 +17,15 @@ constexpr std::int64_t kFirstLook = 100;
 
 std::int64_t NextLook(std::int64_t num_trials) { return num_trials + num_trials / 2; }
 
-// How far an interval is from the target: at most 1 where it is reached.
+// The half width relative to the allowed one: at most 1 if the target is reached.
 double Excess(const PrecisionTarget& target, double rate, const Interval& interval) {
   const double half_width = 0.5 * (interval.upper - interval.lower);
   const double allowed =
       target.kind == PrecisionTarget::Kind::kHalfWidth ? target.value : target.value * rate;
-  return half_width / allowed;  // infinite for a relative target where nothing has happened yet
+  return half_width / allowed;  // infinite for a relative target before the first event
 }
 
-// The first `num_trials` trials of the condition, exactly: what a run that was cut off has beyond them is
-// left out.
+// Evaluates exactly the first `num_trials` trials of the condition. An interrupted run may have more.
 CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64_t num_trials,
                    const UntilOptions& options, const ResultStore& store) {
   std::vector<std::int64_t> num_events(plan.estimators.size(), 0);
@@ -51,7 +50,7 @@ CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64
   worst.condition = condition.index;
   worst.num_trials = num_trials;
   double worst_excess = -1.0;
-  if (num_simulated == 0) num_events.clear();  // nothing to wait for
+  if (num_simulated == 0) num_events.clear();  // more trials would not help
   for (size_t e = 0; e < num_events.size(); ++e) {
     const double rate = static_cast<double>(num_events[e]) / static_cast<double>(num_simulated);
     const Interval interval = ConfidenceSequence(num_events[e], num_simulated);
@@ -107,7 +106,7 @@ StudyPlan WithoutTrials(StudyPlan plan) {
   return plan;
 }
 
-// Every open condition to `num_trials`.
+// Sets the number of trials of every open condition.
 void Grow(const std::vector<std::uint32_t>& open, std::int64_t num_trials, StudyPlan* growing) {
   for (const std::uint32_t c : open) growing->conditions[c].num_trials = static_cast<int>(num_trials);
   PrintMessage("{} of {} conditions to {} trials each\n", open.size(), growing->conditions.size(),

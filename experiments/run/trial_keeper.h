@@ -12,18 +12,17 @@
 
 namespace rcme {
 
-// Where a run keeps what its trials give: every record (run/run_study.h), or counts
-// (statistics/count_study.h).
+// Keeps the results of a run's trials: every record (run/run_study.h), or counts (statistics/count_study.h).
 class TrialKeeper : public ItemKeeper {
  public:
-  // Those of the first `num_trials` trials of a condition that the shard has and nobody has kept yet, by
-  // their place in the shard, ascending.
+  // Returns which of the first `num_trials` trials of a condition belong to the shard and have not been
+  // kept, as ascending places in the shard.
   virtual std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials,
                                                 const ShardTrials& shard) = 0;
-  // Before the first of them is kept. Returns a sentence of warning if those that are there are of another
-  // origin, else nothing.
+  // Call this before the first new trial is kept. Returns a warning if kept trials have another origin, else
+  // an empty text.
   virtual std::string NoteOrigin(const TrialOrigin& origin) = 0;
-  // Any thread may call it.
+  // May be called from any thread.
   virtual void Keep(const TrialResult& result) = 0;
 };
 

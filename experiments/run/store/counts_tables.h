@@ -1,5 +1,5 @@
-// The tables of a run that keeps counts in place of trials (docs/result_file.md), as texts: what they mean is
-// known to statistics/summary_cell.h.
+// The tables of a run that keeps counts instead of trials (docs/result_file.md), as texts.
+// statistics/summary_cell.h interprets them.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct CountedQuantity {
   bool operator==(const CountedQuantity&) const = default;
 };
 
-// Of one condition.
+// The counts of one condition.
 struct StoredCounts {
   std::vector<CountedPlaces> places;        // by shard
   std::vector<CountedQuantity> quantities;  // by estimator and quantity
@@ -33,10 +33,10 @@ struct StoredCounts {
   bool operator==(const StoredCounts&) const = default;
 };
 
-// Every condition of the file. Throws Damage.
+// Reads the counts of every condition. Throws Damage.
 std::vector<StoredCounts> ReadStoredCounts(const ResultFile& file);
 
-// In the place of what the file has of the condition, in a transaction of the caller's.
+// Replaces the counts of a condition in the file, within a transaction of the caller.
 void WriteStoredCounts(ResultFile* file, std::uint32_t condition, const StoredCounts& counts);
 
 }  // namespace rcme

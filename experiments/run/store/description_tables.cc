@@ -17,7 +17,8 @@ namespace {
 constexpr const char *kChecksum = "checksum", *kRuleChecksum = "stopping_rule_checksum";
 constexpr std::int64_t kMaxRetriedTrials = std::int64_t{1} << 40;  // far more than any run computes
 
-// Every row of the tables but the checksum's, column by column: a whole number as its digits.
+// The checksum of every row of the tables, except its own, column by column. Whole numbers enter as their
+// digits.
 std::string ChecksumOfRows(SQLite::Database& database) {
   std::vector<std::string> texts;
   for (const ResultTable& table : ResultTables()) {
@@ -33,7 +34,7 @@ std::string ChecksumOfRows(SQLite::Database& database) {
                                   : TextIn(column, table.name.c_str()));
       }
     }
-    texts.push_back(table.name);  // which rows are whose
+    texts.push_back(table.name);  // separates the tables
   }
   return fmt::format("{:08x}", ComputeChecksum(texts));
 }
@@ -48,12 +49,12 @@ void Insert(SQLite::Database& database, const char* table, const Values&... valu
   statement.exec();
 }
 
-// Its own, so that it is known of a file whose description is damaged elsewhere.
+// The stopping rule has its own checksum, so it can be recovered if the description is damaged elsewhere.
 std::string ChecksumOfStoppingRule(const std::string& identity, const std::string& rule) {
   return fmt::format("{:08x}", ComputeChecksum({identity, rule}));
 }
 
-// The rows of the table `run` but the checksum.
+// Returns the rows of the table `run` except the checksum.
 std::map<std::string, std::string> ListRunValues(const RunDescription& run) {
   std::map<std::string, std::string> values = {
       {"format", kResultFormat},
@@ -82,7 +83,7 @@ std::map<std::string, std::string> ListRunValues(const RunDescription& run) {
   return values;
 }
 
-// The table `run`, every key of which there has to be but those that are newer than its format.
+// The rows of the table `run`. Every key must exist unless it is newer than the format.
 class RunValues {
  public:
   explicit RunValues(SQLite::Database& database) {
@@ -122,7 +123,7 @@ class RunValues {
   std::map<std::string, std::string> values_;
 };
 
-// Whoever made the file, nothing of it is a command to a terminal, and no name is of two lines.
+// No text may act on a terminal, and no name may have two lines, whoever made the file.
 void CheckTexts(const RunDescription& run) {
   const auto check_line = [](const std::string& text, const char* table) {
     if (FindNotInLine(text) != std::string::npos)
@@ -181,13 +182,13 @@ RunDescription ReadRun(SQLite::Database& database) {
   return run;
 }
 
-// The number in the first column has to be that of the row.
+// Throws Damage unless the number in the first column is that of the row.
 void CheckNumber(SQLite::Statement& row, const char* table, size_t number) {
   if (IntegerIn(row.getColumn(0), table) != static_cast<std::int64_t>(number))
     throw Damage(fmt::format("table {} lacks row {}", table, number));
 }
 
-// Calls `visit` for the rows of a table of which the first column is their number.
+// Calls `visit` for the rows of a table whose first column is the row's number.
 template <typename Visit>
 void ForEachNumbered(SQLite::Database& database, const char* table, Visit visit) {
   SQLite::Statement row(database, fmt::format("SELECT * FROM {} ORDER BY 1", table));

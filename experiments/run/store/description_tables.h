@@ -10,17 +10,17 @@
 
 namespace rcme {
 
-// Throws Damage: a row that is missing or not possible, or another checksum than that of the rows.
+// Throws Damage if a row is missing or impossible, or if the checksum does not match the rows.
 RunDescription ReadDescription(SQLite::Database& database);
 
-// In the place of all rows that the tables have.
+// Replaces all rows of the tables.
 void WriteDescription(SQLite::Database& database, const RunDescription& run);
 
-// One value of the table `run`, unchecked, for what can be saved; empty where there is none. Throws Damage.
+// Returns one unchecked value of the table `run`, for recovery; empty if there is none. Throws Damage.
 std::string UncheckedRunValue(SQLite::Database& database, const std::string& key);
 
-// What stopped the run, for what can be saved where the description is damaged elsewhere; nothing where this
-// is damaged too, is of another study, or was not protected yet. Throws Damage.
+// Returns the stopping rule of the run, for recovery when the description is damaged elsewhere. Nothing if
+// the rule is damaged too, is of another study, or has no checksum because the file is older. Throws Damage.
 std::optional<std::string> SoundStoppingRule(SQLite::Database& database, const std::string& identity);
 
 }  // namespace rcme

@@ -17,7 +17,7 @@
 namespace rcme {
 namespace {
 
-// Calls `visit` for every trial of a part, all of which are checked.
+// Calls `visit` for every trial of a part, and checks each.
 void ReadPart(const std::string& path, const std::string& identity,
               const std::function<void(const StoredTrial&)>& visit) {
   const std::unique_ptr<ResultFile> part = OpenPart(path);
@@ -32,7 +32,8 @@ void ReadPart(const std::string& path, const std::string& identity,
   });
 }
 
-// Field by field as text, the time aside; the estimator's number leads.
+// The fields of a trial as text, without the time. Each record begins with the numbers of condition, trial
+// and estimator.
 Settings ListFields(const StoredTrial& trial) {
   Settings fields;
   const auto add = [&](const StoredColumn& column, const auto& field) {
@@ -54,7 +55,7 @@ void CheckEqual(const std::string& path, const StoredTrial& here, const StoredTr
                   path, here.problem.condition, here.problem.trial, in_a->first, in_a->second, in_b->second));
 }
 
-// What is missing of the trials asked for, and whose shards' they are.
+// Notes which planned trials are missing, and to which shards they belong.
 void NoteMissing(const TrialsHeld& held, const PartDescriptions& descriptions, MergeReport* report) {
   report->num_trials = held.num_trials();
   report->num_shards = descriptions.num_shards();
@@ -123,7 +124,7 @@ MergeReport CheckParts(const std::vector<std::string>& parts, const MergeOptions
   report.run = descriptions.Merged();
   TrialsHeld held;
   for (const std::string& path : parts) {
-    TrialsHeld of_part;  // none of them count if it is damaged at its end
+    TrialsHeld of_part;  // dropped if the part is damaged at its end
     try {
       ReadPart(path, report.run.identity,
                [&](const StoredTrial& trial) { of_part.Add(trial.problem.condition, trial.problem.trial); });

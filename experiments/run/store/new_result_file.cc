@@ -16,7 +16,7 @@ NewResultFile::NewResultFile(const std::string& path, const RunDescription& run)
   pending_.emplace(path);
   NamingFile(path_, [&] {
     file_.emplace(pending_->part(), SQLite::OPEN_READWRITE, FileLocks::kNone);
-    // No other process reads it, and after a crash it is made again.
+    // Needs no durability: no other process reads it, and after a crash it is made again.
     file_->database.exec(
         "PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF; PRAGMA cache_size = -262144");
     file_->Create(run);

@@ -8,16 +8,17 @@
 
 namespace rcme {
 
-// A result file in the making (new_result_file.h) with trials of other files, in one transaction: the trials
-// of a part lie on almost every page, which would be written again with each.
+// A new result file (new_result_file.h) with trials of other files, written in one transaction. The trials
+// of a part are spread over almost every page, so a transaction per part would write each page again and
+// again.
 class NewTrials {
  public:
   NewTrials(const std::string& path, const RunDescription& run);
 
   void Add(const StoredTrial& trial);
-  // One that was added.
+  // Reads a trial that was added.
   StoredTrial Read(std::uint32_t condition, std::uint32_t trial);
-  // With this description at last.
+  // Writes this description and moves the file to its path.
   void Finish(const RunDescription& run);
 
  private:

@@ -13,8 +13,8 @@
 namespace rcme {
 namespace {
 
-// The run as a plan asks for it, in a file that earlier runs have written to: what they asked for is still
-// asked for, and what they noted stays.
+// Describes the plan's run in a file of earlier runs: trials that these planned stay planned, and their
+// notes stay.
 RunDescription Continued(const RunDescription& earlier, const StudyPlan& plan) {
   RunDescription run = Describe(plan);
   if (earlier.trials > run.trials) {
@@ -43,13 +43,13 @@ RunDescription Requested(const StudyPlan& plan, const Shard& shard, Keep keep) {
   return run;
 }
 
-// What a file is of, and keeps.
+// Says what a file keeps, and of which shard.
 std::string DescribeHeld(const RunDescription& run) {
   return fmt::format("{} of {}", run.keeps_counts ? "counts" : "trials",
                      run.shard.empty() ? "the whole study" : "shard " + run.shard);
 }
 
-// Throws InputError if a file that holds trials is not continued by the run asked for.
+// Throws InputError unless the wanted run continues the file, which holds trials.
 void CheckIsThatRun(const ResultFile& file, const RunDescription& wanted) {
   const RunDescription& held = file.description;
   if (held.identity != wanted.identity) {
@@ -71,7 +71,7 @@ void CheckIsThatRun(const ResultFile& file, const RunDescription& wanted) {
   }
 }
 
-// Names separated by commas, with this one.
+// Adds a name to a list separated by commas, unless it is there.
 std::string WithName(const std::string& names, const std::string& name) {
   if (names.empty()) return name;
   const bool has_it = (", " + names + ",").find(", " + name + ",") != std::string::npos;
@@ -102,7 +102,7 @@ std::unique_ptr<ResultFile> OpenFileForRun(const std::string& path, const StudyP
   CheckPathToWrite(path);
   const RunDescription wanted = Requested(plan, shard, keep);
   auto file = std::make_unique<ResultFile>(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  file->database.exec(kTakeLock);  // now: a second run stops here
+  file->database.exec(kTakeLock);  // at once, so that a second run stops here
   if (file->IsNew()) {
     file->Create(wanted);
   } else {
@@ -111,7 +111,7 @@ std::unique_ptr<ResultFile> OpenFileForRun(const std::string& path, const StudyP
     file->CheckPages();
   }
   if (file->totals.NumTrials() > 0) CheckIsThatRun(*file, wanted);
-  // A file without a trial (its run failed at once) takes any study and any shard.
+  // A file without trials (its run failed at once) accepts any study and any shard.
   if (file->description.identity != wanted.identity || file->description.lock != wanted.lock ||
       DescribeHeld(file->description) != DescribeHeld(wanted)) {
     file->CreateAnew(wanted);

@@ -9,26 +9,27 @@
 
 namespace rcme {
 
-// A read-write connection that no other run shares.
+// Makes the connection exclusive, so no other run can use the file.
 inline constexpr const char* kTakeLock = "PRAGMA locking_mode = EXCLUSIVE; BEGIN IMMEDIATE; COMMIT";
 
-// Throws InputError where no result file can be.
+// Throws InputError if `path` cannot be a result file.
 void CheckPathToWrite(const std::string& path);
 
-// Throws Damage if a description is not that of its study.
+// Throws Damage if the numbers of conditions or estimators in a description are not those of its study.
 void CheckFits(const RunDescription& run, const StudyPlan& plan);
 
-// What a run keeps: every trial, or counts (counts_tables.h).
+// A run keeps every trial, or only counts (counts_tables.h).
 enum class Keep { kTrials, kCounts };
 
-// Opens the file of this plan's study and shard, or makes it, for one run alone; checks all of it but the
-// counts. What earlier runs asked for is still asked for. Errors are those of ResultFile, and InputError
-// where the path cannot be written or the file is of another study or shard, or keeps something else.
+// Opens the file of this plan's study and shard for this run alone, or makes it. Checks all of it except the
+// counts. If an earlier run planned more trials, they stay planned. Throws the errors of ResultFile, and
+// InputError if the path cannot be written, or if the file is of another study or shard or keeps something
+// else.
 std::unique_ptr<ResultFile> OpenFileForRun(const std::string& path, const StudyPlan& plan, const Shard& shard,
                                            Keep keep);
 
-// Notes in a description that trials of this origin follow. Returns a sentence of warning if there are trials
-// of another one, else nothing.
+// Adds the origin of the following trials to a description. Returns a warning if the file has trials of
+// another origin, else an empty text.
 std::string NoteOriginIn(RunDescription* run, const std::string& path, bool has_trials,
                          const TrialOrigin& origin);
 

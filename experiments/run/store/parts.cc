@@ -120,7 +120,7 @@ void PartDescriptions::AddOrigin(const ResultFile& part) {
   merged_.origin.instruction_set = JoinedNames(merged_.origin.instruction_set, origin.instruction_set);
 }
 
-// The words of the part that asked for most trials, its study's name and description too.
+// The texts, such as the study's name and description, come from the part that planned most trials.
 void PartDescriptions::AddAskedFor(const RunDescription& run) {
   std::vector<DescribedCondition> conditions = merged_.conditions;
   for (size_t c = 0; c < conditions.size(); ++c)

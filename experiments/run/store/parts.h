@@ -1,5 +1,5 @@
-// What is common to merging trials (merge_results.h) and counts: which parts belong together, and what is
-// said of the merge.
+// Common to merging trials (merge_results.h) and counts: which parts belong together, and the report of a
+// merge.
 #pragma once
 
 #include <cstdint>
@@ -13,41 +13,45 @@
 namespace rcme {
 
 struct MergeOptions {
-  // Parts of other instruction sets than the first one's are merged too.
+  // Allows parts of several instruction sets.
   bool are_instruction_sets_mixed = false;
 };
 
 struct MergeReport {
-  RunDescription run;            // of the whole
-  std::int64_t num_trials = 0;   // held by the parts together
-  std::int64_t num_twice = 0;    // read again from another part: they were equal
-  std::int64_t num_missing = 0;  // of those asked for; 0 under a stopping rule, which alone knows
-  std::uint32_t num_shards = 0;  // 0: the parts do not agree on it
-  std::vector<std::uint32_t> missing_shards;  // ascending: lost, not whole, or not among the parts
-  std::vector<std::string> unreadable;  // parts that could not be read, in words; their trials are missing
+  RunDescription run;           // of the whole
+  std::int64_t num_trials = 0;  // held by the parts together
+  std::int64_t num_twice = 0;   // found again in another part, and equal
+  // Planned but not held. 0 under a stopping rule, because the number is not planned.
+  std::int64_t num_missing = 0;
+  std::uint32_t num_shards = 0;  // 0: the parts disagree
+  // Ascending: shards with trials that are lost, not computed, or not among the parts.
+  std::vector<std::uint32_t> missing_shards;
+  // Messages about parts that could not be read; their trials are missing.
+  std::vector<std::string> unreadable;
 };
 
-// "1-3,7/64" of a merge that lacks trials; empty if none is missing, or no shards are known.
+// Returns the complete shards of a merge that lacks trials, such as "1-3,7/64". Empty if no trial is missing
+// or the shards are not known.
 std::string ShardsOfMerged(const MergeReport& report);
 
-// "3/64" -> 64; the whole: 1. Throws Damage.
+// Returns the number of shards: 64 for "3/64", 1 for a whole run. Throws Damage.
 std::uint32_t ReadNumShards(const RunDescription& run);
 
-// A part, open to be read, alone and without locks: its description is checked, its trials are not yet.
-// Throws InputError.
+// Opens a part for reading, without locks. Its description is checked, its trials are not yet. Throws
+// InputError.
 std::unique_ptr<ResultFile> OpenPart(const std::string& path);
 
-// The descriptions of the parts as one. What it makes does not depend on their order.
+// Combines the descriptions of parts. The result does not depend on their order.
 class PartDescriptions {
  public:
   explicit PartDescriptions(const MergeOptions& options) : options_(options) {}
 
-  // Throws InputError if the part does not belong to those before, and says what differs.
+  // Throws InputError if the part does not belong to those added before; the message says what differs.
   void Add(const ResultFile& part);
 
   bool IsEmpty() const { return first_path_.empty(); }
   std::int64_t num_trials() const { return num_trials_; }   // in all parts
-  std::uint32_t num_shards() const { return num_shards_; }  // 0: the parts do not agree on it
+  std::uint32_t num_shards() const { return num_shards_; }  // 0: the parts disagree
   RunDescription Merged() const;
 
  private:
@@ -62,7 +66,8 @@ class PartDescriptions {
   bool is_until_known_ = true;
 };
 
-// A part that cannot be read is an error, or where `unreadable` is given noted there and left aside.
+// Adds all parts. A part that cannot be read throws, or, if `unreadable` is given, is noted there and
+// skipped.
 PartDescriptions DescribeParts(const std::vector<std::string>& parts, const MergeOptions& options,
                                std::vector<std::string>* unreadable);
 

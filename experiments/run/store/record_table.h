@@ -1,5 +1,5 @@
-// The two tables of records, problems and trials: their SQL, writing and reading a row. Everything about them
-// follows from the columns of the records (trial_columns.h).
+// Reads and writes the tables of records, `problems` and `trials`. Everything follows from the columns of
+// the records (trial_columns.h).
 #pragma once
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 
 namespace rcme {
 
-// `kNumExtra` columns are no fields; they come last.
+// `kNumExtra` is the number of last columns that are not fields.
 template <typename Record>
 struct RecordTable;
 template <>
@@ -31,7 +31,7 @@ struct RecordTable<TrialRecord> {
   static constexpr size_t kNumExtra = 0;
 };
 
-// How the file stores a field.
+// Describes how the file stores a field.
 template <typename Field>
 ResultColumn DescribeColumn(const StoredColumn& column, const Field&) {
   const char* type = std::is_same_v<Field, double>         ? "REAL"
@@ -41,7 +41,7 @@ ResultColumn DescribeColumn(const StoredColumn& column, const Field&) {
   return {column.name, type, column.unit, column.meaning, may_be_null};
 }
 
-// The columns of the table but the extra ones.
+// Returns the columns of the table without the extra ones.
 template <typename Record>
 std::vector<ResultColumn> RecordColumns() {
   std::vector<ResultColumn> columns;
@@ -58,14 +58,14 @@ std::string InsertIntoRecordTable() {
   return fmt::format("INSERT INTO {} VALUES ({})", RecordTable<Record>::kName, fmt::join(places, ", "));
 }
 
-// `rest` begins with " WHERE" or " ORDER BY"; empty: all rows, in the table's own order.
+// `rest` begins with " WHERE"; empty: all rows. The rows are ordered by the key.
 template <typename Record>
 std::string SelectFromRecordTable(const std::string& rest = {}) {
   return fmt::format("SELECT * FROM {}{} ORDER BY {}", RecordTable<Record>::kName, rest,
                      RecordTable<Record>::kKey);
 }
 
-// Binds the fields; returns the number of the parameter after them.
+// Binds the fields and returns the number of the next parameter.
 template <typename Record>
 int BindFields(SQLite::Statement& statement, const Record& record) {
   int parameter = 1;
@@ -83,7 +83,7 @@ int BindFields(SQLite::Statement& statement, const Record& record) {
   return parameter;
 }
 
-// One field of a row.
+// Reads one field of a row.
 inline void ReadField(const SQLite::Column& column, const char* table, const ColumnRange& range,
                       double* field) {
   *field = std::numeric_limits<double>::quiet_NaN();
@@ -113,8 +113,8 @@ void ReadField(const SQLite::Column& column, const char* table, const ColumnRang
   *field = static_cast<Integer>(value);
 }
 
-// The record of the current row of SelectFromRecordTable. Throws Damage if a column is of the wrong type, out
-// of its range or, where a number is always known, NULL.
+// Reads the record in the current row of SelectFromRecordTable. Throws Damage if a column has a wrong type,
+// is out of range, or is NULL although its number is always known.
 template <typename Record>
 Record ReadRecord(SQLite::Statement& row) {
   Record record;

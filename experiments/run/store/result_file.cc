@@ -88,7 +88,7 @@ std::int64_t ResultFile::RemoveForRetry(const std::vector<MotionStatus>& statuse
   if (removed.empty()) return 0;
   RunDescription run = description;
   run.retried_trials += std::ssize(removed);
-  run.until_options.clear();  // they alone do not give these trials
+  run.until_options.clear();  // they would not produce the trials left in the file
   try {
     SQLite::Transaction change(database);
     for (const char* table : {"trials", "problems"}) {

@@ -1,4 +1,4 @@
-// A result file that is open: its tables, read and checked.
+// An open result file; its tables are checked as they are read.
 #pragma once
 
 #include <functional>
@@ -12,30 +12,31 @@
 
 namespace rcme {
 
-// Errors are SQLite::Exception and Damage, for NamingFile.
+// Throws SQLite::Exception and Damage; callers use NamingFile to translate them.
 class ResultFile {
  public:
   ResultFile(const std::string& path, int sqlite_flags, FileLocks locks = FileLocks::kUsed);
 
-  // A file that no one has written to, or one whose first run ended before it had made the tables.
+  // Returns whether nothing was ever written to the file, or its first run ended before it had made the
+  // tables.
   bool IsNew();
   void Create(const RunDescription& run);
-  // In place of all that the file holds.
+  // Replaces all content of the file.
   void CreateAnew(const RunDescription& run);
-  // Reads and checks everything but the trials.
+  // Reads and checks everything except the trials.
   void LoadDescription();
-  // Reads all trials, and so checks them. Shows progress.
+  // Checks all trials by reading them. Shows progress.
   void CheckTrials() const;
-  // Checks what SQLite would write over: its free pages and the trees that hold the tables.
+  // Checks what SQLite would overwrite: its free pages and the trees of the tables.
   void CheckPages();
 
   TrialFrame Frame() const;
   void SetDescription(const RunDescription& run);
-  // Takes out the whole trials in which an estimator ended with one of these statuses, and notes their number
-  // as trials that are run again. Returns it; where it is 0, nothing is written.
+  // Removes all trials in which an estimator has one of these statuses, and notes how many, to be run again.
+  // Returns their number; writes nothing if it is 0.
   std::int64_t RemoveForRetry(const std::vector<MotionStatus>& statuses);
-  // Every trial, or those of one condition; throws Damage at the first that is not sound, or at the end if
-  // they are not those that were counted.
+  // Calls `visit` for every trial, or for those of one condition. Throws Damage at the first damaged trial,
+  // or at the end if the trials do not match the totals.
   void ForEachTrial(std::optional<std::uint32_t> condition,
                     const std::function<void(const StoredTrial&)>& visit) const;
 

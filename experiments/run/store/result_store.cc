@@ -23,7 +23,7 @@ void CheckKeepsTrials(const ResultFile& file) {
       "{}: holds counts, not trials (--keep counts): `rcme summarize` and `rcme merge` read it", file.path));
 }
 
-// An InputError of `work` also says which program made the file.
+// Adds the program that made the file to an InputError of `work`.
 template <typename Work>
 auto NamingProgram(const RunDescription& run, Work work) {
   try {
@@ -59,7 +59,7 @@ ResultStore::~ResultStore() {
   try {
     connection_->writer->Commit();
   } catch (const SQLite::Exception&) {
-    // The transaction is rolled back; its trials will be run again on resume.
+    // The transaction is rolled back; resuming the run computes its trials again.
   }
 }
 
@@ -75,10 +75,10 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
 ResultStore ResultStore::OpenForReading(const std::string& path) {
   if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
   return NamingFile(path, [&] {
-    // Read-write where that is allowed: rolling back the journal of a run that was killed needs to write.
+    // Opened read-write if possible, because rolling back the journal of a killed run writes to the file.
     auto connection =
         std::make_unique<Connection>(std::make_unique<ResultFile>(path, SQLite::OPEN_READWRITE));
-    connection->file.database.exec("BEGIN");  // what is checked is what will be read, whoever writes
+    connection->file.database.exec("BEGIN");  // what is checked is what will be read, even if somebody writes
     connection->file.LoadDescription();
     CheckKeepsTrials(connection->file);
     return ResultStore(std::move(connection));

@@ -1,9 +1,9 @@
-// The raw trials of one run in one SQLite file, kept for good: summaries are made from them later, again and
-// again. docs/result_file.md has its tables.
+// The raw trials of one run in an SQLite file, which is kept; summaries are made from it whenever needed.
+// docs/result_file.md describes its tables.
 //
-// Opening a file checks its tables and what describes the run; a trial and its condition's total are checked
-// as they are read, so that no command takes a damaged file for a sound one. Damage is an InputError;
-// `rcme check` (salvage.h) says more.
+// Opening a file checks its tables and the description of the run. Trials and the totals of their conditions
+// are checked as they are read, so no command uses a damaged file unnoticed. Damage is an InputError; `rcme
+// check` (salvage.h) gives details.
 #pragma once
 
 #include <cstdint>
@@ -21,79 +21,78 @@
 
 namespace rcme {
 
-// Of the trials that this program computes.
+// Returns the origin of trials that this program computes.
 TrialOrigin ThisProgram();
 
-// One thread at a time may call it.
+// Not thread-safe.
 class ResultStore {
  public:
-  // Opens the file of this plan's study, or makes it; what earlier runs asked for is still asked for: the
-  // study keeps the greatest number of trials. Throws InputError if the path cannot be written, is no result
-  // file or a damaged one, is in use by another run, or holds another study (the message says what differs)
-  // or another shard of it.
+  // Opens the file of this plan's study, or makes it. If an earlier run planned more trials, they stay
+  // planned. Throws InputError if the path cannot be written, is not a result file or a damaged one, is in
+  // use by another run, or holds another study (the message says what differs) or another shard.
   static ResultStore OpenForRun(const std::string& path, const StudyPlan& plan, const Shard& shard = {});
-  // Opens an existing file to read, without a pass over its trials. Throws InputError if it is not a result
-  // file, or what describes its run is damaged.
+  // Opens an existing file for reading, without a pass over its trials. Throws InputError if it is not a
+  // result file or its description is damaged.
   static ResultStore OpenForReading(const std::string& path);
 
   ResultStore(ResultStore&&) noexcept;
-  ~ResultStore();  // commits what has been added
+  ~ResultStore();  // commits added trials
 
-  // What the file says of its run. A condition's trials are those that runs asked for, under a stopping rule
-  // those that it took; the options of --until are there as long as they alone give the trials in the file.
+  // Returns the description of the run. A condition's number of trials is the planned one; under a stopping
+  // rule, the number in the file. The options of --until are present only if they alone produce the trials
+  // in the file.
   RunDescription Description() const;
-  // The study in the file. Whoever made the file may have put commands into it (study/command_permission.h).
+  // Returns the study in the file. Its commands may come from anybody (study/command_permission.h).
   Study StoredStudy() const;
-  // That study made ready to run: needed to compute its trials again, not to read them. Throws InputError if
-  // its data (a folder of pairs) are gone or have changed, or for a command that nobody has allowed. Under a
-  // stopping rule the trials alone confirm how many there are: all are checked.
+  // Makes the stored study ready to run, which is needed to compute its trials again, not to read them.
+  // Throws InputError if its data (a folder of pairs) are missing or have changed, or if a command has not
+  // been allowed. Under a stopping rule it checks all trials, because only they confirm their number.
   StudyPlan Plan(const Study& stored, PlanEstimators estimators = PlanEstimators::kMade) const;
   StudyPlan Plan() const { return Plan(StoredStudy()); }
 
-  // Those of the first `num_trials` trials of a condition that the shard has and the file lacks, by their
-  // place in the shard, ascending. Checks all trials of a file that is read.
+  // Returns which of the first `num_trials` trials of a condition belong to the shard and are missing in the
+  // file, as ascending places in the shard. Checks all trials of a file opened for reading.
   std::vector<TrialRange> MissingTrials(std::uint32_t condition, std::uint32_t num_trials,
                                         const ShardTrials& shard = {});
 
-  // Of all conditions.
+  // The number of trials of all conditions.
   std::int64_t NumTrials() const;
 
-  // Adds whole trials, to each problem one record per estimator, in the problems' order; they reach the disk
-  // within about half a second, all records of a call or none. Throws InputError if a trial is there already,
-  // std::logic_error if it is not whole or not of the study.
+  // Adds whole trials: for each problem one record per estimator, in the order of the problems. They are on
+  // disk within about half a second, either all records of a call or none. Throws InputError if a trial
+  // exists already, std::logic_error if it is incomplete or not of the study.
   void Add(const std::vector<ProblemRecord>& problems, const std::vector<TrialRecord>& records);
-  // Writes what has been added.
+  // Writes all added trials to disk.
   void Commit();
 
-  // Takes out the trials in which an answer was missing in one of these ways, so that they are missing and
-  // run again, and notes their number (RunDescription::retried_trials), which it returns. Nothing is written
-  // where it is 0.
+  // Removes the trials in which an answer has one of these statuses, so that they are run again, and notes
+  // their number (RunDescription::retried_trials). Returns it; writes nothing if it is 0.
   std::int64_t RemoveForRetry(const std::vector<MotionStatus>& statuses);
 
-  // How many trials a condition has may depend on their outcomes (run_until.h). Noted before the first trial
-  // of such a run and for good: intervals that look once no longer hold.
+  // Notes permanently that the number of trials may depend on their outcomes (run_until.h), so intervals for
+  // a single look do not hold. Call this before the first trial of such a run.
   void NoteStoppingRule(const std::string& rule);
-  // Options of `rcme run` that alone give the trials in the file, `num_trials` in all.
+  // Notes the options with which a single `rcme run` computes exactly the trials in the file, `num_trials`
+  // in all.
   void NoteUntilOptions(const std::string& options, std::int64_t num_trials);
 
-  // Noted before trials are added. Returns a sentence of warning if trials in the file are of another program
-  // or instruction set, else nothing.
+  // Notes the origin of the trials to be added. Returns a warning if trials in the file come from another
+  // program or instruction set, else an empty text.
   std::string NoteOrigin(const TrialOrigin& origin);
 
-  // Reads all trials and so checks them, unless that has been done. Call this before you write anything while
-  // trials are still to be read: the functions below throw InputError at the first trial that is not sound,
-  // or at the end where trials are lost.
+  // Checks all trials by reading them, unless this has been done. Call it before you write output if you
+  // read trials later: the functions below throw InputError at the first damaged trial, or at the end if
+  // trials are lost.
   void CheckTrials() const;
 
-  // Calls `visit` for every record, ordered by condition, trial, estimator. Constant memory.
+  // Calls `visit` for every record, ordered by condition, trial and estimator, in constant memory.
   void ForEachRecord(const std::function<void(const TrialRecord&)>& visit) const;
-  // Calls `visit` for every trial, ordered by condition and trial; its records are ordered by estimator. Only
-  // the trials of one condition, if it is given. Reads on a thread of its own: `visit` calls no function of
-  // this store.
+  // Calls `visit` for every trial, ordered by condition and trial, with its records ordered by estimator;
+  // optionally only for one condition. Reads on a thread of its own, so `visit` must not call this store.
   void ForEachTrial(const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&)>& visit,
                     std::optional<std::uint32_t> condition = std::nullopt) const;
-  // The records of one trial, ordered by estimator. Where there is none all trials are checked, so that a
-  // lost one is not taken for one that was never run.
+  // Returns the records of one trial, ordered by estimator. If there are none, it checks all trials, so that
+  // a lost trial is not mistaken for one that was never run.
   std::vector<TrialRecord> ReadTrialRecords(std::uint32_t condition, std::uint32_t trial) const;
 
  private:

@@ -12,10 +12,10 @@
 namespace rcme {
 namespace {
 
-constexpr std::int64_t kEnd = std::int64_t{1} << 32;  // after the last trial there can be
+constexpr std::int64_t kEnd = std::int64_t{1} << 32;  // beyond the last possible trial
 constexpr size_t kMaxFindings = 5;
 
-// Whether `action` ends without damage; `note` gets a sentence about the damage.
+// Returns whether `action` ends without damage; `note` gets a message about the damage.
 template <typename Action, typename Note>
 bool IsUndamaged(Action action, Note note) {
   try {
@@ -29,8 +29,8 @@ bool IsUndamaged(Action action, Note note) {
   return false;
 }
 
-// Calls `visit` for the trials in [first, end) that the table of problems has of a condition, ascending or
-// descending ("ASC", "DESC"), at most `limit`. False: damage ended it.
+// Calls `visit` for at most `limit` trials of a condition in [first, end) in the table of problems,
+// ascending or descending ("ASC", "DESC"). Returns false if damage ended it.
 bool Scan(const SQLite::Database& database, std::uint32_t condition, std::int64_t first, std::int64_t end,
           const char* direction, std::int64_t limit, const std::function<void(std::int64_t)>& visit) {
   const auto scan = [&] {
@@ -42,7 +42,7 @@ bool Scan(const SQLite::Database& database, std::uint32_t condition, std::int64_
     query.bind(2, first);
     query.bind(3, end);
     query.bind(4, limit);
-    std::int64_t low = first, high = end;  // what is left to be seen
+    std::int64_t low = first, high = end;  // range not yet visited
     while (query.executeStep()) {
       const std::int64_t trial = IntegerIn(query.getColumn(0), "problems");
       if (trial < low || trial >= high) throw Damage("out of order");
@@ -53,7 +53,7 @@ bool Scan(const SQLite::Database& database, std::uint32_t condition, std::int64_
   return IsUndamaged(scan, [](const char*) {});
 }
 
-// The first trial from `first` on, kEnd if there is none; nothing if damage is in the way.
+// Returns the first trial at or after `first`, or kEnd if there is none; nothing if damage is in the way.
 std::optional<std::int64_t> FirstFrom(const SQLite::Database& database, std::uint32_t condition,
                                       std::int64_t first) {
   std::int64_t found = kEnd;
@@ -62,8 +62,9 @@ std::optional<std::int64_t> FirstFrom(const SQLite::Database& database, std::uin
   return is_undamaged ? std::optional(found) : std::nullopt;
 }
 
-// Calls `visit` for every trial of a condition that the table of problems still leads to, ascending. Damage
-// is passed over: the trials behind it are looked for in growing steps, those between from behind.
+// Calls `visit` for every trial of a condition that can be reached through the table of problems, ascending.
+// Behind a damaged place, the next readable trial is found in growing steps, and the trials between are read
+// backwards.
 void ForEachReachable(const SQLite::Database& database, std::uint32_t condition,
                       const std::function<void(std::int64_t)>& visit) {
   std::int64_t next = 0;

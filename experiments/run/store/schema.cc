@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-// The SQL of each table, word for word as the file keeps it.
+// Returns the SQL of each table, exactly as the file stores it.
 const std::map<std::string, std::string>& Tables() {
   static const std::map<std::string, std::string> tables = [] {
     std::map<std::string, std::string> sql;
@@ -33,7 +33,7 @@ std::string FormatIn(SQLite::Database& database) {
   return query.executeStep() && query.getColumn(0).isText() ? query.getColumn(0).getString() : std::string();
 }
 
-// "table trials", "view problems", ... with its SQL.
+// Returns the SQL of each entry of the file, by kind and name: "table trials", "view problems".
 std::map<std::string, std::string> ReadSchema(SQLite::Database& database) {
   std::map<std::string, std::string> entries;
   SQLite::Statement query(database, "SELECT type, name, sql FROM sqlite_schema");
@@ -44,7 +44,7 @@ std::map<std::string, std::string> ReadSchema(SQLite::Database& database) {
   return entries;
 }
 
-// A column of numbers that tell rows apart, as the tables of trials have it too.
+// A key column of integers, described as in the tables of trials.
 ResultColumn KeyColumn(const StoredColumn& column) {
   return {column.name, "INTEGER", column.unit, column.meaning};
 }

@@ -1,5 +1,5 @@
-// The tables of a result file, column by column: their SQL, their page in the documents (docs/result_file.md)
-// and what is checked of a file all follow from this one list.
+// The tables of a result file, column by column. Their SQL, the check of a file and the page
+// docs/result_file.md follow from this list.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -9,44 +9,44 @@
 
 namespace rcme {
 
-inline constexpr const char* kResultFormat = "rcme results 10";  // `run` holds it as "format"
+inline constexpr const char* kResultFormat = "rcme results 10";  // "format" in the table `run`
 
 struct ResultColumn {
   std::string name, type;  // INTEGER, REAL or TEXT
-  std::string unit;        // empty: none
+  std::string unit;        // empty: no unit
   std::string meaning;
-  bool may_be_null = false;  // not known
+  bool may_be_null = false;  // NULL means not known
 };
 
 struct ResultTable {
   std::string name, meaning;
   std::vector<ResultColumn> columns;
-  std::vector<std::string> key;  // the columns that tell rows apart
+  std::vector<std::string> key;  // columns that identify a row
 };
 
-// In the order in which a reader wants them.
+// Returns the tables, in the order of the documentation.
 const std::vector<ResultTable>& ResultTables();
 
-// The rows of the table `run`, which every file has, all of them.
+// The rows of the table `run`; every file has all of them.
 struct RunKey {
   std::string name, meaning;
 };
 const std::vector<RunKey>& RunKeys();
 
-// The tables that describe the run: all but the totals, problems and trials.
+// Returns the tables that describe the run: all except totals, problems and trials.
 const std::vector<std::string>& DescriptionTables();
 
 void CreateTables(SQLite::Database& database);
 void DropTables(SQLite::Database& database);
 
-// Throws InputError if the file is not a result file, or of another format.
+// Throws InputError if the file is not a result file or has another format.
 void CheckFormat(SQLite::Database& database, const std::string& path);
 
-// Throws Damage if the file does not have exactly our tables: a column or its type differs, there is a
-// further table, an index, a view or a trigger.
+// Throws Damage unless the file has exactly these tables: no column or type may differ, and there may be no
+// further table, index, view or trigger.
 void CheckSchema(SQLite::Database& database);
 
-// The same for these tables alone, whatever else there is.
+// The same for the given tables only; others are ignored.
 void CheckTables(SQLite::Database& database, const std::vector<std::string>& names);
 
 }  // namespace rcme

@@ -7,9 +7,9 @@
 
 namespace rcme {
 
-// CRC-32 of all fields of one trial's records, the wall times included: what is stored is protected, whether or not
-// it can be computed again. `identity` is the checksum of the study's identity: a trial of another study does
-// not pass.
+// CRC-32 of all fields of one trial's records, times included: it protects stored values whether or not they
+// can be computed again. `identity` is the checksum of the study's identity, so a trial of another study has
+// another checksum.
 std::uint32_t ChecksumOfTrial(std::uint32_t identity, const ProblemRecord& problem,
                               std::span<const TrialRecord> records);
 

@@ -18,7 +18,7 @@ using TrialKey = std::pair<std::uint32_t, std::uint32_t>;  // condition, trial
   throw Damage(fmt::format("condition {}, trial {}: {}", key.first, key.second, what));
 }
 
-// The rows of some trials, in order, put together.
+// Assembles trials from their rows, in order.
 class TrialRows {
  public:
   TrialRows(const SQLite::Database& database, const TrialFrame& frame, const std::string& where)
@@ -26,7 +26,7 @@ class TrialRows {
         problems_(database, SelectFromRecordTable<ProblemRecord>(where)),
         records_(database, SelectFromRecordTable<TrialRecord>(where)) {}
 
-  // False after the last. Throws Damage.
+  // Returns false after the last trial. Throws Damage.
   bool Next() {
     if (!problems_.executeStep()) {
       CheckNoneIsLeft();
@@ -88,7 +88,7 @@ void ForEachStoredTrial(const SQLite::Database& database, const TrialFrame& fram
                         std::optional<std::uint32_t> condition,
                         const std::function<void(const StoredTrial&)>& visit) {
   TrialRows rows(database, frame, condition ? fmt::format(" WHERE condition = {}", *condition) : "");
-  if (condition) {  // too few for a thread to pay
+  if (condition) {  // few trials: a thread does not pay
     while (rows.Next()) visit(rows.trial());
     return;
   }
@@ -105,7 +105,7 @@ std::optional<StoredTrial> ReadStoredTrial(const SQLite::Database& database, con
   TrialRows rows(database, frame, fmt::format(" WHERE condition = {} AND trial = {}", condition, trial));
   if (!rows.Next()) return std::nullopt;
   const StoredTrial found = rows.trial();
-  rows.Next();  // throws if there is more
+  rows.Next();  // throws if there are further rows
   return found;
 }
 

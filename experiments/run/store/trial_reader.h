@@ -1,4 +1,4 @@
-// Whole trials from the tables `problems` and `trials`, each one checked.
+// Reads whole trials from the tables `problems` and `trials`, and checks each.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -13,7 +13,7 @@
 
 namespace rcme {
 
-// What every trial of a file has to fit.
+// The properties of a file that every trial in it must match.
 struct TrialFrame {
   std::uint32_t identity = 0;  // checksum of the study's identity
   size_t num_conditions = 0, num_estimators = 0;
@@ -25,15 +25,15 @@ struct StoredTrial {
   std::uint32_t checksum = 0;
 };
 
-// Calls `visit` for every trial, ordered by condition and trial; only those of one condition, if it is given.
-// Reads on a thread of its own, so that `visit` may not use `database`.
-// Throws Damage at the first that is not sound: a column of another type or out of range, out of order, not
-// one record per estimator, another checksum.
+// Calls `visit` for every trial, ordered by condition and trial; optionally only for one condition. Reads on
+// a thread of its own, so `visit` must not use `database`. Throws Damage at the first damaged trial: a
+// column has a wrong type or range, trials are out of order, there is not one record per estimator, or the
+// checksum is wrong.
 void ForEachStoredTrial(const SQLite::Database& database, const TrialFrame& frame,
                         std::optional<std::uint32_t> condition,
                         const std::function<void(const StoredTrial&)>& visit);
 
-// The same for one trial; nothing where the file does not hold it.
+// Reads one trial; nothing if the file does not have it.
 std::optional<StoredTrial> ReadStoredTrial(const SQLite::Database& database, const TrialFrame& frame,
                                            std::uint32_t condition, std::uint32_t trial);
 

@@ -1,5 +1,5 @@
-// What each condition holds in all, in the table `totals`. It is written together with the trials, so that
-// one that is lost or was put there by someone else is noticed.
+// The number and checksum of the trials of each condition, in the table `totals`. They are written together
+// with the trials, so lost or foreign trials are noticed.
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -10,11 +10,11 @@
 
 namespace rcme {
 
-inline constexpr std::int64_t kMaxTrialsOfCondition = std::int64_t{1} << 32;  // as many as have a number
+inline constexpr std::int64_t kMaxTrialsOfCondition = std::int64_t{1} << 32;  // trial numbers have 32 bits
 
 struct TrialTotal {
   std::int64_t num_trials = 0;
-  std::int64_t checksum = 0;  // sum of the trials' checksums: in whatever order they were added
+  std::int64_t checksum = 0;  // sum of the trials' checksums, independent of their order
 
   void Add(std::uint32_t trial_checksum) {
     ++num_trials;
@@ -27,7 +27,7 @@ class TrialTotals {
  public:
   // Throws Damage if the rows are not those of conditions 0, 1, 2, ...
   static TrialTotals Read(SQLite::Database& database);
-  // Writes a row of zeros for each condition; the table is empty.
+  // Writes a row of zeros for each condition into the empty table.
   static TrialTotals Write(SQLite::Database& database, size_t num_conditions);
 
   size_t num_conditions() const { return totals_.size(); }
@@ -37,7 +37,7 @@ class TrialTotals {
   void Add(std::uint32_t condition, std::uint32_t trial_checksum);
   void Remove(std::uint32_t condition, std::uint32_t trial_checksum);
   void Clear(std::uint32_t condition);
-  // Writes the rows that have changed since.
+  // Writes the rows that have changed since the last call.
   void WriteChanged(SQLite::Database& database);
 
  private:

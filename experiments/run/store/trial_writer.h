@@ -9,17 +9,18 @@
 
 namespace rcme {
 
-// Adds trials to a file, with their checksums and the totals, in transactions that hold whole calls only.
-// Errors are SQLite::Exception and, for trials that are not whole or of no condition, std::logic_error; they
-// take back all that was not committed.
+// Adds trials with their checksums and totals to a file. A transaction contains whole calls only. Throws
+// SQLite::Exception, and std::logic_error for incomplete trials or an unknown condition; an error rolls back
+// everything not yet committed.
 class TrialWriter {
  public:
   explicit TrialWriter(ResultFile* file);
 
-  // To each problem one record per estimator, in the problems' order. Commits about twice a second.
+  // Adds, for each problem, one record per estimator, in the order of the problems. Commits about twice a
+  // second.
   void Add(const std::vector<ProblemRecord>& problems, const std::vector<TrialRecord>& records);
   void Commit();
-  // The same for one trial in a transaction of the caller's, who writes the totals and takes back what fails.
+  // Adds one trial within a transaction of the caller, who writes the totals and rolls back after an error.
   void AddTrial(const ProblemRecord& problem, std::span<const TrialRecord> records);
 
  private:
