@@ -1,4 +1,5 @@
-// An optional value on the heap: eight bytes in each of millions of rows of which few have one.
+// An optional value on the heap. It takes eight bytes in each of millions of rows, few of which have a
+// value.
 #pragma once
 
 #include <memory>
@@ -23,7 +24,7 @@ class BoxedOptional {
   bool has_value() const { return value_ != nullptr; }
   const T& operator*() const { return *value_; }
   const T* operator->() const { return value_.get(); }
-  // Throws std::bad_optional_access where there is none.
+  // Throws std::bad_optional_access if there is no value.
   const T& value() const { return value_ ? *value_ : throw std::bad_optional_access(); }
 
  private:

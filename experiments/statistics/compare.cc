@@ -14,8 +14,8 @@
 namespace rcme {
 namespace {
 
-// The pairs of every group, estimator and thing compared; of the reference with itself too, which no one
-// reads.
+// The pairs of every group, estimator and compared quantity. The pairs of the reference with itself are
+// collected too, but not used.
 class AllPairs {
  public:
   AllPairs(const RunDescription& run, const TrialGroups& groups, size_t reference,
@@ -68,7 +68,7 @@ class AllPairs {
 
   FailureBounds bounds_;
   const TrialGroups& groups_;
-  size_t group_ = 0;  // of the last trial
+  size_t group_ = 0;  // group of the last trial
   size_t reference_, num_estimators_;
   std::vector<Compared> compared_;
   std::vector<ComparedPairs> cells_;
@@ -76,9 +76,9 @@ class AllPairs {
   bool is_weighted_ = false;
 };
 
-// One family: whoever reads the tables reads all of them, and Holm's procedure holds however the tests depend
-// on each other (an event and its union with another do). A comparison without trials is no test: it costs
-// the others nothing.
+// All tests are one family, because a reader of the tables sees all of them. Holm's procedure holds however
+// the tests depend on each other (an event and a union that contains it do). A comparison without trials is
+// no test, so it does not weaken the others.
 void AdjustForAllTests(std::vector<ComparisonRow>* rows) {
   std::vector<ComparisonRow*> tested;
   std::vector<double> p_values;

@@ -32,14 +32,14 @@ std::optional<double> KnownNumber(double number) {
   return std::isnan(number) ? std::nullopt : std::optional<double>(number);
 }
 
-// The less the better, other than the scores of accuracy.
+// Less is better, unlike for the accuracy scores.
 Compared Brier() {
   return {ComparedKind::kScore, "brier",
           "Brier score (P - y)^2 of the stated probability of failure, 0 best; of answers that have one",
           BrierOfStated};
 }
 
-// Proper scores of the stated density, which have no upper bound: compared as errors are.
+// Proper scores of the stated density. They have no upper bound, so they are compared like errors.
 std::vector<Compared> DensityScores() {
   return {
       {ComparedKind::kError, "energy_score_deg",

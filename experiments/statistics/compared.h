@@ -1,4 +1,4 @@
-// What two estimators can be compared by on the same trials: events, scores, errors.
+// The quantities by which two estimators can be compared on the same trials: events, scores and errors.
 #pragma once
 
 #include <functional>
@@ -11,26 +11,26 @@
 namespace rcme {
 
 enum class ComparedKind {
-  kEvent,  // TrialEvents(): the rates
-  kScore,  // TrialScores(): the means, in [0, 1]
-  kError   // TrialErrors() and the scores of the stated density: the median of the trials' differences
+  kEvent,  // TrialEvents(); their rates are compared
+  kScore,  // TrialScores() and the Brier score; their means, in [0, 1], are compared
+  kError   // TrialErrors() and scores of the stated density; compared by the median difference of the trials
 };
 std::string Name(ComparedKind kind);  // "event", "score", "error"
 
 struct Compared {
   ComparedKind kind;
   std::string name, doc;
-  // What a trial gives: 0 or 1, a score, an error. Nothing where it says nothing about the estimator; a pair
-  // needs both.
+  // Returns the value of a trial: 0 or 1 for an event, a score, or an error. Nothing if the trial has no
+  // value for this estimator. A pair needs both values.
   std::function<std::optional<double>(const TrialRecord&, const FailureBounds&)> of;
-  const char* unit = "deg";  // of an error
+  const char* unit = "deg";  // unit of an error
 };
 
-// The events, then the scores, then the errors.
+// Returns the events, then the scores, then the errors.
 const std::vector<Compared>& AllCompared();
 
-// Those of the names, each once, in the order above; "events", "scores" and "errors" stand for all of a kind.
-// Throws InputError on another name, or none.
+// Returns the quantities with these names, each once, in the order of AllCompared. "events", "scores" and
+// "errors" select all of a kind. Throws InputError for an unknown name or an empty list.
 std::vector<Compared> ComparedByName(const std::vector<std::string>& names);
 
 }  // namespace rcme

@@ -12,11 +12,11 @@
 namespace rcme {
 namespace {
 
-// The least level, to 1e-6, at which an interval leaves out 0, by bisection: `interval_at` gives those of a
-// confidence, which are nested.
+// Finds, by bisection, the least level (to 1e-6) at which an interval does not contain 0. `interval_at`
+// returns the interval of a confidence; these intervals are nested.
 double FindPValue(double value, const std::function<Interval(double)>& interval_at) {
   if (value == 0.0) return 1.0;
-  double excluded = 1.0, included = 1e-6;  // at level 1 the interval is the value
+  double excluded = 1.0, included = 1e-6;  // at level 1 the interval is the value itself
   if (!interval_at(1.0 - included).Contains(0.0)) return included;
   while (excluded - included > 1e-6 + 1e-3 * excluded) {
     const double level = std::sqrt(excluded * included);
@@ -80,8 +80,8 @@ void ComparedPairs::FillMeans(ComparisonRow* row) const {
   row->interval = mean_difference_.Sequence();
 }
 
-// The sign test: McNemar's of "greater than the other". Its median's interval is of a fixed number of
-// trials.
+// The sign test is McNemar's test of the event "greater than the other". The interval of the median requires
+// a fixed number of trials.
 void ComparedPairs::FillError(ComparisonRow* row) const {
   row->n = error_difference_.n();
   row->difference = error_difference_.median();

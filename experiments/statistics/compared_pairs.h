@@ -1,4 +1,4 @@
-// The pairs of one estimator and the reference, of one thing that is compared, growing trial by trial.
+// Collects the pairs of values of one estimator and the reference for one compared quantity, trial by trial.
 #pragma once
 
 #include <span>
@@ -18,12 +18,14 @@ class ComparedPairs {
   void Add(double first, double second, bool is_first_of_scene);
   void EndScene();
 
-  // What a row says of them.
+  // Sets the numbers of a row.
   void Fill(bool is_anytime_valid, ComparisonRow* row) const;
-  // The same of all draws of a population together, with its intervals (stats/population_rate.h): those of an
-  // event are of two rates, "only the estimator" and "only the reference", those of a score Student's over
-  // draws, and those of an error's median Woodruff's (population_median.h). p is the least level at which the
-  // interval, of an error that of the share greater less the share less, leaves out 0.
+  // The same for all draws of a population together, with intervals for the population
+  // (stats/population_rate.h). The interval of an event is that of the difference of two rates, "only the
+  // estimator" and "only the reference"; that of a score is Student's over draws; that of an error's median
+  // is Woodruff's (population_median.h). The p-value is the least level at which the interval does not
+  // contain 0; for an error this is the interval of the share of greater errors minus the share of smaller
+  // ones.
   static void FillOfPopulation(std::span<const ComparedPairs> draws, ComparisonRow* row);
 
  private:
@@ -40,9 +42,9 @@ class ComparedPairs {
   ComparedKind kind_;
   bool has_repeats_;
   PairedCounts counts_;
-  SceneMean scene_;                         // so far
-  ScoreMean mean_difference_{{-1.0, 1.0}};  // of the means of scenes
-  Moments difference_;                      // the same
+  SceneMean scene_;                         // of the current scene
+  ScoreMean mean_difference_{{-1.0, 1.0}};  // over the means of scenes
+  Moments difference_;                      // over the means of scenes
   StreamMedian error_difference_;
 };
 

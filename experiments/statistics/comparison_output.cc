@@ -12,7 +12,7 @@
 namespace rcme {
 namespace {
 
-// A test of no difference and the interval of the difference, as files call them and in words.
+// The names of a test of no difference and of the interval, for files and for people.
 struct Method {
   std::string test, interval, test_in_words, interval_in_words;
 };
@@ -45,12 +45,12 @@ Method FindMethod(const ComparisonRow& row) {
   return FindMethod(is_by_means ? ComparedKind::kScore : row.kind, row.is_anytime_valid);
 }
 
-// In percentage points or the error's unit.
+// Formats a difference in percentage points, or in the unit of an error.
 NumberFormat DifferenceFormat(ComparedKind kind) {
   return kind == ComparedKind::kError ? NumberFormat{1.0, "", "+.3g"} : NumberFormat{100.0, "", "+.2f"};
 }
 
-// The counts of a kind: their headings and where they are.
+// The counts of a kind: their headings and their fields.
 std::vector<std::pair<std::string, std::int64_t PairedCounts::*>> ListPairedCounts(
     ComparedKind kind, const std::string& reference) {
   using P = PairedCounts;
@@ -90,7 +90,7 @@ std::string RenderComparedTable(const Compared& compared, const Comparison& comp
   return fmt::format("\n{}: {}\n\n{}", compared.name, compared.doc, RenderText(MakeTable(columns, rows)));
 }
 
-// What the numbers of a kind are; nothing where none is compared.
+// Explains the numbers of a kind; empty if nothing of this kind is compared.
 std::string Legend(ComparedKind kind, const Comparison& comparison) {
   const auto row = std::ranges::find(comparison.rows, kind, &ComparisonRow::kind);
   if (row == comparison.rows.end()) return "";
@@ -113,7 +113,7 @@ std::string Legend(ComparedKind kind, const Comparison& comparison) {
   return "";
 }
 
-// Of events and errors; a score has none.
+// For events and errors; scores have none.
 ColumnOf<ComparisonRow> CountColumn(const std::string& name, std::int64_t PairedCounts::*count) {
   return {{name, ColumnType::kCount}, [count](const ComparisonRow& row) {
             return row.kind == ComparedKind::kScore ? Value(std::nan("")) : Value(row.counts.*count);

@@ -25,7 +25,7 @@ void CheckCanBeCounted(const StudyPlan& plan) {
   }
 }
 
-// The counts of a run that is under way.
+// The counts of the current run.
 class CountsKeeper : public TrialKeeper {
  public:
   CountsKeeper(const Shard& shard, ResultFile* file)
@@ -72,7 +72,7 @@ class CountsKeeper : public TrialKeeper {
 
   const Shard shard_;
   ResultFile* file_;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members below
   RunCounts counts_;
   std::set<std::uint32_t> changed_;
   Clock::time_point next_write_ = Clock::now() + kWriteInterval;

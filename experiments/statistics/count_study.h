@@ -7,10 +7,10 @@
 
 namespace rcme {
 
-// RunTrials, into a file that keeps counts (run_counts.h): opened, or made, for this run alone. What has
-// been counted is written every ten seconds and at the end, all of it or nothing: a trial that a kill took
-// away is not counted, and computed again. Throws InputError for weighted trials and repeated scenes, which
-// counts cannot tell apart, and where the file cannot be continued.
+// RunTrials into a file that keeps counts (run_counts.h), which is opened or made for this run alone. The
+// counts are written every ten seconds and at the end, completely or not at all; a trial lost when the
+// process is killed is not counted and is computed again. Throws InputError for weighted trials and repeated
+// scenes, which counts cannot represent, and if the run does not continue the file.
 RunReport CountStudy(const StudyPlan& plan, int num_threads, const std::string& path,
                      const Shard& shard = {});
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kNumQuarters = 4;
 
-// The greatest value of each quarter but the last, rising.
+// Returns the greatest value of each quarter except the last, ascending.
 std::vector<double> FindCuts(std::vector<double> values) {
   std::ranges::sort(values);
   std::vector<double> cuts;
@@ -82,7 +82,7 @@ CoverageStratum MeasureStratum(const VisibleAnswers& answers, size_t quantity, i
   return stratum;
 }
 
-// What is stored of an answer and its user sees as well; NaN: not known.
+// A stored number of an answer that its user sees too; NaN: not known.
 struct VisibleNumber {
   std::string name;
   std::function<double(const TrialRecord&)> of;
@@ -144,7 +144,7 @@ std::vector<CoverageStratum> MeasureCoverageStrata(const VisibleAnswers& answers
       if (!std::isnan(value)) known.push_back(value);
     if (known.empty() || std::ranges::min(known) == std::ranges::max(known)) continue;
     const std::vector<double> cuts = FindCuts(known);
-    std::vector<std::vector<size_t>> members(kNumQuarters + 1);  // 0: unknown
+    std::vector<std::vector<size_t>> members(kNumQuarters + 1);  // index 0: unknown
     for (size_t i = 0; i < answers.seen[q].size(); ++i) {
       const double value = answers.seen[q][i];
       const auto place = std::ranges::lower_bound(cuts, value) - cuts.begin();

@@ -1,6 +1,6 @@
-// Coverage where answers look easy and where they look hard: by quarters of what is visible at run time, with
-// how sharp the regions are there. A coverage that is right on average may be far too small among the answers
-// of few matches, which their user can tell.
+// Coverage and sharpness of regions in strata of what is visible at run time: quarters of the number of
+// matches, of the stated uncertainty and so on. A coverage that is right on average may be far too small for
+// answers from few matches, which a user can recognize.
 #pragma once
 
 #include <cstdint>
@@ -12,36 +12,37 @@
 
 namespace rcme {
 
-// How intervals are made, and of what.
+// How the intervals of strata are computed.
 enum class StrataIntervals {
-  kClusters,   // exact where every answer is a cluster of its own, else by betting on the sums of clusters
-  kAnytime,    // a confidence sequence: the number of trials depended on their outcomes; of clusters as above
-  kPopulation  // of the population that the clusters are draws of (stats/population_rate.h)
+  kClusters,  // exact if every answer is a cluster of its own, otherwise by betting on the sums of clusters
+  kAnytime,   // a confidence sequence, as the number of trials depended on outcomes; shared clusters as above
+  kPopulation  // of the population from which the clusters are drawn (stats/population_rate.h)
 };
 
 // The answers of one estimator, or the regions of one kind, column by column.
 struct VisibleAnswers {
   std::string label;
-  double level = 0.95;  // of the regions; at no other there are verdicts
+  double level = 0.95;  // of the regions; only 0.95 gets verdicts
   std::vector<std::string> seen_names, sharpness_names;
   std::vector<std::int64_t> clusters;          // answers of different clusters are independent
-  std::vector<bool> are_covered;               // the truth is within the region
+  std::vector<bool> are_covered;               // the region contains the truth
   std::vector<std::vector<double>> seen;       // by name, then answer; NaN: the answer does not have it
-  std::vector<std::vector<double>> sharpness;  // the same
+  std::vector<std::vector<double>> sharpness;  // as `seen`
 };
 
-// Of the answers in one quarter of one visible quantity.
+// The answers in one quarter of one visible quantity.
 struct CoverageStratum {
   std::string label, seen;
   int quarter = 0;                 // 1: the least values; 0: the quantity is unknown
-  double least = 0.0, most = 0.0;  // of its values; NaN: unknown
+  double least = 0.0, most = 0.0;  // range of the quantity; NaN: unknown
   std::int64_t n = 0;
   Estimate coverage;
   std::vector<double> sharpness;  // medians
 };
 
-// Quarters hold equally many answers, but equal values are together: of few different values there are fewer
-// quarters. A quantity that no answer has, or one value alone, has no stratum.
+// Divides the answers into quarters with equally many answers. Equal values stay together, so a quantity
+// with few different values may have fewer quarters. A quantity that is unknown for all answers or has only
+// one value has no stratum.
 std::vector<CoverageStratum> MeasureCoverageStrata(const VisibleAnswers& answers, StrataIntervals intervals);
 
 struct CoverageStrata {
@@ -50,8 +51,8 @@ struct CoverageStrata {
   std::vector<CoverageStratum> rows;
 };
 
-// Of every estimator of a run: the returned motions whose NEES is known, by what is stored of them and
-// visible at run time. Throws InputError for weighted trials.
+// The strata of every estimator of a run: returned motions with a known NEES, by those stored numbers that
+// are visible at run time. Throws InputError for weighted trials.
 CoverageStrata MeasureCoverageStrata(const ResultStore& run);
 
 }  // namespace rcme

@@ -39,7 +39,7 @@ Table MakeStrataTable(const std::string& label_column, const std::vector<std::st
          coverage.note.clear();
          return coverage;
        }}};
-  for (size_t i = 0; i < sharpness_names.size(); ++i)  // the first beside the coverage
+  for (size_t i = 0; i < sharpness_names.size(); ++i)  // the first is next to the coverage
     columns.push_back({Column::Number(sharpness_names[i]), [i](S s) { return s.sharpness.at(i); }});
   columns.push_back({Column::Text("verdict"), [](S s) { return s.coverage.note; }});
   columns.push_back({Column::Number("from"), [](S s) { return s.least; }});

@@ -8,17 +8,17 @@
 
 namespace rcme {
 
-// A row per stratum: what `label_column` names ("estimator"), the visible quantity, its quarter, the coverage
-// and the medians of the sharpness, the verdict, the range of the quantity's values, n.
+// Makes a table with a row per stratum: the label in a column named `label_column` (such as "estimator"),
+// the visible quantity, its quarter, the coverage, the medians of the sharpness, the verdict, the range of
+// the quantity, n.
 Table MakeStrataTable(const std::string& label_column, const std::vector<std::string>& sharpness_names,
                       const std::vector<CoverageStratum>& strata);
 
-// For people: a table for each label, below its name, so that a coverage and its sharpness stand side by
-// side.
+// For people: a table for each label, under the label.
 std::string StrataAsText(const std::vector<std::string>& sharpness_names,
                          const std::vector<CoverageStratum>& strata);
 
-// What the columns are and how the intervals are made.
+// Explains the columns and the intervals.
 std::string DescribeStrata(StrataIntervals intervals);
 
 CommandResult MakeStrataResult(const std::string& study, const CoverageStrata& strata);

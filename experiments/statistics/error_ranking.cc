@@ -26,7 +26,7 @@ void AppendClusters(const std::vector<StatedError>& from, std::int64_t first_clu
   }
 }
 
-// An interval that is of a number of trials fixed beforehand, and of two clusters at least.
+// There is an interval only if the number of trials was fixed beforehand and there are two clusters or more.
 SummaryRow MakeRow(const SummaryRow& cell, const std::string& quantity, const ClusteredEstimate& area,
                    bool counts_clusters) {
   SummaryRow row = cell;

@@ -25,7 +25,7 @@ const TrialEvent& FindListedEvent(const std::string& name) {
                                DidYouMean(name, TrialEventNames()), fmt::join(TrialEventNames(), ", ")));
 }
 
-// Of each estimator of the run whether it is asked for.
+// For each estimator of the run, whether the query includes it.
 std::vector<bool> MarkEstimators(const RunDescription& run, const std::vector<std::string>& labels) {
   std::vector<bool> is_chosen(run.estimators.size(), labels.empty());
   for (const std::string& label : labels)

@@ -16,16 +16,16 @@
 namespace rcme {
 namespace {
 
-// What is kept of a trial of one estimator.
+// The data kept of one estimator's trial.
 struct Answer {
   double stated = 0.0;        // NaN: none
-  double inlier_share = 0.0;  // of the matches
+  double inlier_share = 0.0;  // accepted share of the matches
   std::int64_t cluster = 0;
   size_t group = 0;
   bool refused = false, failed = false, is_in_even_half = false;
 };
 
-// Which group each condition is of.
+// The group of each condition.
 struct Groups {
   std::vector<std::string> names;
   std::vector<size_t> of_condition;
@@ -58,7 +58,7 @@ Answer ReadAnswer(const TrialRecord& record, const FailureBounds& bounds) {
   return answer;
 }
 
-// Per estimator, in order of condition and trial; empty where trials are weighted.
+// Returns the answers by estimator, in order of condition and trial; empty if trials are weighted.
 std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDescription& run,
                                            const Groups& groups) {
   std::vector<std::vector<Answer>> answers(run.estimators.size());
@@ -79,7 +79,7 @@ std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDe
   return answers;
 }
 
-// Failure over the share of outliers, which it rises with, from the answers of one half.
+// Fits failure as an increasing function of the share of outliers to the answers of one half.
 IsotonicFit FailureOverOutliers(const std::vector<Answer>& answers, bool of_even_half) {
   std::vector<double> outlier_shares, failed;
   for (const Answer& answer : answers) {
@@ -90,7 +90,7 @@ IsotonicFit FailureOverOutliers(const std::vector<Answer>& answers, bool of_even
   return failed.empty() ? IsotonicFit() : FitIsotonic(outlier_shares, failed);
 }
 
-// Per answer; NaN: none.
+// Returns a probability per answer; NaN: none.
 std::vector<double> ProbabilitiesFromInliers(const std::vector<Answer>& answers) {
   const std::array<IsotonicFit, 2> of_other_half = {FailureOverOutliers(answers, true),
                                                     FailureOverOutliers(answers, false)};

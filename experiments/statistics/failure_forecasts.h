@@ -1,4 +1,4 @@
-// The probabilities of failure that go with an estimator's motions, beside what became of these.
+// Collects the failure probabilities of an estimator's motions, with their outcomes.
 #pragma once
 
 #include <cstdint>
@@ -11,46 +11,47 @@
 
 namespace rcme {
 
-// Up to this probability a motion counts as sure.
+// A motion with at most this failure probability counts as sure.
 inline constexpr double kSureBelow = 0.1;
 
-// The probability that the estimator states; nothing for a refusal, where the truth is not known, or where it
-// states none.
+// Returns the probability that the estimator states. Nothing for a refusal, an unknown truth, or an
+// estimator that states none.
 std::optional<double> StatedFailureProbability(const TrialRecord& record);
-// Its Brier score, (P - y)^2 with y = 1 for a failure; nothing likewise.
+// Returns its Brier score, (P - y)^2 with y = 1 for a failure; nothing in the same cases.
 std::optional<double> BrierOfStated(const TrialRecord& record, const FailureBounds& bounds);
 
 enum class ForecastSource {
   kStated,
-  // Of an estimator that states none: the share of the matches that it takes for inliers, made a probability
-  // by isotonic regression of failure on it. That is fitted to half of the scenes (those of even number, over
-  // all conditions) and used on the other half, and the other way round, so that no trial is judged by
-  // itself. It knows the failure rate of this very run, which no estimator does.
+  // For an estimator that states none: a probability made from the share of matches that it accepts as
+  // inliers, by isotonic regression of failure. The regression fitted to even-numbered scenes of all
+  // conditions is used for the odd-numbered ones and vice versa, so no trial is judged by itself. It knows
+  // the failure rate of this run, which no estimator does.
   kInlierShare
 };
 std::string Name(ForecastSource source);  // "stated", "inlier_share"
 
-// One estimator in one group of trials.
+// The forecasts of one estimator in one group of trials.
 struct FailureForecasts {
   std::string estimator;  // label
   std::string group;      // a level of the factor; empty: all trials
   ForecastSource source = ForecastSource::kStated;
-  // Whether a cluster is a draw of the population that the run's draws are a sample of; else it is a scene.
+  // True: a cluster is a draw from the population of the run. False: it is a scene.
   bool is_of_population = false;
   std::vector<Forecast> forecasts;             // of its answers
   std::vector<std::int64_t> refused_clusters;  // one per refusal
-  // Answers that have no probability: they are in none of the numbers.
+  // Answers without a probability; no other number counts them.
   std::int64_t num_without = 0;
 };
 
-// Every estimator in every group, in the order of the run. A group is a level of the factor `by`; without one
-// all trials are one. Weighted trials have no forecasts: counts of them say nothing. Holds some 50 bytes per
-// trial and estimator. Throws InputError on a factor that the run does not have.
+// Returns the forecasts of every estimator in every group, in the order of the run. A group is a level of
+// the factor `by`; without a factor all trials are one group. Weighted trials give no forecasts, because
+// counts of them are meaningless. Uses about 50 bytes per trial and estimator. Throws InputError if the run
+// does not have the factor.
 std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, const std::string& by = {});
 
-// Adds those of another run: to the same estimator and group, or as new ones. No cluster of one run is one of
-// the other. Throws InputError where the source of an estimator's probabilities differs between the runs, or
-// what a cluster is.
+// Adds the forecasts of another run, to the same estimator and group or as new ones. Clusters of different
+// runs are different. Throws InputError if the runs differ in the source of an estimator's probabilities or
+// in what a cluster is.
 void AddForecastsOfRun(std::vector<FailureForecasts> run, std::vector<FailureForecasts>* all);
 
 }  // namespace rcme

@@ -14,7 +14,7 @@ namespace rcme {
 namespace {
 
 constexpr int kNumHistogramBins = 20;
-// Of the outcomes that are drawn here; the streams of trials have other purposes (data_source.h).
+// For outcomes drawn here; the streams of trials have other purposes (data_source.h).
 constexpr std::uint32_t kPurposeOfDrawnOutcomes = 200, kPurposeOfDrawnConditions = 201;
 
 double MeanProbability(const std::vector<Forecast>& forecasts) {
@@ -35,7 +35,7 @@ AreaUnderCurve MeasureForecastArea(std::vector<Forecast> forecasts, const Cluste
   return MeasureClusteredAreaUnderCurve(clusters);
 }
 
-// Surest first by the probability; refusals last.
+// Ranks answers by probability, surest first, and refusals last.
 std::vector<ClusteredOutcome> ListOutcomes(const FailureForecasts& of) {
   std::vector<ClusteredOutcome> outcomes;
   for (const Forecast& forecast : of.forecasts)
@@ -53,7 +53,7 @@ void MeasureRiskCoverage(const FailureForecasts& of, ForecastMeasures* measures)
   measures->risk_coverage = RiskCoverageCurve(std::move(scored));
 }
 
-// Events among trials, in all and by cluster.
+// Counts events and trials, in total and by cluster.
 class ClusterCounts {
  public:
   void Add(std::int64_t cluster, bool has_happened) {
@@ -103,8 +103,8 @@ std::vector<std::int64_t> CountHistogram(const std::vector<Forecast>& forecasts)
   return counts;
 }
 
-// What right probabilities would give: the trials of a scene are drawn together, those of a condition are
-// independent.
+// Clusters for simulating outcomes of correct probabilities: the trials of a scene are drawn together; the
+// trials of a draw are independent of each other.
 std::vector<Forecast> WithScenes(const FailureForecasts& of) {
   std::vector<Forecast> forecasts = of.forecasts;
   for (size_t i = 0; of.is_of_population && i < forecasts.size(); ++i)
@@ -112,7 +112,7 @@ std::vector<Forecast> WithScenes(const FailureForecasts& of) {
   return forecasts;
 }
 
-// The same stream for all: samples of equal forecasts are equal.
+// Uses the same stream for all, so equal forecasts have equal samples.
 void MeasureCalibration(const FailureForecasts& of, std::uint64_t seed, ForecastMeasures* measures) {
   const std::vector<Forecast> forecasts = WithScenes(of);
   RandomStream rng({.seed = seed, .purpose = kPurposeOfDrawnOutcomes});

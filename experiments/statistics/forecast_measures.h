@@ -1,4 +1,4 @@
-// How good an estimator's probabilities of failure are.
+// Measures the quality of an estimator's failure probabilities.
 #pragma once
 
 #include <span>
@@ -19,9 +19,9 @@ namespace rcme {
 inline constexpr int kNumCalibrationBins = 10;
 inline constexpr int kNumCalibrationSamples = 399;
 
-// Of one estimator in one group, over its answers; intervals by scenes, or, where the conditions are draws of
-// a population, of that population and by draws. Without an answer that has a probability only the counts are
-// meant.
+// The measures of one estimator in one group, over its answers. Intervals are by scenes; if the conditions
+// are draws of a population, they are by draws and for the population. If no answer has a probability, only
+// the counts are valid.
 struct ForecastMeasures {
   std::string estimator, group;
   ForecastSource source = ForecastSource::kStated;
@@ -31,38 +31,39 @@ struct ForecastMeasures {
   ClusteredEstimate failure;           // share of the n answers that failed
   ClusteredEstimate brier, log_score;  // stats/forecast.h
   BrierDecomposition parts;            // stats/reliability.h
-  CalibrationCheck check;              // likewise, with the band at BandProbabilities()
-  std::vector<ReliabilityStep> curve;  // likewise
+  CalibrationCheck check;              // stats/reliability.h, with the band at BandProbabilities()
+  std::vector<ReliabilityStep> curve;  // stats/reliability.h
   MeasuredCalibrationError error_of_equal_width, error_of_equal_mass;  // in kNumCalibrationBins bins
-  Interval interval_of_equal_width = {kNaN, kNaN};  // of the population's error; NaN: by scenes there is none
-  std::vector<CalibrationBin> bins;                 // of equal width
-  std::vector<std::int64_t> histogram;              // of the probabilities: HistogramEdges()
+  Interval interval_of_equal_width = {kNaN, kNaN};                     // for the population; NaN by scenes
+  std::vector<CalibrationBin> bins;                                    // of equal width
+  std::vector<std::int64_t> histogram;  // of the probabilities, by HistogramEdges()
   CalibrationLine line;
-  // P(a failure has the greater probability): NaN where nothing failed, or everything.
+  // P(a failure has the greater probability); NaN if no answer failed or all did.
   AreaUnderCurve area;
-  // Of all trials whose outcome is known: a refusal is the least sure, and counts as a failure.
+  // Over all trials with a known outcome. A refusal ranks as least sure and counts as a failure.
   ClusteredEstimate risk_coverage_area;
   std::vector<RiskCoveragePoint> risk_coverage;
-  // Of the answers with a probability of at most kSureBelow, those that failed; and how many those answers
-  // are.
+  // The number of answers with a probability of at most kSureBelow, and how many of them failed.
   std::int64_t num_sure = 0, num_sure_failed = 0;
-  // Of num_sure_failed among num_sure, and of num_sure among all trials: of the population
-  // (population_rate.h) or exact; the latter of repeated scenes too narrow.
+  // Intervals of num_sure_failed among num_sure, and of num_sure among all trials: for the population
+  // (population_rate.h), or exact. If scenes are repeated, the exact intervals are too narrow, as they treat
+  // all trials as independent.
   Interval sure_failed_interval, sure_interval;
 
   std::int64_t num_trials() const { return n + num_refused; }
 };
 
-// 0 to 1, closer where probabilities are small.
+// Returns probabilities from 0 to 1, denser at small values.
 std::vector<double> BandProbabilities();
 
-// (k / 20)^2, k = 0..20: of equal width in the square root of the probability, the last bin with its end.
+// Returns (k / 20)^2, k = 0..20: bins of equal width in the square root of the probability. The last bin
+// includes its upper end.
 std::vector<double> HistogramEdges();
 
-// `seed`: of the outcomes that are drawn to see what right probabilities would give.
+// `seed` is for simulated outcomes, which show what correct probabilities would give.
 ForecastMeasures MeasureForecasts(const FailureForecasts& forecasts, std::uint64_t seed);
 
-// Of every estimator in every group; of several runs all trials together.
+// The measures of every estimator in every group; all trials of several runs are pooled.
 std::vector<ForecastMeasures> MeasureFailureForecasts(std::span<const ResultStore> runs,
                                                       const std::string& by = {});
 std::vector<ForecastMeasures> MeasureFailureForecasts(const ResultStore& run, const std::string& by = {});

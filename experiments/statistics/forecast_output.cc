@@ -28,7 +28,7 @@ bool IsOfPopulation(const std::vector<ForecastMeasures>& measures) {
   return !measures.empty() && measures.front().is_of_population;
 }
 
-// Without an answer only the counts are there.
+// Without answers there are only counts.
 Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std::string& by) {
   const NumberFormat four{1.0, "", ".4f"}, three{1.0, "", ".3f"}, two{1.0, "", ".2f"};
   const bool is_of_population = IsOfPopulation(measures);
@@ -60,7 +60,7 @@ Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std:
   return table;
 }
 
-// The same in files: a row per estimator and level.
+// The same for files: a row per estimator and level.
 Table MakeForecastFileTable(const std::vector<ForecastMeasures>& measures) {
   using M = const ForecastMeasures&;
   std::vector<ColumnOf<ForecastMeasures>> columns = {
@@ -104,7 +104,7 @@ Json AsJson(const MeasuredCalibrationError& error) {
           {"p_value", JsonNumber(error.p_value)}};
 }
 
-// With an interval where there is one.
+// Includes the interval if there is one.
 Json ErrorAsJson(const ForecastMeasures& m) {
   Json json = AsJson(m.error_of_equal_width);
   if (m.is_of_population) json["interval"] = RenderJson(m.interval_of_equal_width);
@@ -146,7 +146,8 @@ Json BinsAsJson(const ForecastMeasures& m) {
   return bins;
 }
 
-// At most some hundred points, evenly over the curve, the ends among them. `probability` null: refusals too.
+// Returns at most some hundred points, evenly spaced along the curve, including its ends. A null
+// `probability` means that refusals are included.
 Json RiskCoverageAsJson(const ForecastMeasures& m) {
   Json points = Json::array();
   const size_t size = m.risk_coverage.size(), count = std::min(size, kMaxCurvePoints);

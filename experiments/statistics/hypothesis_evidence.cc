@@ -109,7 +109,7 @@ MeasuredHypothesis HypothesisEvidence::MeasureForPopulation(double confidence) c
 std::vector<std::int64_t> CountTrialsBefore(const RunDescription& run, int trials) {
   std::vector<std::int64_t> num_trials;
   for (const DescribedCondition& condition : run.conditions) {
-    // Of a folder of pairs, a pass has several trials.
+    // A pass over a folder of pairs has several trials.
     const std::int64_t per_pass =
         run.stopping_rule.empty() && run.trials > 0 ? condition.num_trials / run.trials : 1;
     const std::int64_t asked_for = std::max<std::int64_t>(per_pass, 1) * trials;  // below 2^62

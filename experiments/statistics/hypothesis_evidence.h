@@ -1,4 +1,4 @@
-// What the trials of a run say of its hypotheses, read once.
+// Measures the stated hypotheses of a run in one pass over its trials.
 #pragma once
 
 #include <cstdint>
@@ -18,12 +18,12 @@
 namespace rcme {
 
 struct MeasuredHypothesis {
-  double value = 0.0;  // of the quantity, or of the difference; NaN without trials
+  double value = 0.0;  // of the quantity or of the difference; NaN without trials
   Interval interval;
-  std::int64_t n = 0;  // trials; of repeated scenes: scenes
+  std::int64_t n = 0;  // trials; scenes if scenes are repeated
 };
 
-// Of one hypothesis, growing trial by trial.
+// The data for one hypothesis, collected trial by trial.
 class HypothesisEvidence {
  public:
   HypothesisEvidence(const RunDescription& run, const StatedHypothesis& stated);
@@ -61,15 +61,16 @@ class HypothesisEvidence {
   ScoreMean scores_;
 };
 
-// How many trials of each condition were asked for beforehand: `trials` of each, but no more than have a
-// number, so that their sum is an integer whatever a file says.
+// Returns the number of trials of each condition that were planned beforehand: `trials` per condition, or
+// per pair of a folder. It is limited to the possible trial numbers, so the sum cannot overflow whatever a
+// file says.
 std::vector<std::int64_t> CountTrialsBefore(const RunDescription& run, int trials);
 
 struct EvidenceTrials {
-  std::vector<std::int64_t> num_trials;  // by condition, of those asked for beforehand
+  std::vector<std::int64_t> num_trials;  // by condition; only planned trials
   bool is_weighted = false;
 };
-// Reads the run once: the first `before` trials of each condition, no others.
+// Reads the run once, but only the first `before` trials of each condition.
 EvidenceTrials ReadEvidence(const ResultStore& store, const RunDescription& run,
                             const std::vector<std::int64_t>& before,
                             std::vector<HypothesisEvidence>* evidence);

@@ -25,7 +25,7 @@ namespace {
 
 constexpr size_t kNumQuantities = std::size(kMarginalQuantities);
 
-// What a trial says of a quantity; nothing where it says nothing.
+// Returns the value of the quantity in a trial; nothing if the trial does not count for it.
 std::optional<double> ValueIn(const TrialRecord& record, const FailureBounds& bounds, bool states,
                               MarginalQuantity quantity) {
   static const double nees_bound = ChiSquareQuantile(5, 0.95);
@@ -60,8 +60,8 @@ double FindClaimedRate(MarginalQuantity quantity) {
 
 struct ConditionValues {
   Moments moments;
-  std::int64_t num_failed = 0;  // of these trials
-  Moments log_sd_over_crb;      // of those with a bound; only of a coverage
+  std::int64_t num_failed = 0;  // number of these trials that failed
+  Moments log_sd_over_crb;      // of those with a bound; only for a coverage
 };
 
 // By estimator, quantity and condition.
@@ -107,7 +107,7 @@ std::vector<std::string> LevelsOfFactor(const RunDescription& run, size_t factor
   return levels;
 }
 
-// Fifths of the conditions by a number; those without it are in none.
+// Divides the conditions into fifths by a number; conditions without it are in none.
 std::vector<Level> DivideIntoFifths(const std::string& name, size_t factor,
                                     const std::vector<double>& numbers) {
   constexpr size_t kNumParts = 5;
@@ -154,8 +154,8 @@ bool IsRegime(const std::vector<bool>& has) {
   return number >= kLeastConditions && number < has.size();
 }
 
-// Those in the regime, the conditions of a draw as one; without such trials they do not count. `draws`: of
-// each condition.
+// Selects the conditions of a regime that have trials, and merges the conditions of a draw. `draws`: the
+// draw of each condition.
 std::vector<ConditionValues> Select(const std::vector<ConditionValues>& conditions,
                                     const std::vector<bool>& has, const std::vector<size_t>& draws) {
   std::map<size_t, ConditionValues> of_draw;
@@ -174,10 +174,10 @@ bool IsShare(MarginalQuantity quantity) {
   return quantity == MarginalQuantity::kFailure || quantity == MarginalQuantity::kSureCoverage;
 }
 
-// Of failed less stated. Where fewer than kLeastConditions conditions had a failure, or had none, the spread
-// of the conditions does not show what failures were not seen: the interval then also holds what that of the
-// failure rate allows (an estimator that states P = 0.001 and did not fail in 100 trials is not too
-// cautious).
+// Measures the share of failures minus the mean stated probability. If fewer than kLeastConditions
+// conditions had a failure, or fewer had a non-failure, the spread between conditions does not show how many
+// failures may have been missed. The interval is then extended by that of the failure rate. For instance, an
+// estimator that states P = 0.001 and did not fail in 100 trials is not too cautious.
 PopulationMean MeasureDifference(const std::vector<ConditionValues>& conditions, double confidence) {
   std::vector<Moments> moments;
   std::vector<ConditionCount> failures;
@@ -275,7 +275,7 @@ std::vector<Regime> ListRegimes(const RunDescription& run, bool with_pairs) {
       std::vector<bool> both;
       for (size_t c = 0; c < levels[i].regime.has.size(); ++c)
         both.push_back(levels[i].regime.has[c] && levels[j].regime.has[c]);
-      // One within the other is no regime of its own.
+      // A regime that contains the other adds nothing.
       if (IsRegime(both) && both != levels[i].regime.has && both != levels[j].regime.has)
         regimes.push_back({levels[i].regime.text + ", " + levels[j].regime.text, std::move(both)});
     }

@@ -1,9 +1,9 @@
-// How an estimator does in each regime of a run: where one factor, or two, have a certain level. Conditions
-// are taken for a random sample of a population (stats/population_rate.h), so that a regime is a population
-// of its own.
+// Measures how an estimator performs in each regime of a run: conditions in which one factor, or each of
+// two, has a certain level. Conditions count as a random sample of a population (stats/population_rate.h),
+// so each regime is a population of its own.
 //
-// Intervals are simultaneous: all of them, over estimators, regimes and quantities, hold together with the
-// stated confidence (Bonferroni), so that the worst regime may be looked for.
+// The intervals are simultaneous (Bonferroni): all of them, over estimators, regimes and quantities, hold
+// together with the stated confidence. It is therefore allowed to search for the worst regime.
 #pragma once
 
 #include <limits>
@@ -16,14 +16,14 @@
 
 namespace rcme {
 
-// What a regime is judged by. A claim is what the estimator itself says, or 0.95 of its regions.
+// Quantities by which a regime is judged. The claimed value is what the estimator itself states, or 0.95 for
+// its regions.
 enum class MarginalQuantity {
-  kFailedLessStated,  // share of the answers that failed, less the mean of their stated probabilities;
-                      // claimed 0
-  kSureFailed,        // the same of answers with a stated probability of at most kSureBelow
-  kSureCoverage,      // truth within the 95 % region, of answers with a stated probability of at most
-                      // kCertainBelow, or of successes of an estimator that states none; claimed 0.95
-  kFailure            // share of the trials that failed; nothing is claimed
+  kFailedLessStated,  // share of answers that failed minus the mean of their stated probabilities; claimed 0
+  kSureFailed,        // the same for answers with a stated probability of at most kSureBelow
+  kSureCoverage,      // truth within the 95 % region; of answers with a stated probability of at most
+                      // kCertainBelow, or of the successes of an estimator that states none; claimed 0.95
+  kFailure            // share of trials that failed; no claimed value
 };
 inline constexpr MarginalQuantity kMarginalQuantities[] = {
     MarginalQuantity::kFailedLessStated, MarginalQuantity::kSureFailed, MarginalQuantity::kSureCoverage,
@@ -31,14 +31,14 @@ inline constexpr MarginalQuantity kMarginalQuantities[] = {
 std::string Name(MarginalQuantity quantity);
 inline constexpr double kCertainBelow = 0.01;
 
-// Of the run's conditions those with a level, or levels, of factors: "noise = octave, sigma_px 0.8 to 1.6".
+// The conditions of a run in which factors have certain levels: "noise = octave, sigma_px 0.8 to 1.6".
 struct Regime {
   std::string text;       // empty: all conditions
   std::vector<bool> has;  // by condition
 };
-// All conditions; each level of each factor, where a factor with more than kMaxLevels levels that are numbers
-// is divided into fifths of its conditions; `with_pairs`: each pair of those of two factors. Regimes of fewer
-// than kLeastConditions conditions, or of all, are left out.
+// Lists the regimes: all conditions; each level of each factor; and with `with_pairs` each pair of levels of
+// two factors. A factor with more than kMaxLevels numeric levels is divided into fifths of its conditions.
+// Regimes with fewer than kLeastConditions conditions, or with all of them, are left out.
 std::vector<Regime> ListRegimes(const RunDescription& run, bool with_pairs);
 inline constexpr size_t kMaxLevels = 8, kLeastConditions = 5;
 
@@ -47,11 +47,12 @@ struct Marginal {
   MarginalQuantity quantity;
   double value = 0.0;
   Interval interval;                                          // simultaneous
-  double claimed = std::numeric_limits<double>::quiet_NaN();  // NaN: nothing
-  // How far the interval lies from what is claimed, in half widths of itself; 0: the claim is in it.
+  double claimed = std::numeric_limits<double>::quiet_NaN();  // NaN: nothing is claimed
+  // Distance of the interval from the claimed value, in half widths of the interval; 0 if the interval
+  // contains it.
   double excess = 0.0;
-  // Of a coverage: how sharp its regions are, the geometric mean of sd_over_crb of the same answers. NaN: not
-  // known, or no coverage.
+  // For a coverage: the sharpness of the regions, as geometric mean of sd_over_crb over the same answers.
+  // NaN: not known, or not a coverage.
   double sd_over_crb = std::numeric_limits<double>::quiet_NaN();
   std::int64_t num_conditions = 0, n = 0;
 };
@@ -59,14 +60,14 @@ struct Marginal {
 struct Marginals {
   double confidence = 0.95;  // of all intervals together
   size_t num_intervals = 0;
-  std::vector<Marginal> rows;  // the farthest from what is claimed first, then by regime as listed
+  std::vector<Marginal> rows;  // greatest excess first, then by regime as listed
 };
 
-// What the trials of a condition say of a quantity of one estimator.
+// The moments over the trials of one condition of a quantity of one estimator.
 struct ConditionMoments {
-  Moments of_quantity, log_sd_over_crb;  // the second of a coverage alone, of its answers with a bound
+  Moments of_quantity, log_sd_over_crb;  // log_sd_over_crb: only for a coverage, of answers with a bound
 };
-// By condition. Throws InputError for weighted trials.
+// Returns the moments by condition. Throws InputError for weighted trials.
 std::vector<ConditionMoments> CollectConditionMoments(const ResultStore& run, size_t estimator,
                                                       MarginalQuantity quantity);
 
@@ -75,8 +76,8 @@ struct MarginalOptions {
   std::vector<std::string> estimators;  // labels; empty: all
 };
 
-// Throws InputError for weighted trials, for a run of fewer than kLeastConditions conditions, and for a label
-// that it does not have.
+// Throws InputError for weighted trials, a run with fewer than kLeastConditions conditions, and an unknown
+// label.
 Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& options);
 
 }  // namespace rcme

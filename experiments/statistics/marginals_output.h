@@ -7,11 +7,11 @@
 
 namespace rcme {
 
-// A row per regime and quantity.
+// Makes a table with a row per regime and quantity.
 Table MakeMarginalsTable(const Marginals& marginals);
 
-// For people every estimator over all conditions, then the `num_shown` regimes farthest from what is claimed;
-// in files these rows.
+// For people: every estimator over all conditions, then the `num_shown` regimes with the greatest excess.
+// Files have the same rows.
 CommandResult MakeMarginalsResult(const std::string& study, const Marginals& marginals, size_t num_shown);
 
 }  // namespace rcme

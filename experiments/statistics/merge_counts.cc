@@ -17,7 +17,7 @@
 namespace rcme {
 namespace {
 
-// All that a part says of its trials but the times of calls, as a checksum for each condition.
+// Returns a checksum per condition of all that a part holds, except the times of calls.
 std::vector<std::uint32_t> ComputeDigest(const RunCounts& counts) {
   std::vector<std::uint32_t> digest;
   for (const ConditionCounts& condition : counts.conditions) {
@@ -32,7 +32,7 @@ std::vector<std::uint32_t> ComputeDigest(const RunCounts& counts) {
   return digest;
 }
 
-// Parts that are counted together one after the other.
+// Adds parts one after the other.
 class MergedCounts {
  public:
   MergedCounts(const PartDescriptions& descriptions, MergeReport* report)
@@ -107,7 +107,7 @@ class MergedCounts {
     for (const auto& [number, trial] : part.kept.All()) merged.kept.Add(trial, counts_.run.failure);
   }
 
-  // The shards are no longer told apart.
+  // The merged file no longer distinguishes shards.
   void NoteThatAllIsCounted() {
     for (ConditionCounts& condition : counts_.conditions) {
       const std::int64_t num_trials = condition.cell.num_trials();
@@ -117,7 +117,7 @@ class MergedCounts {
 
   MergeReport* report_;
   RunCounts counts_;
-  std::set<std::vector<std::uint32_t>> digests_;  // of the parts that are in it
+  std::set<std::vector<std::uint32_t>> digests_;  // of the parts added so far
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The counts of shards as one. Counts of a trial cannot be taken away again: parts that have trials in common
-// are refused, unless they hold the same in every number.
+// Merges the counts of shards. The counts of a single trial cannot be subtracted, so parts that share trials
+// are refused, unless all their numbers are equal.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace rcme {
 
-// As MergeResults and CheckParts (run/store/merge_results.h), of files that keep counts.
+// As MergeResults and CheckParts (run/store/merge_results.h), for files that keep counts.
 MergeReport MergeCounts(const std::vector<std::string>& parts, const std::string& out, bool is_partial,
                         const MergeOptions& options);
 MergeReport CheckCounts(const std::vector<std::string>& parts, const MergeOptions& options);

@@ -33,7 +33,7 @@ void TakeRate(const std::vector<const QuantityCounts*>& draws, SummaryRow* row) 
   row->of_population = PopulationPart{rate.of_these_conditions, rate.effective_n};
   if (!row->coverage_verdict) return;
   CoverageVerdict verdict = JudgeCoverage(row->value, row->interval, row->n, row->n, true);
-  verdict.trials_to_decide = kNaN;  // more conditions, not more trials
+  verdict.trials_to_decide = kNaN;  // more conditions would decide, not more trials
   row->coverage_verdict = verdict;
 }
 
@@ -59,7 +59,7 @@ void TakeMedian(const std::vector<const QuantityCounts*>& draws, SummaryRow* row
   row->of_population = PopulationPart{median.of_these_conditions, median.effective_n};
 }
 
-// Of one estimator, or of the problems, and quantity: the counts of every draw.
+// Returns the counts of every draw for the row's quantity, of its estimator or of the problems.
 std::vector<const QuantityCounts*> ListDrawCounts(const RunDescription& run,
                                                   std::span<const SummaryCell> draws, const SummaryRow& row) {
   const auto place = [&](const auto& quantities) {

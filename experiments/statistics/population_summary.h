@@ -1,9 +1,9 @@
-// The pooled summary of a run whose conditions are draws of a population: the values are those of all trials
-// together, the intervals are of the population.
+// The pooled summary of a run whose conditions are draws of a population. Values are those of all trials
+// together; intervals are for the population.
 //
-// Rates and scores have the intervals of stats/population_rate.h and population_mean.h, means the latter's
-// standard error; weights are by trials, so that the value is the share or mean over all trials. Medians:
-// population_median.h.
+// Rates and scores have the intervals of stats/population_rate.h and population_mean.h; means have the
+// standard error of the latter; medians use population_median.h. Draws are weighted by their trials, so a
+// value is the share or mean over all trials.
 #pragma once
 
 #include <span>
@@ -12,9 +12,9 @@
 
 namespace rcme {
 
-// Whether pooled numbers of the run have such intervals: its conditions are draws of a population, not chosen
-// ones, each trial has a scene of its own, and their number was fixed beforehand. Weighted trials have none
-// either.
+// Returns whether pooled numbers of the run have such intervals: its conditions are a sample of draws (not
+// chosen ones), each trial has its own scene, and the number of trials was fixed beforehand. Weighted trials
+// do not have them either.
 bool HasPopulationIntervals(const RunDescription& run);
 
 // `draws`: a cell of counts for each group of GroupByDraw.

@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-// Empty: the interval decides.
+// Empty if the interval decides.
 std::string WhyOpen(const HypothesisEvidence& evidence, const EvidenceTrials& read,
                     const std::vector<std::int64_t>& before, const DecidedHypothesis& decided) {
   if (!evidence.HasEstimators()) return "the run lacks the estimator";
@@ -48,7 +48,7 @@ std::vector<DecidedHypothesis> DecideAll(const ResultStore& store, const RunDesc
   return all;
 }
 
-// The text that says what was decided before; empty: none. A study that this program cannot read has none.
+// Returns the text of what was planned; empty if there is none, or if this program cannot read the study.
 std::string PlanText(const RunDescription& run, const std::string& path) {
   if (!run.lock.empty()) return ParseLock(run.lock, path + " (its lock)").text;
   return run.study_yaml.find("\nhypotheses:") == std::string::npos ? "" : run.study_yaml;

@@ -7,7 +7,7 @@
 
 namespace rcme {
 
-// For people, and for programs.
+// Formats the result for people and for programs.
 std::string PreregistrationAsText(const Preregistration& preregistration);
 nlohmann::ordered_json PreregistrationAsJson(const Preregistration& preregistration);
 

@@ -14,14 +14,14 @@
 namespace rcme {
 namespace {
 
-// The numbers of one estimator in one condition.
+// The quantities of one estimator in one condition.
 struct EstimatorRow {
   const std::vector<std::string>& levels;
-  std::int64_t num_trials = 0;  // the greatest n: some quantities are of all trials
+  std::int64_t num_trials = 0;  // the greatest n; some quantities count all trials
   std::span<const SummaryRow> rows = {};
 
-  // Null: it has none. `place`, where the quantity was found last, is tried first: all groups have their rows
-  // in one order.
+  // Returns null if there is no such row. `place` is where the quantity was found last; it is tried first,
+  // because the rows of all groups have the same order.
   const SummaryRow* FindRow(const SharedText& quantity, size_t* place) const {
     if (*place >= rows.size() || rows[*place].quantity != quantity) {
       *place = 0;

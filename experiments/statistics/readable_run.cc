@@ -27,7 +27,7 @@ std::vector<double> ListNumbers(const ProblemRecord& problem, const TrialRecord&
   return numbers;
 }
 
-// Up to what another instruction set changes in their last digits.
+// Equal except for last digits, which may depend on the instruction set.
 bool AreEqual(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && std::isnan(b);
   return a == b || std::abs(a - b) <= 1e-4 * std::max({1.0, std::abs(a), std::abs(b)});

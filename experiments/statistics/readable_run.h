@@ -1,5 +1,5 @@
-// The trials of a run as a reader of them sees them, in one result file or in two of the same study, whose
-// estimators have then answered the same problems.
+// The trials of a run for a reader: those of one result file, or of two files of the same study, whose
+// estimators have answered the same problems.
 #pragma once
 
 #include <cstdint>
@@ -15,24 +15,25 @@ using VisitTrial = std::function<void(const ProblemRecord&, const std::vector<Tr
 
 struct ReadableRun {
   RunDescription description;
-  // Every trial, ordered by condition and trial; its records are ordered by estimator of the description.
+  // Visits every trial, ordered by condition and trial, with records ordered by the estimators of the
+  // description.
   std::function<void(const VisitTrial&)> for_each_trial;
 };
 
-// The store outlives it.
+// The store must outlive the result.
 ReadableRun ReadRun(const ResultStore& store);
 
-// Some of the estimators of two stores, which outlive it, in the trials that both hold: those of the first,
-// then those of the second. A label that both have gets "_old" and "_new". Throws InputError where the
-// studies differ in more than their estimators; reading throws it at the first trial whose problem is not the
-// same in both, by the numbers that are stored of it. Holds the trials of one condition.
+// Joins some estimators of two stores, which must outlive the result, in the trials that both hold: first
+// those of `first`, then those of `second`. A label that occurs in both gets "_old" and "_new". Throws
+// InputError if the studies differ in more than their estimators; reading throws InputError at the first
+// trial whose stored problem numbers differ. Holds the trials of one condition in memory.
 ReadableRun JoinRuns(const ResultStore& first, const std::vector<size_t>& of_first, const ResultStore& second,
                      const std::vector<size_t>& of_second);
 
-// What the problems of a run depend on, of its identity: all but its name and its estimators.
+// Returns the part of a run's identity on which its problems depend: all except its name and estimators.
 std::string IdentityOfProblems(const std::string& identity);
 
-// Two labels that differ: as they are, or with "_old" and "_new".
+// Makes two labels different by appending "_old" and "_new" if they are equal.
 void TellApart(std::string* old_label, std::string* new_label);
 
 }  // namespace rcme

@@ -30,11 +30,11 @@ struct FirstTrials {
 
 struct ConditionProgress {
   std::int64_t num_trials_done = 0;
-  std::int64_t trials_end = 0;     // after the last; a run that was cut off may have gaps
+  std::int64_t trials_end = 0;     // after the last trial; an interrupted run may have gaps
   std::vector<FirstTrials> first;  // one per estimator
 };
 
-// One pass.
+// Collects this in one pass.
 std::vector<ConditionProgress> CountProgress(const ResultStore& store, const RunDescription& run) {
   std::vector<ConditionProgress> progress(run.conditions.size(),
                                           {0, 0, std::vector<FirstTrials>(run.estimators.size())});
@@ -51,7 +51,7 @@ std::vector<ConditionProgress> CountProgress(const ResultStore& store, const Run
 
 Json TrialOrNull(const std::optional<std::uint32_t>& trial) { return trial ? Json(*trial) : Json(); }
 
-// Conditions with their levels, their progress, and per estimator the first failure and refusal.
+// Returns the conditions with their levels, their progress, and each estimator's first failure and refusal.
 Json RenderConditionProgress(const ResultStore& store, const RunDescription& run) {
   Json conditions = Json::array();
   const std::vector<ConditionProgress> progress = CountProgress(store, run);
@@ -71,7 +71,7 @@ Json RenderConditionProgress(const ResultStore& store, const RunDescription& run
   return conditions;
 }
 
-// A list of [key, text].
+// Returns a list of [key, text].
 Json AsPairs(const Settings& settings) {
   Json pairs = Json::array();
   for (const auto& [key, text] : settings) pairs.push_back({key, text});
@@ -109,7 +109,7 @@ Json RunAsJson(const std::string& path, const ResultStore& store) {
           {"events", events}};
 }
 
-// Whether regimes of a population can be told apart.
+// Returns whether the run has regimes of a population.
 bool HasMarginals(const RunDescription& run) {
   return HasPopulationIntervals(run) && GroupByDraw(run).levels.size() >= kLeastConditions;
 }
@@ -158,7 +158,7 @@ void WriteReportData(const std::string& run, const std::string& against, const s
   } catch (const InputError& error) {
     const std::string message = error.what();
     if (message.find(run) != std::string::npos) throw;
-    throw InputError(fmt::format("{}: {}", run, message));  // one of several runs
+    throw InputError(fmt::format("{}: {}", run, message));  // names one of several runs
   }
 }
 

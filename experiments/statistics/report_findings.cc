@@ -14,10 +14,10 @@ namespace {
 
 constexpr double kSignificanceLevel = 0.05;
 constexpr double kStatedCoverage = 0.95;
-constexpr double kLeastCoverage = 0.9, kMostCoverage = 0.98;  // beyond, a 95 % region is far off
-constexpr double kManyRefusals = 0.1;                         // rate from which refusals are a finding
+constexpr double kLeastCoverage = 0.9, kMostCoverage = 0.98;  // beyond these, a 95 % region is far off
+constexpr double kManyRefusals = 0.1;                         // a greater rate of refusals is a finding
 
-// Labels in the order of their first row.
+// Returns the labels in the order of their first row.
 template <typename Row>
 std::vector<std::string> LabelsIn(const std::vector<Row>& rows) {
   std::vector<std::string> labels;
@@ -28,13 +28,13 @@ std::vector<std::string> LabelsIn(const std::vector<Row>& rows) {
   return labels;
 }
 
-// "12.30 % [10.10, 14.80]": with the digits of the tables.
+// Formats "12.30 % [10.10, 14.80]" with the digits of the tables.
 std::string PercentWithInterval(double value, const Interval& interval) {
   return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * value, 100.0 * interval.lower,
                      100.0 * interval.upper);
 }
 
-// " at outlier_ratio 0.4, sigma_px 1"; nothing without factors.
+// Formats " at outlier_ratio 0.4, sigma_px 1"; empty without factors.
 std::string FormatPlace(const std::vector<std::string>& levels,
                         const std::vector<std::string>& factor_names) {
   std::vector<std::string> words;
@@ -47,12 +47,12 @@ std::string RateAt(const Summary& summary, const SummaryRow& row) {
          FormatPlace(summary.levels.at(row.condition), summary.factor_names);
 }
 
-// How far an interval lies outside of a range; 0 within or across its end.
+// Returns the distance of an interval from a range; 0 if they overlap.
 double DistanceFrom(const Interval& interval, double lower, double upper) {
   return std::max({0.0, lower - interval.upper, interval.lower - upper});
 }
 
-// A sentence and how much it matters.
+// A sentence and its importance.
 struct Finding {
   double weight = 0.0;
   std::string sentence;
@@ -63,7 +63,7 @@ void AddByWeight(std::vector<Finding> findings, std::vector<std::string>* senten
   for (Finding& finding : findings) sentences->push_back(std::move(finding.sentence));
 }
 
-// How sharp the regions of a coverage are, where it is known.
+// Describes the sharpness of the regions of a coverage, if it is known.
 std::string DescribeSharpness(const Summary& summary, const SummaryRow& coverage) {
   std::string words;
   for (const std::string& quantity : AddSharpness(summary, {"nees_coverage"})) {
@@ -80,7 +80,7 @@ std::string DescribeSharpness(const Summary& summary, const SummaryRow& coverage
   return words;
 }
 
-// Regions that are far from what they state, the farthest first: of each estimator the worst condition.
+// Regions that are far from what they state, the farthest first: the worst condition of each estimator.
 void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentences) {
   std::vector<Finding> findings;
   for (const std::string& label : LabelsIn(summary.rows)) {
@@ -106,7 +106,7 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
   AddByWeight(std::move(findings), sentences);
 }
 
-// Stated probabilities that are not the rate of failures, the farthest first.
+// Stated probabilities that differ from the failure rate, the farthest first.
 void AddWrongProbabilities(const std::vector<ForecastMeasures>& forecasts,
                            std::vector<std::string>* sentences) {
   std::vector<Finding> findings;
@@ -129,7 +129,7 @@ void AddWrongProbabilities(const std::vector<ForecastMeasures>& forecasts,
   AddByWeight(std::move(findings), sentences);
 }
 
-// Estimators that refuse often: of each the condition in which it does most.
+// Estimators that refuse often, each with the condition with most refusals.
 void AddRefusals(const Summary& summary, std::vector<std::string>* sentences) {
   std::vector<Finding> findings;
   for (const std::string& label : LabelsIn(summary.rows)) {
@@ -165,7 +165,7 @@ void AddRangesOfFailure(const Summary& summary, std::vector<std::string>* senten
   }
 }
 
-// What the tests of one estimator and event decide over the conditions.
+// The decisions of the tests of one estimator and event over the conditions.
 struct Tally {
   int more = 0, less = 0;
   const ComparisonRow* farthest = nullptr;
@@ -184,8 +184,8 @@ Tally CountDifferences(const Comparison& comparison, const std::string& label, c
   return tally;
 }
 
-// "fails less often in 3 (-25.00 points [-30.00, -20.00] at outlier_ratio 0.4) and more often in 1"; empty
-// where nothing is decided.
+// Formats "fails less often in 3 (-25.00 points [-30.00, -20.00] at outlier_ratio 0.4) and more often in 1";
+// empty if nothing is decided.
 std::string DescribeTally(const Tally& tally, const std::string& verb, const Comparison& comparison) {
   std::vector<std::string> parts;
   for (const bool is_less : {true, false}) {
@@ -203,7 +203,7 @@ std::string DescribeTally(const Tally& tally, const std::string& verb, const Com
   return parts.empty() ? "" : fmt::format("{} {}", verb, fmt::join(parts, " and "));
 }
 
-// Those ahead of the reference first; those of which nothing is decided in one sentence.
+// Estimators ahead of the reference come first; those without a decision share one sentence.
 void AddPairedDifferences(const Summary& summary, const Comparison& comparison,
                           std::vector<std::string>* sentences) {
   if (comparison.rows.empty()) return;
@@ -238,7 +238,7 @@ void AddPairedDifferences(const Summary& summary, const Comparison& comparison,
   }
 }
 
-// The farthest ahead of the reference first.
+// The farthest ahead of the reference comes first.
 void AddDifferencesInPopulation(const Comparison& comparison, std::vector<std::string>* sentences) {
   std::vector<Finding> findings;
   for (const ComparisonRow& row : comparison.rows) {

@@ -9,15 +9,15 @@
 
 namespace rcme {
 
-// What a run shows, a sentence each, what matters most first:
-//   regions that are far from the 95 % that they state (the whole interval below 90 or above 98 %)
-//   each estimator against the reference on the same trials: where the tests (Holm-adjusted p below 0.05)
-//   decide, those ahead first; over a population the differences with their intervals
-//   stated probabilities of failure whose mean lies outside the interval of the rate of failures
-//   refusals of more than a tenth of the trials
-//   the range of each failure rate with the conditions at its ends
-// Rates have their 95 % intervals and the digits of the tables. Nothing is said of what has no trials or no
-// partner.
+// Lists the findings of a run, one sentence each, the most important first:
+// - regions far from the stated 95 % (the whole coverage interval below 90 or above 98 %);
+// - each estimator against the reference on the same trials: significant differences (Holm-adjusted p below
+//   0.05), estimators ahead first; over a population the differences with their intervals;
+// - stated failure probabilities whose mean is outside the interval of the failure rate;
+// - refusals of more than a tenth of the trials;
+// - the range of each failure rate, with the conditions at its ends.
+// Rates have 95 % intervals and the digits of the tables. Quantities without trials, and comparisons without
+// a partner, are left out.
 std::vector<std::string> ListFindings(const Summary& summary, const Comparison& comparison,
                                       const std::vector<ForecastMeasures>& forecasts);
 

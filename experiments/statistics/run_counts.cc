@@ -19,7 +19,7 @@ std::uint64_t HashOfTrial(std::uint32_t condition, std::uint32_t trial) {
   return z ^ (z >> 31);
 }
 
-// Keeps those of the least hashes.
+// Keeps the trials with the least hashes.
 void KeepByHash(std::uint64_t hash, const StoredTrial& trial, size_t num,
                 std::map<std::uint64_t, StoredTrial>* kept) {
   if (kept->size() >= num && hash >= kept->rbegin()->first) return;

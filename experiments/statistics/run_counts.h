@@ -1,9 +1,8 @@
-// A run that keeps counts in place of its trials: what is counted of every condition, and a few trials as
-// they are, in memory and in a result file.
+// A run that keeps counts instead of its trials, in memory and in a result file: the counts of every
+// condition, and a few whole trials.
 //
-// Kept as they are: kNumSampled trials of each condition, and kNumFailed of those in which a motion has
-// failed, those of the least hashes. So they are a random sample that is the same whatever shards the trials
-// came in.
+// Of each condition it keeps kNumSampled trials, and kNumFailed of those in which a motion failed: the
+// trials with the least hashes. They are therefore a random sample that does not depend on the shards.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +17,7 @@
 
 namespace rcme {
 
-// Places of trials in a shard.
+// A set of places of trials in a shard.
 class Places {
  public:
   static Places First(std::uint32_t num);
@@ -28,10 +27,10 @@ class Places {
   bool Intersects(const Places& other) const;
   bool Has(std::uint32_t place) const { return place < has_.size() && has_[place]; }
   std::int64_t num() const { return num_; }
-  // Those of 0, ..., end - 1 that are not there, ascending.
+  // Returns the places of 0, ..., end - 1 that are not in the set, ascending.
   std::vector<TrialRange> Missing(std::uint32_t end) const;
 
-  // "0-499,600".
+  // Formats the set as "0-499,600".
   std::string Text() const;
   // Throws Damage.
   static Places FromText(const std::string& text);
@@ -46,7 +45,7 @@ class KeptTrials {
   static constexpr size_t kNumSampled = 20, kNumFailed = 100;
 
   void Add(const StoredTrial& trial, const FailureBounds& bounds);
-  // By number.
+  // Returns the kept trials by number.
   std::map<std::uint32_t, StoredTrial> All() const;
 
  private:
@@ -71,10 +70,10 @@ struct RunCounts {
   std::int64_t NumTrials() const;
 };
 
-// Throws Damage, and InputError if the file keeps its trials.
+// Throws Damage, and InputError if the file keeps trials.
 RunCounts ReadCounts(const ResultFile& file);
 
-// Writes the conditions in one transaction in place of what the file has of them.
+// Replaces these conditions in the file, in one transaction.
 void WriteCounts(const RunCounts& counts, const std::set<std::uint32_t>& conditions, ResultFile* file);
 
 }  // namespace rcme

@@ -46,7 +46,7 @@ void SceneSplit::AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* row
     const VarianceSplit split = counts_[v].scenes.Split();
     SummaryRow within = MakeSplitRow(cell, event + kWithin, SummaryRow::Kind::kVarianceShare);
     within.is_of_split = true;
-    within.n = std::isnan(split.within_share) ? 0 : split.num_scenes;  // nothing varies: there are no shares
+    within.n = std::isnan(split.within_share) ? 0 : split.num_scenes;  // NaN: nothing varies
     within.value = split.within_share;
     within.interval = split.within_share_interval;
     within.interval_kind = IntervalKind::kLogStudent;

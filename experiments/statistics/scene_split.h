@@ -1,5 +1,5 @@
-// How much of the variance of an event (failure, refusal, either) is between scenes and how much the
-// sampler's within them, in runs with repeats per scene (stats/variance_split.h).
+// Divides the variance of an event (failure, refusal, either) into the part between scenes and the sampler's
+// part within them, for runs with repeats per scene (stats/variance_split.h).
 #pragma once
 
 #include <string>
@@ -10,22 +10,22 @@
 
 namespace rcme {
 
-// Of one estimator in one condition, growing trial by trial.
+// The split for one estimator in one condition, collected trial by trial.
 class SceneSplit {
  public:
   explicit SceneSplit(int repeats_per_scene);
 
   void Add(const TrialRecord& record, const FailureBounds& bounds);
-  // Scenes with fewer trials than asked for, or with some that are not scored, are left out.
+  // Ends a scene. Scenes with missing trials, or with some that are not scored, are left out.
   void EndScene();
 
-  // `cell` holds what the rows share.
+  // `cell` has the values common to all rows.
   void AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* rows) const;
 
  private:
-  // Of one event.
+  // The counts of one event.
   struct Counts {
-    int num_trials = 0, num_events = 0;  // in the scene so far
+    int num_trials = 0, num_events = 0;  // in the current scene
     RepeatedEvents scenes;
   };
 
@@ -33,7 +33,7 @@ class SceneSplit {
   std::vector<Counts> counts_;  // one per event of TrialEvents()
 };
 
-// What the rows are, for `rcme list quantities`.
+// Explains the rows, for `rcme list quantities`.
 std::vector<QuantityHelp> SceneSplitQuantities();
 
 }  // namespace rcme

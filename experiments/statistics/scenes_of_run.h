@@ -1,5 +1,5 @@
-// The trials of a run, scene by scene: where scenes are repeated (Study::repeats_per_scene), the repeats of
-// one are not independent, and what is said of trials is said of scenes.
+// Visits the trials of a run scene by scene. The repeats of a scene (Study::repeats_per_scene) depend on
+// each other, so statistics then count scenes instead of trials.
 #pragma once
 
 #include <functional>
@@ -10,11 +10,11 @@
 
 namespace rcme {
 
-// The mean over the trials of a scene that give a number.
+// The mean over those trials of a scene that have a value.
 class SceneMean {
  public:
   void Add(double x) { sum_ += x, ++count_; }
-  // And begins the next scene. Nothing where no trial gave one.
+  // Returns the mean, or nothing if no trial had a value, and begins the next scene.
   std::optional<double> Take();
 
  private:
@@ -22,12 +22,12 @@ class SceneMean {
   int count_ = 0;
 };
 
-// Whether trials of the same number share their scene in all conditions (Study::common_scenes).
+// Returns whether trials with the same number share their scene in all conditions (Study::common_scenes).
 bool HasCommonScenes(const RunDescription& run);
 
 // Calls `visit` for every trial of the run, ordered by condition and trial, and `end_of_scene` with the
-// condition after the last trial of each scene. `is_first`: of its scene; a run that was cut off may lack
-// it.
+// condition after the last trial of each scene. `is_first`: the trial is the first of its scene, which an
+// interrupted run may lack.
 void ForEachTrialByScene(
     const ReadableRun& run,
     const std::function<void(const ProblemRecord&, const std::vector<TrialRecord>&, bool is_first)>& visit,

@@ -1,4 +1,4 @@
-// A share of answers with its interval, where some of them depend on each other.
+// A share of answers with its interval, for answers that depend on each other within clusters.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ struct ClusteredShare {
   double value() const { return static_cast<double>(count) / static_cast<double>(n); }
 };
 
-// `holds` by answer, `clusters` the same: exact where every answer is a cluster of its own, else by betting
-// on the sums of the clusters (stats/clustered_estimate.h). There is at least one answer.
+// `holds` and `clusters` have an element per answer, at least one. The interval is exact if every answer is
+// a cluster of its own; otherwise it is by betting on the sums of clusters (stats/clustered_estimate.h).
 ClusteredShare MeasureShareOfClusters(const std::vector<bool>& holds,
                                       const std::vector<std::int64_t>& clusters);
 

@@ -20,7 +20,7 @@ void AppendHelp(const std::vector<Quantity<Record>>& quantities, std::vector<Qua
   }
 }
 
-// Cells of counts.
+// Collects cells of counts.
 std::vector<SummaryCell> CollectDraws(const ResultStore& store, const RunDescription& run) {
   const TrialGroups groups = GroupByDraw(run);
   SummaryCell empty(run.estimators.size());
@@ -83,7 +83,7 @@ Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
 std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {
   std::vector<std::string> found;
   for (const auto& [label, effort] : summary.efforts) {
-    // Of all trials are rates of both kinds of refusal, which exclude each other.
+    // Both kinds of refusal are rates over all trials and exclude each other.
     std::map<std::uint32_t, double> refused;
     for (const SummaryRow& row : summary.rows) {
       const bool is_refusal = row.quantity == "no_candidate" || row.quantity == "other_refusal";

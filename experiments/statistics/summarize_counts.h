@@ -7,12 +7,12 @@
 
 namespace rcme {
 
-// Opens a file that keeps counts and checks all of it. Throws InputError.
+// Opens a file that keeps counts, and checks all of it. Throws InputError.
 RunCounts OpenCounts(const std::string& path);
-// Whether a result file keeps counts; false also where it cannot be read.
+// Returns whether a result file keeps counts; false also if it cannot be read.
 bool KeepsCounts(const std::string& path);
 
-// The summary that the trials themselves would give (summary_cell.h).
+// Returns the summary that the trials themselves would give (summary_cell.h).
 Summary SummarizeCounts(const RunCounts& counts, bool with_times, Pooling pooling = Pooling::kPerCondition);
 
 }  // namespace rcme

@@ -52,12 +52,13 @@ void PrepareForRows(bool has_repeats, QuantitySums* sums) {
   if (has_repeats) sums->scene.resize(sums->counts.size());
 }
 
-// Whether the quantity is a mean of scores: the means of scenes are no zeros and ones.
+// Returns whether the quantity is accumulated as scores. Rates are, if scenes are repeated, because the
+// means of scenes are not just 0 or 1.
 bool IsOfScores(const QuantitySums& sums, Kind kind) {
   return !sums.scores.empty() && (kind == Kind::kScore || (kind == Kind::kRate && !sums.scene.empty()));
 }
 
-// What the first trial of a scene alone decides.
+// Returns whether only the first trial of a scene counts.
 bool IsOfFirst(Kind kind) { return kind == Kind::kRate || kind == Kind::kMedian; }
 
 struct AddNumber {
@@ -66,7 +67,7 @@ struct AddNumber {
   void operator()(auto& numbers) const { numbers.Add(x); }
 };
 
-// The mean of a scene, which is its number where it has one trial.
+// Adds the mean of a scene; for a scene with one trial this is its value.
 void AddMean(double mean, Kind kind, size_t q, QuantitySums* sums) {
   if (IsOfScores(*sums, kind)) {
     sums->scores[q].moments.Add(mean);
@@ -109,7 +110,7 @@ struct FillFrom {
     if (row->n > 0 && row->quantity == "nees_coverage")
       row->coverage_verdict = JudgeCoverage(row->value, row->interval, row->n, num_trials, is_of_fixed_n);
   }
-  // Its interval is of a number of trials that was fixed beforehand.
+  // The interval requires a number of trials fixed beforehand.
   void operator()(const StreamMedian& median) const {
     row->n = median.n();
     row->value = median.median();
@@ -131,7 +132,7 @@ struct FillFrom {
   }
 };
 
-// Of weighted trials there are rates of all of them, and no others.
+// Weighted trials have only rates over all trials.
 void FillWeighted(const QuantityCounts& counts, std::int64_t num_trials, SummaryRow* row) {
   row->interval_kind = IntervalKind::kWeighted;
   if (row->kind == Kind::kMedian) return FillFrom{num_trials, row}(StreamMedian());
@@ -144,7 +145,7 @@ void FillWeighted(const QuantityCounts& counts, std::int64_t num_trials, Summary
   row->interval = {std::min(rate.interval.lower, 1.0), std::min(rate.cautious_upper, 1.0)};
 }
 
-// The names of TrialQuantities() or ProblemQuantities().
+// Returns the names of TrialQuantities() or ProblemQuantities().
 template <typename Record>
 const std::vector<SharedText>& ListNames(const std::vector<Quantity<Record>>& quantities) {
   static const std::vector<SharedText> names = [&] {
@@ -270,7 +271,8 @@ SummaryCell::SummaryCell(size_t num_estimators)
 SummaryCell::SummaryCell(size_t num_estimators, int repeats_per_scene) : SummaryCell(num_estimators) {
   const bool has_repeats = repeats_per_scene > 1;
   for (QuantitySums& estimator : estimators_) PrepareForRows(has_repeats, &estimator);
-  PrepareForRows(/*has_repeats=*/false, &problems_);  // all trials of a scene have one: it counts once
+  PrepareForRows(/*has_repeats=*/false,
+                 &problems_);  // all trials of a scene have the same problem, which counts once
   if (has_repeats) splits_.assign(num_estimators, SceneSplit(repeats_per_scene));
   RankErrors();
 }

@@ -1,15 +1,15 @@
-// The one accumulator of the summary, of a run that keeps its trials and of one that keeps counts
-// (run_counts.h): what the summary needs of the trials of one condition, or of one group of trials, in memory
-// that does not grow with them.
+// The accumulator of the summary, for runs that keep trials and for runs that keep counts (run_counts.h). It
+// holds what the summary needs of the trials of one condition or group, in memory that does not grow with
+// them. There are two kinds of cells:
 //
-// The sums of counts have no rounding errors, so that neither the order of the trials nor how they are
-// grouped changes a bit. Exact are rates with their intervals, medians with theirs (as they are of trials),
-// means and standard errors (correctly rounded), scores; the bounds of a score's mean are of scores moved by
-// at most 1e-10 (stats/exact_scores.h).
+// A cell of counts has sums without rounding errors, so neither the order of the trials nor their grouping
+// changes a bit. Rates, medians and their intervals equal those of trials; means and standard errors are
+// correctly rounded; the bounds of a score's mean are those of scores moved by at most 1e-10
+// (stats/exact_scores.h).
 //
-// Rows are read in one order; their means are sums in floating point, and the bounds of scores are those of
-// the scores themselves. Rows alone give rates of weighted trials, of repeated scenes means and a split
-// (scene_split.h), and how errors rank (error_ranking.h).
+// A cell of rows gets the trials in one order; its means are floating-point sums, and the bounds of scores
+// are those of the scores themselves. Only cells of rows support rates of weighted trials, means and a
+// variance split for repeated scenes (scene_split.h), and the ranking of errors (error_ranking.h).
 #pragma once
 
 #include <string>
@@ -30,52 +30,53 @@
 
 namespace rcme {
 
-// By kind, and for means by what is summed up: counts or rows. A rate's events have the weight 1, unless
-// their trials are weighted.
+// The accumulator of a quantity. Its type depends on the kind of quantity and, for means, on the kind of
+// cell. The events of a rate have weight 1 unless their trials are weighted.
 using QuantityCounts = std::variant<WeightedEvents, StreamMedian, ExactScores, ExactMoments, Moments>;
 
-// Of rows.
+// Scores in a cell of rows.
 struct RowScores {
   Moments moments;
   ScoreMean scores;
 };
 
-// Of one estimator, or of the problems.
+// The quantities of one estimator, or of the problems.
 struct QuantitySums {
   std::vector<QuantityCounts> counts;  // by TrialQuantities() or ProblemQuantities()
-  std::vector<RowScores> scores;       // the same; only of rows
-  std::vector<SceneMean> scene;        // the same, of the scene so far; only of rows with repeated scenes
+  std::vector<RowScores> scores;       // likewise; only in cells of rows
+  std::vector<SceneMean> scene;  // likewise, of the current scene; only in cells of rows with repeated scenes
   std::int64_t num_scenes = 0;
   bool is_weighted = false;
 };
 
 class SummaryCell {
  public:
-  // Of counts: trials without weights, each of a scene of its own.
+  // A cell of counts, for trials without weights, each with its own scene.
   explicit SummaryCell(size_t num_estimators);
-  // Of rows: every scene counts once, as summarize.h says.
+  // A cell of rows, in which every scene counts once, as described in summarize.h.
   SummaryCell(size_t num_estimators, int repeats_per_scene);
 
-  // Of counts of a run that has its trials: rank errors as well; before the first trial.
+  // Lets a cell of counts rank errors too, for a run that has its trials. Call it before the first trial.
   void RankErrors();
 
-  // The trials of a scene one after the other, then EndScene; of counts without it, all trials are alike.
+  // Adds a trial. In a cell of rows, the trials of a scene follow each other, then call EndScene. A cell of
+  // counts needs no EndScene and treats all trials alike.
   void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records, const FailureBounds& bounds,
            bool is_first_of_scene = true);
   void EndScene();
-  // Of counts.
+  // For cells of counts.
   void Merge(const SummaryCell& other);
 
   std::int64_t num_trials() const { return num_trials_; }
   bool ranks_errors() const { return !rankings_.empty(); }
   const QuantitySums& of_estimator(size_t estimator) const { return estimators_[estimator]; }
   const QuantitySums& of_problems() const { return problems_; }
-  // The rows of a summary; `cell` holds what they share but for the estimator.
+  // Appends the rows of a summary. `cell` has the values common to all rows except the estimator.
   void AppendRows(const RunDescription& run, SummaryRow cell, std::vector<SummaryRow>* rows) const;
 
-  // Of counts.
+  // For cells of counts.
   std::vector<CountedQuantity> Texts() const;
-  // Throws Damage for texts that it does not give, or not of so many trials.
+  // Throws Damage for texts that Texts cannot have returned, or that do not match `num_trials`.
   static SummaryCell FromTexts(const std::vector<CountedQuantity>& texts, size_t num_estimators,
                                std::int64_t num_trials);
 
@@ -83,16 +84,16 @@ class SummaryCell {
   std::int64_t num_trials_ = 0;
   std::vector<QuantitySums> estimators_;
   QuantitySums problems_;
-  std::vector<SceneSplit> splits_;      // by estimator; none without repeats
-  std::vector<ErrorRanking> rankings_;  // by estimator; none of counts alone
+  std::vector<SceneSplit> splits_;      // by estimator; empty without repeats
+  std::vector<ErrorRanking> rankings_;  // by estimator; empty for plain cells of counts
 };
 
-// The summary of a run, of one group after the other.
+// Makes the summary of a run from its groups, one after the other.
 class GroupSummarizer {
  public:
   GroupSummarizer(const RunDescription& run, const TrialGroups& groups);
 
-  void Append(const SummaryCell& cell);  // of the next group
+  void Append(const SummaryCell& cell);  // the cell of the next group
   Summary Finish(bool with_times);
 
  private:

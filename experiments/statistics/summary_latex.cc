@@ -16,12 +16,12 @@
 namespace rcme {
 namespace {
 
-// The names of a table in words, and which of the labels were needed.
+// The texts for the names in a table; records which labels were used.
 class Names {
  public:
   explicit Names(const Settings& labels) : labels_(labels.begin(), labels.end()) {}
 
-  // Without a label as `otherwise` says.
+  // Returns `otherwise` for a name without a label.
   std::string Of(const std::string& name, const std::string& otherwise) {
     known_.insert(name);
     const auto label = labels_.find(name);
@@ -49,7 +49,7 @@ class Names {
   std::set<std::string> known_;
 };
 
-// Puts the labels in the place of factors, estimators and quantities.
+// Replaces the names of factors, estimators and quantities by their labels.
 void Rename(Names* names, Table* table) {
   for (size_t c = 0; c < table->columns.size(); ++c) {
     Column& column = table->columns[c];

@@ -7,14 +7,15 @@
 
 namespace rcme {
 
-// What a table of a paper shows where nothing else is asked for.
+// Returns the quantities of a paper's table that are used by default.
 const std::vector<std::string>& DefaultLatexQuantities();
 
-// A tabular of LaTeX with the rules of the package booktabs: a row per condition and estimator, a column per
-// quantity, each number with its interval or standard error, and with its n where that is not the row's. In
-// comments before it: the study, the kind of the intervals, what it needs. `labels`: what to print in place
-// of an estimator, a factor or a quantity, {name, text}. Every text is escaped. Throws InputError for a
-// quantity that the summary has not, and for a label of a name that is not in the table.
+// Renders a LaTeX tabular with the rules of the package booktabs: a row per condition and estimator, a
+// column per quantity. Each number has its interval or standard error, and its n if that is not the row's.
+// Comments before the tabular name the study, the kind of the intervals and the required packages. `labels`
+// are pairs {name, text}: texts to print instead of the names of estimators, factors or quantities. All
+// texts are escaped. Throws InputError for a quantity that the summary does not have, and for a label whose
+// name is not in the table.
 std::string SummaryAsLatex(const Summary& summary, const std::vector<std::string>& quantities,
                            const Settings& labels);
 

@@ -52,7 +52,7 @@ bool IsShare(SummaryRow::Kind kind) {
          kind != SummaryRow::Kind::kArea;
 }
 
-// One word.
+// Returns the name of an interval kind as one word.
 std::string IntervalKindName(IntervalKind kind) {
   switch (kind) {
     case IntervalKind::kExact:
@@ -77,7 +77,7 @@ bool HasStandardError(const SummaryRow& row) {
   return row.kind == SummaryRow::Kind::kMean || row.kind == SummaryRow::Kind::kArea;
 }
 
-// NaN: the verdict is known, or no number of trials may decide it.
+// NaN if the verdict is known or no number of trials can decide it.
 double TrialsToDecide(const CoverageVerdict& verdict) {
   const bool is_known =
       verdict.verdict == RegionVerdict::kUndecided && std::isfinite(verdict.trials_to_decide);
@@ -88,7 +88,7 @@ PopulationPart PartOfPopulation(const SummaryRow& row) {
   return row.of_population ? *row.of_population : PopulationPart();
 }
 
-// Of a table with a row for every quantity. `summary` must outlive the columns.
+// The columns of a table with a row for every quantity. `summary` must outlive them.
 std::vector<ColumnOf<SummaryRow>> MakeRowColumns(const Summary& summary) {
   using R = const SummaryRow&;
   std::vector<ColumnOf<SummaryRow>> columns = {
@@ -131,7 +131,7 @@ std::vector<ColumnOf<SummaryRow>> MakeRowColumns(const Summary& summary) {
   return columns;
 }
 
-// One line per estimator whose effort is known.
+// Returns a line per estimator whose effort is known.
 std::string DescribeEfforts(const Summary& summary) {
   std::string text;
   for (const auto& [label, effort] : summary.efforts) {
@@ -140,7 +140,7 @@ std::string DescribeEfforts(const Summary& summary) {
   return text.empty() ? text : "Effort of a call:\n" + text;
 }
 
-// The field's measures.
+// The usual measures of accuracy.
 std::string FormatAccuracy(const Summary& summary) {
   return fmt::format(
       "Accuracy (error: the greater of rotation and direction; a refusal has the\ngreatest)\n\n{}\n",
@@ -154,7 +154,7 @@ bool HasErrorRanking(const Summary& summary) {
                              [](const SummaryRow& row) { return row.kind == SummaryRow::Kind::kArea; });
 }
 
-// How stated uncertainty ranks errors; empty where nobody states any, and of counts.
+// The ranking of errors by stated uncertainty; empty if no uncertainty is stated, and for counts.
 std::string FormatErrorRanking(const Summary& summary) {
   if (!HasErrorRanking(summary)) return "";
   return fmt::format(
@@ -165,8 +165,8 @@ std::string FormatErrorRanking(const Summary& summary) {
           summary, {"rotation_ause", "rotation_ause_random", "direction_ause", "direction_ause_random"})));
 }
 
-// The estimators of which a verdict depends on the sampler's seed, each with the condition where it does most
-// often, and those of which none did.
+// Names the estimators whose outcome depends on the sampler's seed, each with the condition where it depends
+// most, and those for which it never does.
 std::string DescribeFlips(const Summary& summary) {
   std::vector<const SummaryRow*> most;  // one per estimator
   for (const SummaryRow& row : summary.rows) {
@@ -193,7 +193,7 @@ std::string DescribeFlips(const Summary& summary) {
   return "Whether a motion fails depends on the sampler's seed, at most:\n" + text;
 }
 
-// How hard the problems were; empty where nothing was measured.
+// The difficulty of the problems; empty if it was not measured.
 std::string FormatSeverity(const Summary& summary) {
   const bool is_measured = std::ranges::any_of(
       summary.rows, [](const SummaryRow& row) { return row.estimator == kSceneLabel && row.n > 0; });
@@ -204,7 +204,7 @@ std::string FormatSeverity(const Summary& summary) {
                                                   "crb_rotation_deg", "crb_direction_deg"}));
 }
 
-// What the scene and what the sampler decides; empty without repeats.
+// The split between scene and sampler; empty without repeats.
 std::string FormatSplit(const Summary& summary) {
   if (summary.repeats_per_scene == 1) return "";
   return fmt::format(
@@ -215,7 +215,7 @@ std::string FormatSplit(const Summary& summary) {
       DescribeFlips(summary));
 }
 
-// What intervals of a population are, with the effective number of trials of the rates of failure.
+// Explains the intervals for a population, with the effective number of trials of the failure rates.
 std::string FormatPopulation(const Summary& summary) {
   std::vector<double> effective;
   for (const SummaryRow& row : summary.rows)
@@ -232,13 +232,13 @@ std::string FormatPopulation(const Summary& summary) {
   return text + ".\n--format csv holds effective_n and the intervals of these very conditions.\n";
 }
 
-// The study, how much of it is done, and these quantities.
+// The study, its progress, and these quantities.
 std::string FormatQuantities(const Summary& summary, const std::vector<std::string>& quantities) {
   return fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
                      summary.num_trials_planned, RenderQuantityTable(summary, quantities));
 }
 
-// How the intervals of the tables are made.
+// Explains the intervals of the tables.
 std::string DescribeIntervals(const Summary& summary) {
   std::string text =
       summary.is_of_population

@@ -170,13 +170,13 @@ const std::vector<TrialQuantity>& OwnQuantities() {
   return all;
 }
 
-// Of what few estimators state.
+// Quantities that few estimators state.
 bool IsOfProbabilities(const std::string& quantity) {
   return quantity == "sigma_estimated_px" || quantity == "inlier_brier" ||
          quantity == "failure_probability" || quantity == "brier" || quantity == "failure_of_sure";
 }
 
-// Of what few data or estimators have: the bounds that real pairs do not have, a covariance.
+// Quantities that few data or estimators have: bounds, which real pairs lack, and a covariance.
 bool IsOfDensity(const std::string& quantity) {
   return quantity == "rotation_sd_deg" || quantity == "direction_sd_deg" || quantity == "sd_over_crb" ||
          quantity == "log_det_cov" || quantity == "energy_score_deg" || quantity == "log_score" ||
@@ -184,19 +184,19 @@ bool IsOfDensity(const std::string& quantity) {
          IsOfErrorRanking(quantity);
 }
 
-// Of what only an estimator outside the program can do.
+// Outcomes that only estimators outside the program have.
 bool IsOfOutside(const std::string& quantity) {
   return quantity == StatusName(MotionStatus::kTimedOut) || quantity == StatusName(MotionStatus::kNoAnswer) ||
          quantity == StatusName(MotionStatus::kUnreadableAnswer);
 }
 
-// What does not count is named by two quantities and is in no other.
+// Two quantities name trials that do not count; no other quantity includes these trials.
 void LeaveOutUncounted(TrialQuantity* quantity) {
   if (quantity->name == StatusName(MotionStatus::kNotSimulated)) return;
   quantity->is_of = quantity->name == "not_scored" ? WasSimulated : IsCounted;
 }
 
-// Whether any row of a quantity has trials, and any a value above 0.
+// Whether any row of a quantity has trials, and whether any has a value above 0.
 struct Presence {
   bool has_numbers = false, has_events = false;
   void Add(const SummaryRow& row) {
@@ -205,8 +205,8 @@ struct Presence {
   }
 };
 
-// No unbiased estimator has smaller errors than the bound: where that exceeds what counts as failed, the
-// problem and not the estimator is to blame.
+// No unbiased estimator has smaller errors than the bound. If the bound exceeds the failure bounds, the
+// problem is to blame and not the estimator.
 bool IsImpossible(const ProblemRecord& problem, const FailureBounds& bounds) {
   return problem.severity.crb_rotation_deg > bounds.max_rotation_error_deg ||
          problem.severity.crb_direction_deg > bounds.max_direction_error_deg;

@@ -1,4 +1,4 @@
-// What a trial contributes to each quantity of the summary.
+// The quantities of the summary, and what a trial contributes to each.
 #pragma once
 
 #include <functional>
@@ -11,15 +11,15 @@
 
 namespace rcme {
 
-// What a trial contributes to a quantity: nothing (it is not of those the quantity is about), or a number (a
-// rate: 0 or 1). `Record` is TrialRecord, for estimators, or ProblemRecord.
+// A quantity of the summary. `Record` is TrialRecord for quantities of estimators, or ProblemRecord.
 template <typename Record>
 struct Quantity {
   std::string name;
   SummaryRow::Kind kind;
   std::string doc;
+  // Returns the value of a record (0 or 1 for a rate), or nothing if it does not count for the quantity.
   std::function<std::optional<double>(const Record&, const FailureBounds&)> contribution;
-  bool (*is_of)(const Record&) = nullptr;  // the records that may contribute; null: all
+  bool (*is_of)(const Record&) = nullptr;  // records that may contribute; null: all
 
   std::optional<double> Measure(const Record& record, const FailureBounds& bounds) const {
     return is_of && !is_of(record) ? std::nullopt : contribution(record, bounds);
@@ -31,12 +31,13 @@ using ProblemQuantity = Quantity<ProblemRecord>;
 const std::vector<TrialQuantity>& TrialQuantities();
 const std::vector<ProblemQuantity>& ProblemQuantities();
 
-// Of what is not the same when a run is made again.
+// Returns whether the quantity differs when a run is repeated.
 bool IsOfTimes(const std::string& quantity);
 
-// Takes away the rows of times, unless asked for, of probabilities, where no estimator states any, of what
-// only estimators outside the program do (timed_out, ...), where none did, of trials that were not simulated,
-// where all were, and each of the stated density that no answer of the run has (sd_over_crb of real pairs).
+// Removes rows without information: of times, unless requested; of probabilities, if no estimator states
+// any; of statuses that only estimators outside the program have (timed_out, ...), if none occurred; of
+// trials that were not simulated, if all were; and each quantity of the stated density that no answer has
+// (sd_over_crb for real pairs).
 void LeaveOutRows(bool with_times, Summary* summary);
 
 }  // namespace rcme

@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Draws are no factor of the surface.
+// The draw itself is not a factor of the surface.
 Json LevelsAsJson(const std::vector<std::string>& factors, const std::vector<std::string>& levels) {
   Json json = Json::array();
   for (size_t f = 0; f < factors.size(); ++f)
@@ -28,8 +28,7 @@ Json LevelsAsJson(const std::vector<std::string>& factors, const std::vector<std
   return json;
 }
 
-// What the population says of a factor: its range, and the choice that it is drawn with. A key with several
-// ranges has the widest.
+// Describes a factor: its range in the population. A key with several ranges gets the widest.
 Json FactorAsJson(const std::string& name, const std::optional<Population>& population) {
   Json factor = {{"name", name}, {"scale", nullptr}};
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -55,7 +54,8 @@ std::string NameOfQuantity(MarginalQuantity quantity) {
   return quantity == MarginalQuantity::kFailedLessStated ? "P-y" : Name(quantity);
 }
 
-// Count, mean and spread of the quantity in each condition of a run, of a coverage with its sharpness.
+// Returns n, mean and standard deviation of the quantity in each condition of a run; for a coverage also the
+// sharpness.
 Json RenderConditionMoments(const ResultStore& store, const RunDescription& run, size_t number,
                             size_t estimator, MarginalQuantity quantity) {
   Json conditions = Json::array();
@@ -77,15 +77,15 @@ Json RenderConditionMoments(const ResultStore& store, const RunDescription& run,
   return conditions;
 }
 
-// One more than the number of the last draw; 0: no population.
+// Returns the number of the last draw plus one; 0 without a population.
 int CountDrawn(const Study& study) {
   if (!study.population) return 0;
   const Population& population = *study.population;
   return population.draws.empty() ? population.number : population.draws.back() + 1;
 }
 
-// Draws from number `first` on that meet the study's restrictions, with every combination of its factors'
-// levels.
+// Returns draws with numbers from `first` on that meet the study's restrictions, with every combination of
+// the levels of its factors.
 Json CandidatesAsJson(Study study, int first, int number) {
   if (!study.population)
     throw InputError("--propose: the study of this run has no population to draw further conditions from");

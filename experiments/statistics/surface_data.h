@@ -1,5 +1,5 @@
-// What a surface over conditions is fitted to: of one estimator, a quantity in every condition of one or more
-// runs, with what is known of the factors, and later draws of the population that nobody has run.
+// The data to which a surface over conditions is fitted: a quantity of one estimator in every condition of
+// one or more runs, the ranges of the factors, and later draws of the population that have not been run.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@ namespace rcme {
 struct SurfaceOptions {
   std::string estimator;  // label; empty: the first of the first run
   MarginalQuantity quantity = MarginalQuantity::kFailure;
-  int num_candidates = 0;  // later draws
+  int num_candidates = 0;  // number of later draws
 };
 
-// As JSON (docs/output_formats.md). The runs have the same factors. Throws InputError where they differ, for
-// an estimator that a run does not have, and for candidates of a study without a population, or of a latin
+// Returns JSON (docs/output_formats.md). Throws InputError if the factors of the runs differ, if a run does
+// not have the estimator, or if candidates are requested for a study without a population or with a latin
 // hypercube, whose earlier draws would change.
 std::string SurfaceDataAsJson(const std::vector<std::string>& runs, const SurfaceOptions& options);
 

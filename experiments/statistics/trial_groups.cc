@@ -28,7 +28,7 @@ const SeverityColumn& FindSeverityColumn(const std::string& name) {
                                fmt::join(names, ", ")));
 }
 
-// The greatest values of the first four groups.
+// Returns the greatest values of the first four groups.
 std::vector<double> Bounds(std::vector<double> values) {
   std::ranges::sort(values);
   std::vector<double> bounds;
@@ -53,7 +53,7 @@ TrialGroups GroupByDraw(const RunDescription& run) {
   if (run.factors.empty() || run.factors.front() != kDrawFactor)
     throw std::logic_error("the conditions are no draws");
   TrialGroups groups{{kDrawFactor}, {}, {}};
-  std::map<std::string, size_t> number_of;  // by the draw
+  std::map<std::string, size_t> number_of;  // by draw
   std::vector<size_t> of_condition;
   for (const DescribedCondition& condition : run.conditions) {
     const std::string& draw = condition.levels.front();

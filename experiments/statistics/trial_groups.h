@@ -1,4 +1,4 @@
-// How the trials of a run are put together for a summary.
+// Groups the trials of a run for a summary.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,9 @@ namespace rcme {
 
 struct TrialGroups {
   std::vector<std::string> factor_names;
-  std::vector<std::vector<std::string>> levels;  // of every group, one per factor
+  std::vector<std::vector<std::string>> levels;  // of every group, one level per factor
   std::function<size_t(const ProblemRecord&)> group_of;
-  bool is_in_order = false;  // the trials of a run, by condition and trial, come group after group
+  bool is_in_order = false;  // trials ordered by condition and trial come group after group
 };
 
 enum class Pooling { kPerCondition, kPooled };
@@ -23,15 +23,15 @@ enum class Pooling { kPerCondition, kPooled };
 TrialGroups GroupByCondition(const RunDescription& run);
 TrialGroups OneGroup();
 
-// The conditions of a draw of a population, whatever their levels of factors: they are alike, draws are not.
-// Throws std::logic_error for a run without draws.
+// Groups all conditions of a draw of a population, whatever the levels of their factors; these depend on
+// each other, draws do not. Throws std::logic_error for a run without draws.
 TrialGroups GroupByDraw(const RunDescription& run);
 
-// Of each condition the number of its draw (GroupByDraw), or its own where there are no draws.
+// Returns the number of each condition's draw (GroupByDraw), or the condition's own number without draws.
 std::vector<size_t> NumberDraws(const RunDescription& run);
 
-// Which trials depend on each other: those of a draw, where the conditions are a sample of a population, else
-// those of a scene. Conditions that share their scenes have one scene per number of a trial.
+// Finds trials that depend on each other: those of a draw if the conditions are a sample of a population,
+// otherwise those of a scene. If conditions share their scenes, trials with the same number share a scene.
 class TrialClusters {
  public:
   explicit TrialClusters(const RunDescription& run);
@@ -43,10 +43,10 @@ class TrialClusters {
   std::int64_t conditions_apart_;
 };
 
-// Five groups with equally many trials, those with the least value of a number of the problem first
-// (kSeverityColumns: "crb_direction_deg"); equal values are in one group, and the trials of which it is
-// unknown in a sixth. Reads the run once. Throws InputError if there is no such number, or it is unknown of
-// all.
+// Makes five groups with equally many trials, by a number of the problem (kSeverityColumns:
+// "crb_direction_deg"), least values first. Equal values are in one group; trials for which the number is
+// unknown form a sixth. Reads the run once. Throws InputError if there is no such number, or if it is
+// unknown for all trials.
 TrialGroups GroupByFifth(const ResultStore& store, const std::string& quantity);
 
 }  // namespace rcme

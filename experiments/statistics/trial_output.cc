@@ -35,7 +35,7 @@ Json FundamentalAsJson(const RelativePose& pose, const Camera& camera1, const Ca
   return RowMajor(FundamentalFromEssential(EssentialFromPose(pose), camera1, camera2));
 }
 
-// The centre of camera 2 in camera 1's frame.
+// The centre of camera 2 in the frame of camera 1.
 Eigen::Vector3d Centre2(const RelativePose& cam2_from_cam1, double baseline_m) {
   return -baseline_m * (cam2_from_cam1.R.transpose() * cam2_from_cam1.t);
 }
@@ -55,7 +55,7 @@ Json ViewAsJson(const Eigen::Vector3d& centre_in_cam1, const Eigen::Matrix3d& ca
           {"edges_in_cam1", {Point(left), Point(right), Point(upper), Point(lower)}}};
 }
 
-// The cameras as they are; the scene is null for real pairs.
+// The true cameras; the scene is null for real pairs.
 struct TrueSetting {
   Camera camera1, camera2;
   std::optional<Scene> scene;
@@ -103,8 +103,8 @@ Json KindsAsJson(const Truth& truth) {
   return kinds;
 }
 
-// The matches whose lines tell most: true inliers; where nobody knows them, the inliers of a drawn estimator;
-// where there is none either, all matches.
+// Returns the matches whose epipolar lines are most informative: true inliers; if these are unknown, the
+// inliers of a drawn estimator; if there are none, all matches.
 std::vector<int> ListCandidates(const TrialResult& result, const std::vector<size_t>& drawn) {
   const std::vector<bool>& is_inlier = result.data.truth.is_inlier_true;
   for (const size_t e : drawn) {
@@ -117,7 +117,7 @@ std::vector<int> ListCandidates(const TrialResult& result, const std::vector<siz
   return candidates;
 }
 
-// From the first candidate on, always the one farthest in image 1 from those selected before it.
+// Begins with the first candidate and always adds the one farthest in image 1 from those selected before.
 std::vector<int> SpreadOver(const std::vector<Correspondence>& matches, const std::vector<int>& candidates) {
   std::vector<int> selected;
   std::vector<double> distance_px(candidates.size(), std::numeric_limits<double>::infinity());
@@ -133,7 +133,7 @@ std::vector<int> SpreadOver(const std::vector<Correspondence>& matches, const st
   return selected;
 }
 
-// The winning hypothesis: its sample, and which of the solver's models of it; null without one.
+// Returns the winning hypothesis: its sample, and the number of the solver's model. Null without one.
 Json HypothesisAsJson(const HypothesisId& id) {
   if (id.sample.size() == 0) return nullptr;
   return {{"sample", std::vector<int>(id.sample.begin(), id.sample.end())}, {"model", id.model}};

@@ -1,4 +1,4 @@
-// One trial for people: the data of its picture, and a short summary.
+// One trial for people: the data of its picture, and a short summary as text.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace rcme {
 
-// The estimator worth looking at where nobody chose one: the first that failed or refused, else the first.
+// Returns the estimator to show by default: the first that failed or refused, else the first.
 size_t MostTelling(const StudyPlan& plan, const TrialResult& result);
 
-// What plots/show_trial.py draws, as one JSON object. Lists over matches have the matches' order; matrices
-// are row-major lists of nine; what is unknown or not defined is null.
+// Returns the data that plots/show_trial.py draws, as one JSON object. Lists over matches have the order of
+// the matches; matrices are row-major lists of nine; unknown or undefined values are null.
 //
 //   study, seed, condition, trial, trials_planned, origin, sigma_px (assumed)
 //   factors, parts     [name, level] each; parts are scene, cameras, motion, noise, outliers
@@ -21,21 +21,21 @@ size_t MostTelling(const StudyPlan& plan, const TrialResult& result);
 //   cameras            the true ones, image 1 first
 //   matches            [x1, y1, x2, y2] each, px
 //   kinds              "inlier", "outlier", or "undetectable": wrong, but on the true epipolar line
-//   points_in_cam1_m   the point each match is of, or was of
+//   points_in_cam1_m   the scene point from which each match was made
 //   views              per camera: its centre_in_cam1_m, and edges_in_cam1: the rays of the left, right,
 //                      upper and lower edge of the image, straight beside the principal point
-//   truth              R, t, baseline_m, F; t and F are null where the direction is not known
+//   truth              R, t, baseline_m, F; t and F are null if the direction is not known
 //   selected           up to eight matches, spread over image 1, whose epipolar lines are drawn
-//   drawn              numbers of the estimators to draw, in this order
+//   drawn              indices of the estimators to draw, in this order
 //   estimators         all of them: label, status, message, outcome (success, failure, refusal, not_scored),
-//                      errors, inliers, R, t, F, and centre2_in_cam1_m: where it puts camera 2, at the true
-//                      baseline's length
+//                      errors, inliers, R, t, F, and centre2_in_cam1_m: the estimated centre of camera 2 for
+//                      the true baseline length
 //
-// Real pairs have no kinds, points and views. F of the truth is between the true cameras, F of an estimate
-// between those the estimators assume.
+// Real pairs have no kinds, points and views. F of the truth is between the true cameras; F of an estimate
+// is between the cameras that the estimators assume.
 std::string TrialAsJson(const StudyPlan& plan, const TrialResult& result, const std::vector<size_t>& drawn);
 
-// The condition, how hard the problem is, and a row per estimator.
+// Describes the condition and the difficulty of the problem, with a row per estimator.
 std::string TrialAsText(const StudyPlan& plan, const TrialResult& result);
 
 }  // namespace rcme

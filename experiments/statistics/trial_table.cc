@@ -14,14 +14,14 @@
 namespace rcme {
 namespace {
 
-// As the file has it: a flag is a number, and what is not known is nothing.
+// Formats a field as the file stores it: a flag as a number, an unknown value as an empty text.
 std::string FieldAsStored(double number) { return std::isnan(number) ? std::string() : FormatField(number); }
 template <typename Integer>
 std::string FieldAsStored(Integer number) {
   return FormatField(static_cast<std::int64_t>(number));
 }
 
-// Visits the columns of a row after the status and their fields: those of the record, then those of the
+// Visits the columns of a row after the status, with their fields: those of the record, then those of the
 // problem.
 template <typename Visit>
 void VisitNumbers(const TrialRecord& record, const ProblemRecord& problem, bool with_times, Visit visit) {
@@ -50,7 +50,7 @@ std::string Header(const std::vector<std::string>& factors, bool with_times) {
   return fmt::format("{},{}\n", fmt::join(before, ","), fmt::join(after, ","));
 }
 
-// What the rows of a condition begin with.
+// The first cells of the rows of a condition.
 std::string FormatRowBeginning(const RunDescription& run, std::uint32_t condition) {
   std::vector<std::string> fields = {CsvField(run.study), fmt::format("{}", condition)};
   for (const std::string& level : run.conditions[condition].levels) fields.push_back(CsvField(level));

@@ -1,4 +1,4 @@
-// The raw trials as a table of text: one row per trial and estimator.
+// The raw trials as a text table: a row per trial and estimator.
 #pragma once
 
 #include <functional>
@@ -8,12 +8,12 @@
 
 namespace rcme {
 
-// Hands the table to `write` as CSV, a line or more at a time, in constant memory: study, condition, one
-// column per factor (its level), trial, estimator (its label), outcome (trial_outcome.h), then every column
-// of the records, the status first, and of the problems (docs/result_file.md). What is not
-// known is an empty field. A factor that is called as one of the other columns is written as "level_NAME".
-// Wall times, which no two runs share, only if asked for. Numbers have all their digits. Throws InputError
-// before the first line if a trial is not sound.
+// Passes the table to `write` as CSV, one or more lines at a time, in constant memory. The columns are
+// study, condition, one per factor (its level), trial, estimator (its label), outcome (trial_outcome.h),
+// then every column of the records, beginning with the status, and of the problems (docs/result_file.md).
+// Unknown values are empty. A factor whose name is also that of another column is called "level_NAME".
+// Times, which differ in every run, are included only if requested. Numbers have all their digits. Throws
+// InputError before the first line if a trial is damaged.
 void WriteTrialTable(const ResultStore& store, bool with_times,
                      const std::function<void(const std::string&)>& write);
 

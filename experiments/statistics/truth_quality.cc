@@ -12,13 +12,13 @@ namespace rcme {
 
 namespace {
 
-// The number that follows these words; 0: they are not there.
+// Returns the number that follows these words; 0 if they do not occur.
 long long NumberAfter(const std::string& line, std::string_view words) {
   const size_t at = line.find(words);
   return at == std::string::npos ? 0 : std::atoll(line.c_str() + at + words.size());
 }
 
-// The number of pairs whose truth is listed as in doubt, in words.
+// Describes the number of pairs whose truth is listed as in doubt.
 std::string DescribeDoubts(long long num_in_doubt, long long num_pairs) {
   if (num_in_doubt == 0) return {};
   return fmt::format("\nThe truth of {} of {} pairs is in doubt (truth_in_doubt): they are not scored.",
