@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kCameras = "own_intrinsics";
 
-// The last value of a key; empty: there is none.
+// Returns the last value of a key; empty if there is none.
 std::string FindLastValue(const Settings& settings, const std::string& key) {
   std::string last;
   for (const auto& [name, value] : settings) {

@@ -15,14 +15,15 @@
 namespace rcme {
 namespace {
 
-// Of the longer side: crops to a strip move the principal point by up to .12 (the side cameras of Waymo),
-// half a K by .25.
+// Share of the longer side. Crops to a strip move the principal point by up to .12 (the side cameras of
+// Waymo), half a K by .25.
 constexpr double kFarFromCentre = 0.2;
-// Of width and of height: as far as a sensor is mounted off its lens's axis.
+// Share of width and height: as far as a sensor is mounted off the axis of its lens.
 constexpr double kNearCentre = 0.1;
-// fx / fy of pixels that are square, and of those that are not: 1080-line anamorphic video has 1.33.
+// fx / fy of square and of other pixels; 1080-line anamorphic video has 1.33.
 constexpr double kSquarePixels = 1.1, kOddPixels = 1.2, kLongestPixel = 2.0;
-// Tangents of the angle from the axis to a corner: 71.6 degrees, more than any pinhole image shows, and 89.4.
+// Tangents of the angle from the axis to a corner: 71.6 degrees, more than any pinhole image shows, and
+// 89.4.
 constexpr double kWideCorner = 3.0, kImpossibleCorner = 100.0;
 // Focal length over the longer side: an angle of view of 1.9 degrees.
 constexpr double kLongLens = 30.0;
@@ -37,7 +38,7 @@ Eigen::Vector2d ComputeOffset(const Numbers& K, const Eigen::Vector2d& size) {
 // max(fx / fy, fy / fx).
 double ComputePixelLength(const Numbers& K) { return std::max(K[0] / K[1], K[1] / K[0]); }
 
-// Tangent of the largest angle between the axis and a corner.
+// The tangent of the largest angle between the axis and a corner.
 double ComputeCornerTangent(const Numbers& K, const Eigen::Vector2d& size) {
   const double x = std::max(K[2] + 0.5, size.x() - 0.5 - K[2]),
                y = std::max(K[3] + 0.5, size.y() - 0.5 - K[3]);
@@ -48,13 +49,13 @@ bool IsFarFromCentre(const Numbers& K, const Eigen::Vector2d& size) {
   return ComputeOffset(K, size).cwiseProduct(size).cwiseAbs().maxCoeff() > kFarFromCentre * size.maxCoeff();
 }
 
-// Square pixels, the principal point near the centre, an ordinary angle of view.
+// Returns whether K has square pixels, a principal point near the centre and an ordinary angle of view.
 bool IsOrdinary(const Numbers& K, const Eigen::Vector2d& size, double near) {
   return K[0] > 0.0 && K[1] > 0.0 && ComputePixelLength(K) < kSquarePixels &&
          ComputeOffset(K, size).cwiseAbs().maxCoeff() < near && ComputeCornerTangent(K, size) < kWideCorner;
 }
 
-// Another order in which the numbers are those of an ordinary camera.
+// Returns another order in which the numbers are those of an ordinary camera.
 std::optional<std::string> FindOrder(const Numbers& K, const Eigen::Vector2d& size, double near) {
   constexpr std::array<std::pair<const char*, std::array<size_t, 4>>, 3> kOrders = {
       {{"cx cy fx fy", {2, 3, 0, 1}}, {"fx cx fy cy", {0, 2, 1, 3}}, {"cx fx cy fy", {1, 3, 0, 2}}}};
@@ -72,7 +73,7 @@ std::string DescribeOrder(const std::string& order) {
   return fmt::format("the numbers look like {} and are read as fx fy cx cy; give them in that order", order);
 }
 
-// K of the image in another size has its principal point in the middle of that one.
+// Detects K of the image in another size: its principal point is the centre of that image.
 std::optional<std::string> DoubtScale(const Eigen::Vector2d& offset, const Eigen::Vector2d& size) {
   constexpr double kLeast = 0.06, kSame = 0.04;
   if (std::min(std::abs(offset.x()), std::abs(offset.y())) < kLeast ||
@@ -85,7 +86,7 @@ std::optional<std::string> DoubtScale(const Eigen::Vector2d& offset, const Eigen
       DescribeSize(scale * size), DescribeSize(size), scale);
 }
 
-// K of the image before a quarter turn.
+// Detects K of the image before a rotation by 90 degrees.
 std::optional<std::string> DoubtTurn(const Numbers& K, const Eigen::Vector2d& offset,
                                      const Eigen::Vector2d& size) {
   constexpr double kNear = 0.05;
@@ -137,7 +138,7 @@ std::vector<std::string> DoubtFocalLength(const Numbers& K, const Eigen::Vector2
   return doubts;
 }
 
-// Throws where K is wrong beyond doubt.
+// Throws if K is certainly wrong.
 void CheckPossible(const Numbers& K, const Eigen::Vector2d& size, const std::string& place) {
   const std::string given = fmt::format("{}: {:.6g} {:.6g} {:.6g} {:.6g}", place, K[0], K[1], K[2], K[3]);
   const bool is_outside = ComputeOffset(K, size).cwiseAbs().maxCoeff() > 0.5;
@@ -158,7 +159,7 @@ void CheckPossible(const Numbers& K, const Eigen::Vector2d& size, const std::str
                     given, DescribeSize(size)));
 }
 
-// Where all but a twentieth of the points lie.
+// The range of the central 95 % of the points, by coordinate.
 struct PointSpread {
   Eigen::Vector2d least, greatest;
 };
@@ -199,7 +200,7 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
                                             const std::string& place) {
   constexpr size_t kFewest = 50;
   constexpr double kBeyond = 1.25,
-                   kBefore = 0.02;  // of the size; without distortion points lie outside on all sides
+                   kBefore = 0.02;  // of the size; distortion moves points outside on all sides
   if (matches.size() < kFewest) return {};
   const auto [least, greatest] = MeasureSpread(matches, x_px);
   const Eigen::Vector2d centre(camera.cx, camera.cy), implied = 2.0 * centre + Eigen::Vector2d::Ones();

@@ -15,14 +15,14 @@ namespace {
 
 constexpr std::int64_t kMaxSide = 1'000'000;
 
-// A camera model of COLMAP, and where its parameters lie.
+// A camera model of COLMAP and the positions of its parameters.
 struct ColmapModel {
   std::int64_t number;
   const char* name;
   size_t num_parameters;
   bool has_one_focal_length;
   LensModel lens;
-  std::vector<int> coefficient_at;  // per coefficient of ours the parameter, -1: zero
+  std::vector<int> coefficient_at;  // parameter of each of our coefficients; -1: zero
 };
 const std::vector<ColmapModel>& ColmapModels() {
   static const std::vector<ColmapModel> models = {
@@ -59,7 +59,7 @@ void CheckSize(double width, double height, const std::string& place) {
                                place, width, height));
 }
 
-// `half_px`: the centre of the top-left pixel in the parameters' own coordinates.
+// `half_px`: the centre of the top-left pixel in the coordinates of the parameters.
 Lens MakeModelLens(const ColmapModel& model, const std::vector<double>& p, const std::array<int, 2>& size,
                    double half_px, const std::string& place) {
   if (p.size() != model.num_parameters)

@@ -1,4 +1,4 @@
-// The cameras of COLMAP, in a database and in a reconstruction.
+// The cameras of COLMAP, in a database or a reconstruction.
 #pragma once
 
 #include <array>
@@ -10,31 +10,33 @@
 
 namespace rcme {
 
-// COLMAP's pixel (0.5, 0.5) is the centre of the top-left one, here (0, 0) is.
+// In COLMAP the centre of the top-left pixel is (0.5, 0.5), here it is (0, 0).
 constexpr double kColmapHalfPixel = 0.5;
 
 struct ColmapCamera {
-  std::int64_t model = 0;  // COLMAP's number
+  std::int64_t model = 0;  // COLMAP's model number
   std::int64_t width = 0, height = 0;
-  std::vector<double> parameters;  // as COLMAP orders them: f or fx fy, cx cy, distortion
+  std::vector<double> parameters;  // in COLMAP's order: f or fx fy, cx cy, distortion
 };
 
-// How many parameters the model has. Throws InputError that begins with `place`: the model is not supported.
+// Returns the number of parameters of a model. Throws InputError that begins with `place` if the model is
+// not supported.
 size_t NumColmapParameters(std::int64_t model, const std::string& place);
-// The number of a model's name, as cameras.txt has it. Throws InputError as above.
+// Returns the number of a model from its name in cameras.txt. Throws the same InputError.
 std::int64_t ColmapModelNumber(const std::string& name, const std::string& place);
 
-// A camera by its model's name, in pixels of which (0, 0) is a centre. Throws InputError as below.
+// Makes a camera from the name of its model; pixel (0, 0) is the centre of the top-left one. Throws
+// InputError as LensOfColmapCamera does.
 Lens MakeNamedLens(const std::string& model, const std::vector<double>& parameters,
                    const std::array<int, 2>& size, const std::string& place);
 // "OPENCV w h fx fy cx cy k1 k2 p1 p2" as words: a line of cameras.txt without its id, but for the half
 // pixel: here, as in the match files, (0, 0) is the centre of the top-left pixel. Throws as below.
 Lens LensFromWords(const std::vector<std::string>& words, const std::string& place);
-// The same without the size: "OPENCV fx fy cx cy k1 k2 p1 p2"; width and height are 0.
+// The same without the size: "OPENCV fx fy cx cy k1 k2 p1 p2"; width and height become 0.
 Lens LensWithoutSizeFromWords(const std::vector<std::string>& words, const std::string& place);
 
-// Its principal point with (0, 0) a pixel's centre. Throws InputError that begins with `place`: another
-// number of parameters, a size or a focal length that no camera has.
+// Converts a camera so that (0, 0) is the centre of the top-left pixel. Throws InputError that begins with
+// `place` for a wrong number of parameters, or an impossible size or focal length.
 Lens LensOfColmapCamera(const ColmapCamera& camera, const std::string& place);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// Where the matches of a trial come from, and what is known of the truth.
+// The source of a trial's matches, and what is known of the truth.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace rcme {
 
-// The random streams of a trial: one purpose each, so that none shares a number with another.
+// Each purpose has its own random stream in a trial, so streams share no numbers.
 enum class StreamPurpose : std::uint32_t {
   kScene = 1,
   kNoise = 2,
@@ -32,51 +32,51 @@ enum class StreamPurpose : std::uint32_t {
   kPrior = 11
 };
 
-// The stream of a trial for a purpose.
+// Returns the stream of a trial for a purpose.
 RandomStream StreamFor(StreamName trial_name, StreamPurpose purpose);
 
 struct Truth {
   std::optional<RelativePose> cam2_from_cam1_true;
-  bool is_direction_known = true;     // false: score the rotation alone
+  bool is_direction_known = true;     // false: only the rotation is scored
   std::vector<bool> is_inlier_true;   // per match; empty: unknown
-  std::vector<bool> is_undetectable;  // per match: wrong, but on the true epipolar line; empty: none known
-  // Its own error, part of the score; nothing: exact, or nobody says.
+  std::vector<bool> is_undetectable;  // per match: wrong, but on the true epipolar line; empty: unknown
+  // The uncertainty of the truth, part of the score. Nothing: exact, or not stated.
   std::optional<TruthSd> sd = std::nullopt;
-  bool is_in_doubt = false;  // somebody lists it as wrong: nothing is scored (truth_doubts.h)
+  bool is_in_doubt = false;  // listed as wrong, so nothing is scored (truth_doubts.h)
 };
 
-// A problem for the estimators and the truth for the score, kept apart from here on.
+// A problem for the estimators, and the truth for the score. The two stay apart from here on.
 struct TrialData {
   MotionProblem problem;
   Truth truth;
-  std::string origin;   // for people: the scene or the file it came from
-  double weight = 1.0;  // of the trial, where its number of outliers is drawn by importance (outlier_model.h)
+  std::string origin;   // for people: the scene or file from which it comes
+  double weight = 1.0;  // not 1 if the number of outliers was drawn by importance sampling (outlier_model.h)
   Severity severity;    // unknown for real pairs
-  std::vector<std::uint32_t> scene_point;  // per match, the one it is of or was of; empty: no scene
+  std::vector<std::uint32_t> scene_point;  // per match: index of its (original) point; empty: no scene
 };
 
-// The simulator cannot make a trial with these settings; the message says why.
+// Thrown if the simulator cannot make a trial with these settings; the message has the reason.
 class NotSimulated : public InputError {
  public:
   using InputError::InputError;
 };
 
-// All trials of one condition. Const and shared by threads.
+// Makes all trials of one condition. Const, and shared by threads.
 class DataSource {
  public:
   virtual ~DataSource() = default;
-  // Trials the condition has when the study asks for `trials`.
+  // The number of trials of the condition if the study asks for `trials`.
   virtual int NumTrials(int trials) const = 0;
-  // A pure function of the name. Throws NotSimulated.
+  // Makes a trial, a pure function of its name. Throws NotSimulated.
   virtual TrialData Make(const StreamName& trial_name) const = 0;
-  // What else the data depend on (file contents), as text: part of the study's identity. Empty: nothing.
+  // Other things on which the data depend (file contents), as text for the study's identity; empty: none.
   virtual std::string Identity() const { return {}; }
-  // The parts of a simulation that are chosen by name (scene, cameras, ...) with the names; empty: real
-  // pairs.
+  // The parts of a simulation that are chosen by name (scene, cameras, ...), with their names; empty for
+  // real pairs.
   virtual Settings ChosenParts() const { return {}; }
-  // The exact scene of a trial; nothing where nobody knows it.
+  // The exact scene of a trial; nothing if unknown.
   virtual std::optional<Scene> FindScene(const StreamName&) const { return std::nullopt; }
-  // The real scene whose images all trials share, again and again; nothing: each trial draws its own.
+  // The real scene whose images all trials share; nothing if each trial draws its own scene.
   virtual std::optional<std::string> SharedScene() const { return std::nullopt; }
 };
 

@@ -1,4 +1,4 @@
-// The size of an image of which only the camera's intrinsics and some points are known.
+// Estimates the size of an image from the camera's intrinsics and some points.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace rcme {
 
-// Width and height, px: twice the principal point, or what holds all points if that is more. `x_px`: a point
-// in this image.
+// Returns width and height in px: twice the principal point, or more if that does not contain all points.
+// `x_px` selects the point in this image.
 std::array<int, 2> LikelySize(const Camera& camera, const std::vector<Correspondence>& matches,
                               Eigen::Vector2d Correspondence::*x_px);
 

@@ -42,7 +42,7 @@ Parameter TruthInDoubtParameter(MatchFolderSettings& settings) {
       "a CSV file with the columns scene and pair_id, seen from the study's folder");
 }
 
-// Adds those entries of a registry whose models have the parameter.
+// Adds the entries of a registry whose models have the parameter.
 template <typename Entry>
 void AddChoicesWith(const std::string& key, const std::string& choice, const std::vector<Entry>& registry,
                     std::vector<std::string>* choices) {
@@ -54,7 +54,7 @@ void AddChoicesWith(const std::string& key, const std::string& choice, const std
   if (!names.empty()) choices->push_back(fmt::format("{}: {}", choice, fmt::join(names, " or ")));
 }
 
-// The keys that choose by name, with the field of the choice.
+// The keys that choose by name, with the field of each choice.
 const std::vector<std::pair<std::string, std::string Choices::*>>& ChoiceKeys() {
   static const std::vector<std::pair<std::string, std::string Choices::*>> keys = {
       {"scene", &Choices::scene},
@@ -101,7 +101,7 @@ Choices ChoicesIn(const Settings& settings) {
                                needs.empty() ? DidYouMean(key, names) : needs, fmt::join(names, ", ")));
 }
 
-// The parameters of the settings' choices: of a folder of match files, or of a simulation.
+// The parameters for the choices in the settings: of a folder of match files or of a simulation.
 struct Configured {
   MatchFolderSettings folder;
   std::shared_ptr<SimulatedData> simulated;  // null: a folder

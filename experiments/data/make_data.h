@@ -1,4 +1,4 @@
-// From the settings of a condition to where its matches come from.
+// Makes the data source of a condition from its settings.
 #pragma once
 
 #include <memory>
@@ -12,47 +12,49 @@
 
 namespace rcme {
 
-// One data source, or several: a folder of real pairs makes one per scene it holds, with the level that names
-// it.
+// One data source, or several: a folder of real pairs makes one for each scene in it, with the level that
+// names it.
 struct DataSources {
-  std::string implied_factor;  // name of the factor that tells the sources apart; empty: there is only one
-  std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;  // level, source
+  std::string implied_factor;  // factor that distinguishes the sources; empty: there is only one
+  std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> sources;  // (level, source)
 };
 
-// When the baseline is found that gives a parallax, which takes some hundred scenes.
+// When to search the baseline for a given parallax, which takes some hundred scenes.
 enum class BaselineSearch { kNow, kWithFirstScene };
 
-// The sources for the settings of a condition, `scene` among them. Throws InputError that names key and
-// value.
+// Makes the sources for the settings of a condition, which include `scene`. Throws InputError that names key
+// and value.
 DataSources MakeDataSources(const Settings& settings, BaselineSearch search = BaselineSearch::kNow);
 
-// Every parameter of the scene with its value, `scene` first. Throws InputError that names key and value.
+// Returns the choices, `scene` first, and every parameter with its value. Throws InputError that names key
+// and value.
 Settings ResolveSettings(const Settings& settings);
 
-// Those of the resolved settings that are not at their defaults, `scene` and the other choices first; with
-// `of_scene` those that shape the scene alone, without noise, outliers and assumed calibration. Equal for two
-// data blocks that mean the same. Not among them: where a folder lies, and what is only measured.
+// Returns the choices, `scene` first, and those resolved settings that are not at their defaults; with
+// `of_scene`, only settings that shape the scene, without noise, outliers and assumed calibration. The
+// result is equal for equivalent data blocks. It omits the path of a folder and settings that only concern
+// measurements.
 Settings DistinctiveSettings(const Settings& settings, bool of_scene);
 
-// The keys of a `data:` block that choose a part of the simulation by name; the choice decides which other
-// keys there are.
+// Returns whether a key of a `data:` block chooses a part of the simulation by name. Such a choice
+// determines which other keys exist.
 bool IsChoice(const std::string& key);
 
-// " (needs cameras: pinhole)": the choices that bring a key, for messages about one that is not there; empty:
-// none does.
+// Returns the choices that have a key, for messages about an unknown key: " (needs cameras: pinhole)". Empty
+// if no choice has it.
 std::string ChoicesWith(const std::string& key);
 
-// Every key a `data:` block with these settings may hold, with its value.
+// Returns every key that a `data:` block with these settings may have, with its value.
 std::vector<SettingHelp> DescribeSettings(const Settings& settings);
 
-// The key that names a list of pairs whose truth is in doubt (truth_doubts.h); without it no text of a study
-// has it.
+// The key that names a list of pairs whose truth is in doubt (truth_doubts.h). Texts of studies have it only
+// if it is set.
 inline constexpr const char* kTruthInDoubtKey = "truth_in_doubt";
 
-// The scene name that stands for a folder of match files.
+// The scene name for a folder of match files.
 inline constexpr const char* kMatchFilesScene = "match_files";
 
-// Simulated data for the settings, `scene` among them. Throws InputError that names key and value.
+// Makes simulated data for the settings, which include `scene`. Throws InputError that names key and value.
 std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings,
                                                        BaselineSearch search = BaselineSearch::kNow);
 

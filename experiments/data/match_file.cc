@@ -45,7 +45,7 @@ std::optional<TruthSd> ReadTruthSd(const MatchHeader& header) {
   return TruthSd{kRadPerDeg * Eigen::Vector3d(sd[0], sd[1], sd[2]), {sd[3], sd[4], sd[5]}};
 }
 
-// The number that stands first; NaN without one that is positive.
+// Returns the first word as a number; NaN if it is not positive.
 double ReadBaseline(const MatchHeader& header) {
   double baseline = 0.0;
   if (!header.Has("baseline")) return MatchFile().baseline;
@@ -68,7 +68,7 @@ double ReadSecondsBetween(const MatchHeader& header) {
   return seconds;
 }
 
-// A name that tables, pages and JSON show.
+// A name shown in tables, pages and JSON.
 std::string ReadScene(const MatchHeader& header) {
   if (!header.Has("scene")) return MatchFile().scene;
   const std::string scene = header.Text("scene");
@@ -92,7 +92,7 @@ void ReadScores(const MatchHeader& header, const MatchRows& rows, MatchFile* fil
   file->scores = std::move(*scores);
 }
 
-// Why a match cannot be undistorted.
+// Explains why a match cannot be undistorted.
 std::string DescribeLoss(const Lens& lens1, const Lens& lens2, const Correspondence& match) {
   const auto describe = [](int camera, const Eigen::Vector2d& x_px) {
     return fmt::format("no ray of camera {} reaches ({}, {}) px, by the lens that is stated", camera,
@@ -103,7 +103,7 @@ std::string DescribeLoss(const Lens& lens1, const Lens& lens2, const Corresponde
   return "the lenses that are stated magnify its noise beyond all numbers, or to nothing";
 }
 
-// Throws InputError that names the row of a match that has no rays.
+// Throws InputError that names the row of a match without rays.
 void UndistortMatches(const Lens& lens1, const Lens& lens2, const MatchRows& rows, MatchFile* file) {
   if (lens1.model == LensModel::kPinhole && lens2.model == LensModel::kPinhole) return;
   file->had_lens = true;

@@ -21,7 +21,7 @@ std::array<int, 2> ReadSize(const MatchHeader& header, const std::string& key) {
   return {static_cast<int>(size[0]), static_cast<int>(size[1])};
 }
 
-// Of the key `camera1` or `camera2`, beside which the others have nothing to say.
+// Reads the key `camera1` or `camera2`, which excludes the other keys of that camera.
 Lens ReadNamedLens(const MatchHeader& header, const std::string& camera_key, const std::string& size_key,
                    const std::string& k_key, const Lens* given) {
   if (given) header.Fail(camera_key, "the file has its own intrinsics; leave out --K and --camera");

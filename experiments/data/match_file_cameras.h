@@ -1,4 +1,4 @@
-// The cameras of a match file, by its header or given beside it.
+// The cameras of a match file, from its header or given separately.
 #pragma once
 
 #include <string>
@@ -11,11 +11,12 @@
 
 namespace rcme {
 
-// Camera 1 or 2 (`number`); x_px: where its image has the matches. Nothing given: the file has to say it all.
+// Reads camera 1 or 2 (`number`). x_px selects the points in its image. If `given` is null, the header must
+// have all of the camera.
 Lens ReadLens(const MatchHeader& header, const std::string& number, const Lens* given,
               const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px);
 
-// What is suspicious about the cameras of a file whose K may be given.
+// Returns doubts about the cameras of a file. `is_given`: K was not read from the file.
 std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file, bool is_given);
 
 }  // namespace rcme

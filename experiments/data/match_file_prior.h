@@ -1,4 +1,4 @@
-// What the header of a match file says of the motion's priors (estimator/motion_prior.h).
+// The priors of the motion in the header of a match file (estimator/motion_prior.h).
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@
 
 namespace rcme {
 
-// What sensors say; of each measurement every key must be there, or none.
+// Reads the measurements of sensors. Each measurement needs all of its keys or none.
 std::optional<MotionPrior> ReadPrior(const MatchHeader& header);
 
-// The header lines of a prior; a covariance by the standard deviations on its diagonal, of gravity the noise
-// of both as that of each.
+// Formats a prior as header lines. A covariance is written as the standard deviations on its diagonal; the
+// two standard deviations of gravity are written as their root mean square.
 std::string FormatPrior(const MotionPrior& prior);
 
 }  // namespace rcme

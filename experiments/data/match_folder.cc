@@ -20,11 +20,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// All pairs of a folder are held in memory.
+// Limits, because all pairs of a folder are held in memory.
 constexpr size_t kMaxPairs = 100'000;
 constexpr size_t kMaxMatches = 10'000'000;
 
-// Adds the pairs of `ids` whose true direction the index calls weak.
+// Adds the pairs of `ids` whose true direction the index marks as weak.
 void AddWeak(const fs::path& index, const std::set<std::string>& ids, std::set<std::string>* weak) {
   GzipLines lines(index.string(), {"index", "an index of pairs"});
   std::string_view line;
@@ -40,7 +40,7 @@ void AddWeak(const fs::path& index, const std::set<std::string>& ids, std::set<s
   }
 }
 
-// The numbers of a pair and its truth: changed data are another study.
+// Adds the numbers of a pair and its truth to the digest: a study with other data is another study.
 void AddNumbers(const MatchFile& file, bool is_direction_known, Fnv1a* digest) {
   for (const Camera& c : {file.camera1, file.camera2}) {
     for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height}) digest->Add(x);
@@ -64,7 +64,7 @@ void AddNumbers(const MatchFile& file, bool is_direction_known, Fnv1a* digest) {
   }
 }
 
-// Whether the study says how good the file's truth is, and not the file.
+// Returns whether the uncertainty of the truth comes from the study rather than from the file.
 bool IsTruthAssumed(const MatchFile& file, const PoseSd& truth) {
   return !truth.IsZero() && file.cam2_from_cam1_true && !file.truth_sd;
 }
@@ -87,7 +87,7 @@ std::string ExtractPairId(const fs::path& match_file) {
 
 std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder,
                                              const std::vector<fs::path>& files) {
-  // Without a slash at the end, so that 'x/' too has its parent above it.
+  // Without a trailing slash, so that the parent of 'x/' is the folder above it.
   const fs::path folder = (fs::absolute(given_folder) / "").lexically_normal().parent_path();
   std::set<std::string> ids, weak;
   for (const fs::path& file : files) ids.insert(ExtractPairId(file));
@@ -97,7 +97,7 @@ std::set<std::string> PairsWithWeakDirection(const fs::path& given_folder,
   return weak;
 }
 
-// Throws InputError where two files, a.csv and a.csv.gz, are one pair.
+// Throws InputError if a.csv and a.csv.gz would be the same pair.
 void CheckPairsStandOnce(const std::string& folder, const std::vector<fs::path>& paths) {
   std::map<std::string, fs::path> files;
   for (const fs::path& path : paths) {

@@ -14,20 +14,21 @@
 
 namespace rcme {
 
-// What a `data:` block says of a folder of match files.
+// The settings of a folder of match files in a `data:` block.
 struct MatchFolderSettings {
   std::string folder;     // relative to the working directory
-  double sigma_px = 0.5;  // the noise level that the estimators assume
-  PoseSd truth = {};      // of the poses behind the true motions of files without truth_sd
-  // A list of pairs whose truth is in doubt (truth_doubts.h), seen as the folder; empty: none is.
+  double sigma_px = 0.5;  // noise level that the estimators assume
+  PoseSd truth = {};      // of the true poses, for files without truth_sd
+  // A list of pairs whose truth is in doubt (truth_doubts.h), relative to the working directory; empty:
+  // none.
   std::string truth_in_doubt = {};
   RedrawSettings redraw = {};
-  bool keeps_priors = true;  // of the motion, where files state any
+  bool keeps_priors = true;  // uses priors of the motion that files state
 };
 
-// The pairs of one scene of a folder of match files; trial t is file t mod (number of files), each pass with
-// its own random samples, and noise and wrong matches where these are drawn anew. Pairs of one scene share
-// images: they are not independent.
+// The pairs of one scene of a folder of match files. Trial t has file t mod (number of files). Each pass
+// over the files has its own random samples, and its own noise and wrong matches if these are redrawn. Pairs
+// of one scene share images, so they are not independent.
 class MatchFolderData : public DataSource {
  public:
   MatchFolderData(std::string scene, std::vector<TrialData> pairs, std::vector<double> noise_levels,
@@ -54,24 +55,25 @@ class MatchFolderData : public DataSource {
   Redraw redraw_;
 };
 
-// The match files of a folder in the order of names. Throws InputError: no such folder, none in it, too many.
+// Lists the match files of a folder, ordered by name. Throws InputError if the folder does not exist, has no
+// match files or has too many.
 std::vector<std::filesystem::path> MatchFilesIn(const std::string& folder);
 
-// The two images of each match file of a folder that names them, by the file's name (TrialData::origin).
-// Pairs of one scene with an equal name share the image.
+// The names of the two images of each match file that states them, by file name (TrialData::origin). Pairs
+// of one scene with an equal name share the image.
 using ImageNames = std::map<std::string, std::pair<std::string, std::string>>;
 ImageNames ImageNamesIn(const std::string& folder);
 
-// The name of a pair in an index: that of its file without the ending.
+// Returns the name of a pair in an index: the file name without its ending.
 std::string ExtractPairId(const std::filesystem::path& match_file);
 
-// Of these files of a folder the pairs whose true direction an INDEX.csv in it or above it calls weak.
+// Returns those pairs whose true direction is marked as weak by an INDEX.csv in the folder or above it.
 std::set<std::string> PairsWithWeakDirection(const std::filesystem::path& given_folder,
                                              const std::vector<std::filesystem::path>& files);
 
-// Reads every *.csv and *.csv.gz of the folder in the order of names, grouped by the header's scene. An
-// INDEX.csv in the folder or above it may mark pairs whose true direction is not to be scored (columns
-// pair_id, t_gt_weak = 1).
+// Reads every *.csv and *.csv.gz of the folder, ordered by name and grouped by the scene in the header. An
+// INDEX.csv in the folder or above it may mark pairs whose true direction is not scored (columns pair_id,
+// t_gt_weak = 1).
 std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatchFolder(
     const MatchFolderSettings& settings);
 

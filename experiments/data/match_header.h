@@ -1,4 +1,4 @@
-// The header of a match file (match_file.h): lines "# key: value" before and between the matches.
+// The header of a match file (match_file.h): lines "# key: value" before and among the matches.
 #pragma once
 
 #include <map>
@@ -11,12 +11,12 @@
 
 namespace rcme {
 
-std::string_view Trim(std::string_view text);  // without blanks at its ends
+std::string_view Trim(std::string_view text);  // removes blanks at both ends
 std::vector<std::string> SplitAtCommas(std::string_view text);
 std::vector<std::string> SplitAtBlanks(std::string_view text);
 
-// The values of the known keys with the lines they stand on. What cannot be read throws InputError, with the
-// file, the line, the key and what is allowed.
+// The values of known keys with their line numbers. Throws InputError with file, line, key and what is
+// allowed for a value that cannot be read.
 class MatchHeader {
  public:
   explicit MatchHeader(std::string path) : path_(std::move(path)) {}
@@ -27,10 +27,10 @@ class MatchHeader {
   bool Has(const std::string& key) const { return entries_.count(key) > 0; }
   std::string Text(const std::string& key) const { return entries_.at(key).text; }
 
-  // Of a key that must be there.
+  // Throws InputError if the key is missing.
   std::vector<double> Numbers(const std::string& key, size_t count) const;
   Eigen::Matrix3d Rotation(const std::string& key) const;   // nine numbers, row by row
-  Eigen::Vector3d Direction(const std::string& key) const;  // of unit length, from one of any length
+  Eigen::Vector3d Direction(const std::string& key) const;  // normalized; given with any length
 
   [[noreturn]] void Fail(const std::string& key, const std::string& what) const;
 

@@ -38,7 +38,7 @@ Correspondence ReadMatch(const std::vector<std::string>& fields, const GzipLines
   return {{x[0], x[1]}, {x[2], x[3]}};
 }
 
-// 0, where x1 is: there is none.
+// Returns 0, the place of x1, if there is no such column.
 size_t FindColumn(const std::vector<std::string>& fields, std::string_view name) {
   const auto found = std::ranges::find(fields, name);
   return found == fields.end() ? 0 : static_cast<size_t>(found - fields.begin());
@@ -67,7 +67,7 @@ std::string MatchRows::Place(size_t match) const {
   return fmt::format("{}:{}", file_->path, line_numbers_.at(match));
 }
 
-// Of a file whose header says which scores are better; nothing without one such column.
+// Throws InputError for a score that is not a finite number.
 std::optional<std::vector<double>> MatchRows::Scores() const {
   if (num_score_columns_ != 1) return std::nullopt;
   std::vector<double> scores(scores_.size());

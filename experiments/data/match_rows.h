@@ -13,12 +13,12 @@
 
 namespace rcme {
 
-// Names of columns (match_file.h).
+// The names of columns (match_file.h).
 inline constexpr std::string_view kSigmaColumn = "sigma_px", kScoreColumn = "score";
 inline constexpr std::array<std::string_view, 4> kCoordinateColumns = {"x1", "y1", "x2", "y2"};
 
-// The names of the columns, which stand before the first match, and the matches, as they come. What is wrong
-// throws InputError with the file and the line.
+// Reads the column names, which precede the first match, and the matches line by line. Throws InputError
+// with file and line.
 class MatchRows {
  public:
   explicit MatchRows(MatchFile* file) : file_(file) {}
@@ -26,7 +26,8 @@ class MatchRows {
   void Add(std::string_view line, const GzipLines& lines);
 
   std::string Place(size_t match) const;  // "file:12" of a match
-  // Of a file whose header says which scores are better; nothing without one such column.
+  // Returns the scores; nothing unless there is exactly one such column. Call it only if the header has
+  // better_score.
   std::optional<std::vector<double>> Scores() const;
 
  private:
@@ -34,9 +35,9 @@ class MatchRows {
   double ReadSigma(const std::vector<std::string>& fields, const GzipLines& lines) const;
 
   MatchFile* file_;
-  std::vector<int> line_numbers_;    // of the matches
-  std::vector<std::string> scores_;  // of the matches, as text: a number where the header names it a score
-  size_t sigma_column_ = 0, score_column_ = 0;  // 0, where x1 is: none
+  std::vector<int> line_numbers_;               // of the matches
+  std::vector<std::string> scores_;             // of the matches, as text: only numbers if they are used
+  size_t sigma_column_ = 0, score_column_ = 0;  // 0, the place of x1: no such column
   std::ptrdiff_t num_score_columns_ = 0;
 };
 

@@ -56,7 +56,7 @@ std::vector<double> ReadNoiseReals(const Place& place, const YAML::Node& node, c
   return values;
 }
 
-// Reads a map in which each of these keys stands once, but for those that may be missing.
+// Reads a map in which each of these keys occurs once; some may be missing.
 using NoiseReaders = std::map<std::string, std::function<void(const YAML::Node&)>>;
 void ReadNoiseMap(const Place& place, const YAML::Node& node, const std::string& name,
                   const NoiseReaders& readers, const std::set<std::string>& optional = {}) {
@@ -160,7 +160,8 @@ void ReadSystematic(const Place& place, const YAML::Node& node, DisplacementCell
   cells->dy_px = ReadNoiseReals(place, dy, "dy_px", size, {-kMostPx, kMostPx});
 }
 
-// Symmetric, with ones on the diagonal and no negative eigenvalue, to the digits that are written.
+// Returns whether the matrix is symmetric with ones on the diagonal and no negative eigenvalue, to the
+// written digits.
 bool IsCorrelationMatrix(const std::vector<double>& values, size_t size) {
   const auto n = static_cast<Eigen::Index>(size);
   const Eigen::MatrixXd matrix = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
@@ -172,7 +173,7 @@ bool IsCorrelationMatrix(const std::vector<double>& values, size_t size) {
   return eigen.eigenvalues()(0) >= -slack;
 }
 
-// Of so many faults; there is no key where there are none.
+// Reads the correlations of `num_faults` faults; the key is absent if there are none.
 std::vector<double> ReadCorrelations(const Place& place, const YAML::Node& root, const std::string& key,
                                      size_t num_faults) {
   if (num_faults == 0 && !root[key]) return {};

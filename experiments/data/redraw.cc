@@ -14,11 +14,12 @@
 namespace rcme {
 namespace {
 
-// Side of the mosaic (simulator/noise/correlated.cc) whose cells near neighbours share: half of the
-// correlation is left at 1 px.
+// Side of the mosaic (simulator/noise/correlated.cc) whose cells near neighbours share: at a distance of 1
+// px half of the correlation is left.
 constexpr double kNearLengthPx = 2.3;
 
-// How often noise is drawn that leaves a right match too far, or a wrong one is exchanged that has come near.
+// The greatest number of draws for a right match whose noise is too large, or for a wrong match that came
+// too near.
 constexpr int kMostDraws = 100;
 
 Eigen::Matrix3d TrueFundamental(const TrialData& exact) {
@@ -95,8 +96,8 @@ void Redraw::Label(TrialData* exact) {
     exact->truth.is_inlier_true.push_back(SquaredSampsonDistance(F, match) < kExactPx * kExactPx);
 }
 
-// Each law looks at where the exact points are, not at what another law has made of them. A scale that takes
-// a match too far is drawn again; if none does not, the match stays where it is.
+// Each law uses the exact positions, not those changed by another law. A scale that moves a match too far is
+// drawn again; if all do, the match keeps its position.
 std::vector<Correspondence> Redraw::WithNoise(const TrialData& exact, const std::vector<size_t>& right,
                                               double noise_level, RandomStream& rng) const {
   std::vector<Correspondence> places, noisy;

@@ -1,4 +1,4 @@
-// Noise and wrong matches drawn anew for real pairs whose right matches have been put where they belong.
+// Redraws noise and wrong matches for real pairs whose right matches have been moved to exact positions.
 #pragma once
 
 #include <memory>
@@ -11,43 +11,43 @@
 
 namespace rcme {
 
-// A match whose Sampson distance from the file's true motion is below this is exact, and so right: a wrong
-// one is as near with a probability of about 1e-5.
+// A match with a smaller Sampson distance from the true motion of its file counts as exact and right. A
+// wrong match is so near with a probability of about 1e-5.
 inline constexpr double kExactPx = 1e-3;
 
 enum class WrongMatches { kKept, kShuffled };
 
-// What a `data:` block says of it. The noise of a key point has the variance noise_px^2, of which a share is
-// that of its near neighbours (one point found twice), a share that of far ones (one piece of texture), and
-// the rest its own. It is normal, or Student's t: then all four coordinates of a match, whose key points are
-// precise or not, are large together (stats/student_scales.h). Where a pair states how noisy its matches are,
-// each one's noise is as many times as large (MotionProblem::noise_scale), and that of a whole pair by its
-// level (MatchFile::noise_level).
+// The settings in a `data:` block. The noise of a key point has variance noise_px^2. near_share of it is
+// common to near neighbours (one point detected twice), far_share to distant ones (one region of texture),
+// and the rest is independent. The noise is normal, or Student's t; then all four coordinates of a match are
+// scaled together, because its key points are precise or not (stats/student_scales.h). The noise is
+// multiplied by the relative noise of each match if the pair states it (MotionProblem::noise_scale), and by
+// the level of the pair (MatchFile::noise_level).
 //
-// Right matches are those that were found near; what is drawn for them stays as near, and a wrong match stays
-// wrong.
+// Right matches are those that were found near the epipolar line. With within_px they stay as near when
+// redrawn, and wrong matches stay wrong.
 struct RedrawSettings {
-  double noise_px = 0.0;     // 0: nothing is drawn, matches are those of the files
+  double noise_px = 0.0;     // 0: nothing is redrawn
   double student_dof = 0.0;  // 0: normal
-  double within_px = 0.0;    // of a right match's Sampson distance from the truth; 0: any
+  double within_px = 0.0;    // limit of a right match's Sampson distance from the truth; 0: none
   double near_share = 0.0, far_share = 0.0;
   double far_length_px = 40.0;
   WrongMatches wrong = WrongMatches::kShuffled;
 };
 std::vector<Parameter> Parameters(RedrawSettings& settings);
 
-// Draws for pairs as the settings say. Const and shared by threads.
+// Redraws pairs by the settings. Const, and shared by threads.
 class Redraw {
  public:
-  // Throws InputError: shares that are together more than 1.
+  // Throws InputError if the shares sum to more than 1.
   explicit Redraw(const RedrawSettings& settings);
   bool IsOn() const { return settings_.noise_px > 0.0; }
-  // Says which matches of an exact pair are right. Throws InputError that names the pair without a true
+  // Marks which matches of an exact pair are right. Throws InputError that names the pair if it has no true
   // motion.
   static void Label(TrialData* exact);
-  // Noise for the right matches of an exact pair; the second points of the wrong ones are dealt out again
-  // among them, which keeps where wrong matches lie in either image and breaks what they have in common.
-  // Noise, and the distance within which right matches stay, are `noise_level` times those of the settings.
+  // Adds noise to the right matches of an exact pair. The second points of the wrong matches are permuted
+  // among them: this keeps the distribution of wrong matches in each image but breaks their dependence.
+  // Noise and within_px are multiplied by `noise_level`.
   TrialData Draw(const TrialData& exact, const StreamName& trial_name, double noise_level = 1.0) const;
 
  private:
@@ -58,7 +58,7 @@ class Redraw {
 
   RedrawSettings settings_;
   StudentScales scales_;
-  std::vector<std::shared_ptr<const NoiseModel>> laws_;  // whose sum, times a scale, is the noise
+  std::vector<std::shared_ptr<const NoiseModel>> laws_;  // their sum, times a scale, is the noise
 };
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// What a `data:` block says, as keys and values.
+// A `data:` block as keys and values.
 #pragma once
 
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace rcme {
 
-// One key of a `data:` block, for people.
+// Describes one key of a `data:` block for people.
 struct SettingHelp {
   std::string name, value, unit, allowed, doc;
 
-  // As Parameter::Integer says what it allows.
+  // Parameter::Integer describes its range with these words.
   bool IsWholeNumber() const { return allowed.starts_with("a whole number"); }
-  // As Parameter::Choice and Parameter::Text do not.
+  // Parameter::Choice and Parameter::Text do not.
   bool IsNumber() const { return IsWholeNumber() || allowed.starts_with("a number"); }
 };
 

@@ -20,7 +20,7 @@ Choices WithDefaults(Choices choices) {
   return choices;
 }
 
-// Normal noise whose numbers are given.
+// Normal noise from given numbers.
 class GivenNoise : public NoiseModel {
  public:
   GivenNoise(double sigma_px, std::span<const double> normals) : sigma_px_(sigma_px), normals_(normals) {}
@@ -39,7 +39,7 @@ class GivenNoise : public NoiseModel {
   std::span<const double> normals_;
 };
 
-// What the sensors measure, as estimators get it; nothing without a measurement.
+// Returns the measurements of the sensors as estimators get them; nothing without a measurement.
 std::optional<MotionPrior> MakePrior(const Scene& scene, const MotionSensors& sensors, RandomStream& rng) {
   if (sensors.IsNone()) return std::nullopt;
   const MeasuredMotion measured = sensors.Measure(scene, rng);
@@ -54,7 +54,7 @@ std::optional<MotionPrior> MakePrior(const Scene& scene, const MotionSensors& se
   return prior;
 }
 
-// What `make` returns. What a simulation cannot do with its settings is NotSimulated.
+// Returns what `make` returns; turns an InputError of the simulation into NotSimulated.
 template <typename Make>
 auto Simulate(const Make& make) {
   try {
@@ -64,7 +64,7 @@ auto Simulate(const Make& make) {
   }
 }
 
-// Those of `all`; `which` is in order.
+// Selects elements of `all`; `which` is ascending.
 template <typename T>
 std::vector<T> Select(std::vector<T> all, const std::vector<size_t>& which) {
   if (which.size() == all.size()) return all;
@@ -101,7 +101,7 @@ std::vector<Parameter> SimulatedData::Parameters() {
 void SimulatedData::FixBaseline() const {
   std::call_once(baseline_once_, [this] {
     try {
-      // The same scenes whatever the study's seed.
+      // Uses the same scenes for every seed of the study.
       scenes_.FixBaseline({0, 0, 0, static_cast<std::uint32_t>(StreamPurpose::kPilotScene)});
     } catch (const InputError& error) {
       baseline_error_ = error.what();
@@ -181,7 +181,7 @@ Lens SimulatedData::AssumedLens(const SceneCamera& camera_true) const {
 
 TrialData SimulatedData::Give(const Scene& scene, Observation observation, RandomStream& prior_rng) const {
   TrialData data;
-  // sigma_px is that of the median match where single ones are told apart.
+  // sigma_px is that of the median match if matches have individual noise levels.
   const double median = observation.noise_scale.empty() ? 1.0 : ComputeMedian(observation.noise_scale);
   MotionProblem as_taken = {std::move(observation.matches),
                             {},

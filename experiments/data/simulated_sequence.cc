@@ -6,7 +6,7 @@
 namespace rcme {
 namespace {
 
-// A frame from that of the first image: X_image = R X_0 + t, t in metres.
+// The pose of an image relative to the first: X_image = R X_0 + t, t in metres.
 struct ImagePose {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
@@ -63,7 +63,7 @@ std::vector<SequencePair> SimulateSequence(const SimulatedData& data, const Stre
     static_cast<ViewPair&>(seen) = MakeView(scene, poses[image1], poses[image2]);
     for (const Eigen::Vector3d& step_m : scene.repeat_steps_m)
       seen.repeat_steps_m.push_back(poses[image1].R * step_m);
-    std::vector<double> of_seen;  // x1, y1, x2, y2 of each
+    std::vector<double> of_seen;  // x1, y1, x2, y2 of each point
     for (size_t i = 0; i < num_points; ++i) {
       const Eigen::Vector3d point = poses[image1].Map(scene.points_in_cam1[i]);
       if (!seen.Sees(point)) continue;

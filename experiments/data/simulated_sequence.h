@@ -1,4 +1,4 @@
-// Several images of one simulated scene, and what each two of them give.
+// Simulates several images of one scene, and the pairs among them.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 namespace rcme {
 
 inline constexpr int kMostSequenceImages = 50;
-// Fewer points that both images see make no pair.
+// Two images that both see fewer points make no pair.
 inline constexpr size_t kLeastSequencePoints = 20;
 
 struct SequencePair {
@@ -16,16 +16,17 @@ struct SequencePair {
   TrialData data;
 };
 
-// Each image is moved from the one before as image 2 of the trial's scene is from image 1: an orbit goes on
-// around its point, a car along its arc. All have the first camera, and see those points of that scene that
-// lie in them; none hides another. A pair is an image with the next, and with the first, so that there is a
-// loop of each length.
+// Each image is moved relative to the one before by the motion of the trial's scene: an orbit continues
+// around its point, a car along its arc. All images have the first camera and see the points of the scene
+// that lie within them; points do not hide each other. The pairs are each image with its successor and with
+// the first image, which gives a loop of each length.
 //
-// A key point is found once in an image: it has one error in all pairs of that image, whose errors therefore
-// depend on each other. Coordinates are rounded to 1e-6 px, so that equal key points have equal ones. Wrong
-// matches are drawn for each pair.
+// A key point is detected once per image: it has the same error in all pairs of the image, so the errors of
+// these pairs depend on each other. Coordinates are rounded to 1e-6 px, so that coordinates of the same key
+// point are equal. Wrong matches are drawn for each pair.
 //
-// Throws InputError for noise that is not gaussian and for a rolling shutter; NotSimulated as SimulatedData.
+// Throws InputError for noise that is not gaussian and for a rolling shutter, and NotSimulated as
+// SimulatedData does.
 std::vector<SequencePair> SimulateSequence(const SimulatedData& data, const StreamName& trial_name,
                                            int num_images);
 

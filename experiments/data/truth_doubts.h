@@ -1,5 +1,5 @@
-// The list of pairs whose given truth is in doubt, which `rcme check-truth` writes and anybody may: a CSV
-// file with the columns scene and pair_id; others (a reason) are for people.
+// A list of pairs whose given truth is in doubt, written by `rcme check-truth` or by hand: a CSV file with
+// the columns scene and pair_id; other columns (a reason) are for people.
 #pragma once
 
 #include <set>
@@ -10,14 +10,14 @@ namespace rcme {
 
 class TruthDoubts {
  public:
-  // Of the file, plain or gzip; an empty path is an empty list. Throws InputError: no such file, no such
-  // columns, a line without them.
+  // Reads the file, plain or gzip; an empty path gives an empty list. Throws InputError if the file does not
+  // exist, lacks a column, or has a line without these fields.
   explicit TruthDoubts(const std::string& path);
 
-  // Whether the list has the pair, which is then found.
+  // Returns whether the pair is listed, and remembers that a listed pair was found.
   bool Has(const std::string& scene, const std::string& pair_id);
-  // Throws InputError where the list has pairs and `folder`, whose pairs were all asked for, none of them: it
-  // is the list of others.
+  // Throws InputError if the list has pairs but none of them was found in `folder`: then it is the list of
+  // another folder. Call it after Has for all pairs of the folder.
   void RequireAnyFound(const std::string& folder) const;
 
  private:
