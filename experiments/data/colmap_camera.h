@@ -29,8 +29,8 @@ std::int64_t ColmapModelNumber(const std::string& name, const std::string& place
 // InputError as LensOfColmapCamera does.
 Lens MakeNamedLens(const std::string& model, const std::vector<double>& parameters,
                    const std::array<int, 2>& size, const std::string& place);
-// "OPENCV w h fx fy cx cy k1 k2 p1 p2" as words: a line of cameras.txt without its id, but for the half
-// pixel: here, as in the match files, (0, 0) is the centre of the top-left pixel. Throws as below.
+// Parses the words "OPENCV w h fx fy cx cy k1 k2 p1 p2": a line of cameras.txt without its id, except that
+// (0, 0) is the centre of the top-left pixel, as in match files. Throws as LensOfColmapCamera does.
 Lens LensFromWords(const std::vector<std::string>& words, const std::string& place);
 // The same without the size: "OPENCV fx fy cx cy k1 k2 p1 p2"; width and height become 0.
 Lens LensWithoutSizeFromWords(const std::vector<std::string>& words, const std::string& place);
