@@ -22,14 +22,14 @@ bool HasMotion(const FileAnswer& file) {
   return file.error.empty() && file.answer.estimate.status == MotionStatus::kOk;
 }
 
-// A number of a motion; nothing without one.
+// Returns a number of a motion; nothing without a motion.
 ColumnOf<FileAnswer> MotionColumn(const Column& column,
                                   const std::function<Value(const MotionEstimate&)>& of) {
   return {column,
           [of](const FileAnswer& file) { return HasMotion(file) ? of(file.answer.estimate) : Value(); }};
 }
 
-// R and t element by element; JSON has them as lists.
+// The columns of R and t, element by element; JSON has them as lists.
 void AddMatrixColumns(std::vector<ColumnOf<FileAnswer>>* columns) {
   const auto column = [](const std::string& name) {
     Column number = Column::Number(name, {1.0, "", ".3g", ".2g", ".17g"});
@@ -46,7 +46,7 @@ void AddMatrixColumns(std::vector<ColumnOf<FileAnswer>>* columns) {
                                     [=](const MotionEstimate& e) { return e.cam2_from_cam1.t(r); }));
 }
 
-// The probabilities for the bounds that were asked for; JSON has them as a list.
+// The failure probabilities for the requested bounds; JSON has them as a list.
 void AddBoundColumns(const AnswerTerms& terms, std::vector<ColumnOf<FileAnswer>>* columns) {
   for (size_t i = 0; i < terms.bounds.size(); ++i) {
     Column column =
@@ -72,7 +72,7 @@ void AddLevelColumns(const AnswerTerms& terms, std::vector<ColumnOf<FileAnswer>>
   add("direction_level_deg", &ProtectionLevels::direction_rad);
 }
 
-// "a" of "pairs/a.csv.gz".
+// Returns "a" for "pairs/a.csv.gz".
 std::string FindPairName(const std::string& path) {
   const std::string name = std::filesystem::path(path).filename().string();
   return name.substr(0, name.find(".csv"));

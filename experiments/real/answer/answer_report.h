@@ -1,4 +1,4 @@
-// The answers to many pairs as one result.
+// Makes one result from the answers to many pairs.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,27 +12,28 @@
 
 namespace rcme {
 
-// What becomes of a file.
+// The answer for one file, or why it could not be read.
 struct FileAnswer {
-  std::string path, error = {};          // error: why it could not be read; else empty
+  std::string path, error = {};          // error: why it could not be read, or empty
   std::vector<CameraDoubt> doubts = {};  // about the file's cameras
   PairAnswer answer = {};
 };
 
-// What all answers have in common.
+// The settings common to all answers.
 struct AnswerTerms {
   EstimatorSpec spec;
-  std::vector<FailureBounds> bounds;     // a probability is asked for each
-  std::optional<double> integrity_risk;  // nothing: no protection levels are asked for
+  std::vector<FailureBounds> bounds;     // a failure probability is requested for each
+  std::optional<double> integrity_risk;  // empty: no protection levels are requested
 };
 
-// The object of one file: AnswerAsJson, with the doubts about its cameras if there are any.
+// Returns the JSON object of one file: AnswerAsJson, and the doubts about its cameras if there are any.
 nlohmann::ordered_json FileAnswerAsJson(const FileAnswer& file, const AnswerTerms& terms);
 
-// A row per file, with motion and deviations in numbers.
+// Makes a row per file, with motion and standard deviations as numbers.
 Table MakeFileAnswerTable(const std::vector<FileAnswer>& files, const AnswerTerms& terms);
 
-// For people a line per file that could be read, with how many ended how; for programs a row per file.
+// For people: a line per file that could be read, and the number of answers by status. For programs: a row
+// per file.
 CommandResult MakeAnswersResult(const std::vector<FileAnswer>& files, const AnswerTerms& terms);
 
 }  // namespace rcme

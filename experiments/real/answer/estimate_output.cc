@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The row-major numbers of a matrix.
+// Returns the numbers of a matrix, row by row.
 std::vector<double> RowMajor(const Eigen::MatrixXd& matrix) {
   std::vector<double> numbers;
   for (Eigen::Index r = 0; r < matrix.rows(); ++r) {
@@ -40,7 +40,7 @@ std::string RotationText(const Eigen::Matrix3d& R) {
   return text;
 }
 
-// Without a direction the rotation is all there is.
+// Without a direction there is only a rotation.
 std::string RotationAloneText(const MotionEstimate& estimate) {
   const Eigen::Vector3d sd_deg = kDegPerRad * estimate.pose_cov.topLeftCorner<3, 3>().diagonal().cwiseSqrt();
   return fmt::format(
@@ -53,7 +53,7 @@ std::string FoundText(const RelativePose& pose, const MotionSpread& spread) {
   const Turn turn = ComputeTurn(pose.R);
   std::string text = "\nFound: how camera 2 stands to camera 1 (x to the right, y down, z forward)\n";
   text += fmt::format("  turned     {:.4g} deg (sd {:.2g})", turn.angle_deg, spread.angle_sd_deg);
-  // Of an angle within its noise the axis is noise.
+  // The axis of an angle within its noise is meaningless.
   if (turn.angle_deg > 3.0 * spread.angle_sd_deg) {
     text += fmt::format(": {}\n             about the axis {} of camera 1", turn.words,
                         Vector(turn.axis_in_cam1));
@@ -129,7 +129,7 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
   return text;
 }
 
-// What became of the prior that the file states.
+// Describes what the estimator did with the file's prior.
 std::string PriorText(const MotionEstimate& estimate) {
   switch (estimate.prior) {
     case PriorUse::kNone:
@@ -159,7 +159,7 @@ std::string EvidenceText(const MotionEvidence& e) {
   return text + fmt::format("  plane      {} could lie on one plane\n", Percent(e.planar_share));
 }
 
-// What a person had better know before the motion is used.
+// Warnings to read before the motion is used.
 std::string WarningsText(const PairAnswer& answer) {
   const MotionEvidence& e = answer.evidence;
   std::string text;
@@ -191,7 +191,7 @@ std::string TruthText(const PairAnswer& answer) {
                           : "the file's motion is of unknown accuracy (no truth_sd)");
 }
 
-// Of an estimator that states them; see motion_estimate.h.
+// For estimators that state probabilities; see motion_estimate.h.
 void AddProbabilities(const MotionEstimate& estimate, Json* json) {
   (*json)["failure_probability"] = estimate.failure_probability;
   if (estimate.probability_domain != ProbabilityDomain::kNotStated)

@@ -1,4 +1,4 @@
-// The answer to one pair of images, for people and for programs.
+// Formats the answer to one pair of images for people and for programs.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -14,40 +14,40 @@
 
 namespace rcme {
 
-// Of a motion (status ok), at the risk that was asked for.
+// Protection levels of a motion (status ok) at the requested risk.
 struct LevelsAtRisk {
   double risk = 0.0;
   ProtectionLevels levels;
 };
 
 struct PairAnswer {
-  MotionEstimate estimate;  // judged (trial/answer_check.h)
-  TrialRecord record;       // scored against the file's truth, where it has one
-  MotionEvidence evidence;  // only of a motion (status ok)
+  MotionEstimate estimate;  // checked (trial/answer_check.h)
+  TrialRecord record;       // scored if the file has a true motion
+  MotionEvidence evidence;  // only for a motion (status ok)
   bool has_truth_sd = false;
-  std::vector<ProbabilityForBounds> for_bounds = {};  // those that were asked for
+  std::vector<ProbabilityForBounds> for_bounds = {};  // for the requested bounds
   std::optional<LevelsAtRisk> protection = {};
-  bool has_prior = false;  // the problem had one
+  bool has_prior = false;  // the problem had a prior
 };
 
-// What was found, how sure, what it rests on; of a refusal why, and what to try.
+// Formats the motion, its uncertainty and its evidence; for a refusal the reason and what to try.
 std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec);
 
-// The same for a program, but for the format (core/text/json_output.h).
+// The same for programs, without the format key (core/text/json_output.h).
 nlohmann::ordered_json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec);
 
-// What a table over pairs shows beside the motions.
+// The columns of a table over pairs beside the motions.
 struct AnswerTableColumns {
-  const std::vector<FailureBounds>& bounds;  // a probability for each
+  const std::vector<FailureBounds>& bounds;  // a failure probability for each
   bool with_levels = false, with_errors = false;
 };
 std::vector<std::string> ListAnswerColumns(const AnswerTableColumns& columns);
 std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnswer& answer,
                                          const AnswerTableColumns& columns);
-// What the columns mean; `integrity_risk`: of the levels, nothing without them.
+// Explains the columns. `integrity_risk` is that of the protection levels; empty without levels.
 std::string AnswerLegend(bool with_errors, std::optional<double> integrity_risk);
 
-// Whether the file, not the problem, is to blame: too few matches, bad numbers, points on one line.
+// Returns whether the file is to blame: too few matches, invalid numbers, points on one line.
 bool IsBadInput(MotionStatus status);
 
 }  // namespace rcme

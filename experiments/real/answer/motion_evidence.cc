@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kLevel = 0.001;
 
-// Of n normal residuals the median of the sizes has an asymptotic efficiency of 0.37: sd / sigma =
-// 1 / sqrt(2 * 0.37 n).
+// The median of the sizes of n normal residuals has an asymptotic efficiency of 0.37: sd / sigma = 1 /
+// sqrt(2 * 0.37 n).
 double SdOfNoise(double sigma_px, size_t n) { return sigma_px / std::sqrt(0.74 * static_cast<double>(n)); }
 
 void MeasureParallax(const MotionProblem& inliers, const RelativePose& pose, MotionEvidence* evidence) {
@@ -59,7 +59,7 @@ MotionEvidence ComputeEvidence(const MotionProblem& problem, const MotionEstimat
   evidence.sigma_sd_px = std::isfinite(estimate.sigma_estimated_sd_px)
                              ? estimate.sigma_estimated_sd_px
                              : SdOfNoise(evidence.sigma_px, inliers.matches.size());
-  // What the noise explains is measured by the noise there is; without any, by a little of what was assumed.
+  // The tests use the measured noise, but at least a small part of the assumed one.
   inliers.sigma_px = std::max(evidence.sigma_px, 0.01 * problem.sigma_px);
   MeasureParallax(inliers, estimate.cam2_from_cam1, &evidence);
   RandomStream rng = StreamFor({1, 0, 0, 0}, StreamPurpose::kCheck);

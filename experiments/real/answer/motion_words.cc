@@ -13,14 +13,14 @@
 namespace rcme {
 namespace {
 
-// About x (right) what is forward goes up, about y (down) to the right, about z (forward) what is right goes
-// down, clockwise for who looks forward.
+// A positive rotation about x (right) turns the camera up, about y (down) to the right, about z (forward)
+// clockwise as seen by somebody who looks forward.
 constexpr std::array<std::array<const char*, 2>, 3> kTurns = {
     {{"up", "down"}, {"to the right", "to the left"}, {"clockwise", "anticlockwise"}}};
 constexpr std::array<std::array<const char*, 2>, 3> kSides = {
     {{"right", "left"}, {"below", "above"}, {"forward", "backward"}}};
 
-// The axes by the size of a vector's part along them, the greatest first; those of at least `least`.
+// Returns the axes along which the vector has at least `least`, the greatest first.
 std::vector<int> AxesBySize(const Eigen::Vector3d& vector, double least) {
   std::vector<int> axes;
   for (int axis = 0; axis < 3; ++axis) {
@@ -30,7 +30,7 @@ std::vector<int> AxesBySize(const Eigen::Vector3d& vector, double least) {
   return axes;
 }
 
-// Standard deviations along the principal axes of a covariance, the greatest first, deg.
+// Returns the standard deviations along the principal axes of a covariance in deg, greatest first.
 template <int size>
 Eigen::Matrix<double, size, 1> PrincipalSdDeg(const Eigen::Matrix<double, size, size>& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, size, size>> solver(covariance);
@@ -66,7 +66,7 @@ std::string DescribePlace(const RelativePose& cam2_from_cam1) {
 MotionSpread ComputeSpread(const RelativePose& cam2_from_cam1, const Matrix5d& pose_cov) {
   const Eigen::Matrix3d rotation_cov = pose_cov.topLeftCorner<3, 3>();
   const Eigen::Matrix2d direction_cov = pose_cov.bottomRightCorner<2, 2>();
-  // R <- Exp(w) R turns in camera 2's frame, where the axis has the same coordinates: it is the rotation's.
+  // R <- Exp(w) R rotates in camera 2's frame. The axis of R has the same coordinates in both frames.
   const Eigen::Vector3d axis = ComputeTurn(cam2_from_cam1.R).axis_in_cam1;
   MotionSpread spread;
   spread.angle_sd_deg = kDegPerRad * std::sqrt(std::max(axis.dot(rotation_cov * axis), 0.0));

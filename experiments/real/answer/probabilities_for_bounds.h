@@ -1,4 +1,4 @@
-// The probability of failure for bounds other than the estimator's own, from the same fit.
+// Failure probabilities for other bounds than those of the estimator, from the same fit.
 #pragma once
 
 #include <cstdint>
@@ -12,23 +12,22 @@ namespace rcme {
 struct ProbabilityForBounds {
   FailureBounds bounds;
   double failure_probability = 1.0;
-  // That of the stated probability for bounds of 1 to 10 deg and 5 to 40 deg, which
+  // The domain of the stated probability for bounds of 1 to 10 deg and 5 to 40 deg, which
   // results/posterior_ranks covers; otherwise extrapolated.
   ProbabilityDomain domain = ProbabilityDomain::kExtrapolated;
 };
 
 struct EstimateForBounds {
   MotionEstimate estimate;                          // as Estimate returns it
-  std::vector<ProbabilityForBounds> probabilities;  // one for each of the bounds; none without a motion
+  std::vector<ProbabilityForBounds> probabilities;  // one for each of the bounds; empty without a motion
 };
 
-// Throws InputError where there are bounds and the estimator has no posterior
-// (calibrated/motion_posterior.h).
+// Throws InputError if bounds are given but the estimator has no posterior (calibrated/motion_posterior.h).
 EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const MotionProblem& problem,
                                      const std::vector<FailureBounds>& bounds, RandomStream& rng);
 
-// The same of the stream of samples that belongs to `seed`, judged (trial/answer_check.h): what `rcme
-// estimate` and Python answer to a problem.
+// The same with the stream of samples for `seed`, and a checked answer (trial/answer_check.h). `rcme
+// estimate` and Python answer with this function.
 EstimateForBounds AnswerProblem(const MotionEstimator& estimator, const MotionProblem& problem,
                                 const std::vector<FailureBounds>& bounds, std::uint64_t seed);
 

@@ -14,7 +14,8 @@ constexpr const char* kCheckCalibration =
 constexpr const char* kWiderBaseline =
     "take two images from places further apart: these matches determine the rotation but no direction";
 
-// "more samples: --set num_iterations=2000": ten times those there are, as far as the option allows.
+// Suggests "more samples: --set num_iterations=2000": ten times the current number, at most what the option
+// allows.
 void AddMoreSamples(const EstimatorSpec& spec, std::vector<std::string>* advice) {
   const std::unique_ptr<EstimatorModel> model = Configure(spec);
   const std::optional<Effort> effort = model->EffortOption();
@@ -27,7 +28,7 @@ void AddMoreSamples(const EstimatorSpec& spec, std::vector<std::string>* advice)
   try {
     option.SetFromText(more);
   } catch (const InputError&) {
-    return;  // there are as many as the option allows, or nearly
+    return;  // already at the option's limit, or nearly
   }
   advice->push_back(fmt::format("more samples: --set {}={}", effort->option, more));
 }

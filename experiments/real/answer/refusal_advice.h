@@ -1,4 +1,4 @@
-// What a person may try where an estimator gave no motion.
+// Suggests what to try when an estimator returned no motion.
 #pragma once
 
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace rcme {
 
-// One sentence each, with the options of this estimator by name; empty for a motion (status ok).
+// Returns one sentence per suggestion, with the names of this estimator's options; empty for a motion
+// (status ok).
 std::vector<std::string> AdviceFor(const MotionEstimate& estimate, const EstimatorSpec& spec);
 
 }  // namespace rcme

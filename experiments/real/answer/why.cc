@@ -23,14 +23,14 @@ namespace {
 
 constexpr const char* kStandIn = "msac";
 
-// The estimator's own search and score, without what any estimator can be put behind (a robust covariance,
+// Returns the estimator with only its own search and score, without optional wrappers (a robust covariance,
 // the gate of model choice).
 std::unique_ptr<MotionEstimator> Bare(EstimatorSpec spec) {
   for (const auto& [option, value] : Settings{{"covariance", "own"}, {"model_choice", "off"}}) {
     try {
       SetOptions(&spec, {{option, value}});
     } catch (const InputError&) {
-      // has no such option, or another one of that name
+      // has no such option, or one with other values
     }
   }
   return Make(spec);
@@ -43,7 +43,7 @@ double DirectionDeg(const RelativePose& a, const RelativePose& b) {
   return kDegPerRad * AngleBetween(a.t, b.t);
 }
 
-// How far a motion is from the truth, by the bounds of the study.
+// The distance of a motion from the truth, compared with the bounds of the study.
 struct Distance {
   double rotation_deg, direction_deg;
   bool is_direction_known, is_within;
@@ -61,7 +61,7 @@ struct Distance {
   }
 };
 
-// What speaks for a motion: its inliers, and what the estimator chooses by.
+// Describes the score of a motion: its inliers, and the number by which the estimator chooses.
 std::string ScoreWords(const ScoredMotion& motion) {
   const InlierScore& score = motion.score;
   const std::string words = fmt::format("{} inliers", score.num_inliers);
@@ -76,10 +76,10 @@ std::string ScoreWords(const ScoredMotion& motion) {
   return words;
 }
 
-// By how much a is the better one, in standard deviations that the difference has by chance where both
-// explain the same right matches: of n the number beyond a test of level alpha is binomial, a squared
-// residual has the variance 2, a mean entropy that of its own spread. The two are taken as independent, so
-// that it is rather too small.
+// Returns the advantage of a over b in standard deviations of the difference that occurs by chance if both
+// explain the same right matches. The number of n matches beyond a test of level alpha is binomial; a
+// squared residual has variance 2; the variance of a mean entropy follows from its spread. The two are
+// treated as independent, which makes the result rather too small.
 double Advantage(const ScoredMotion& a, const ScoredMotion& b, double significance_level) {
   const InlierScore &x = a.score, &y = b.score;
   const double n = std::max({x.num_inliers, y.num_inliers, 1});
@@ -99,7 +99,7 @@ double Advantage(const ScoredMotion& a, const ScoredMotion& b, double significan
 }
 constexpr double kClear = 2.0;
 
-// Which of the motions the estimator itself would choose, had its loop found these alone; nothing: none
+// Returns which of the motions the estimator would choose if its loop had found only these; nothing if none
 // passes its tests.
 std::optional<size_t> Chosen(const LoopInspection& estimator, int num_matches,
                              const std::vector<const ScoredMotion*>& motions) {
@@ -114,7 +114,7 @@ std::optional<size_t> Chosen(const LoopInspection& estimator, int num_matches,
   const LoopResult loop = estimator.With(options)->Decide(trace);
   if (!loop.winner) return std::nullopt;
   auto chosen = static_cast<size_t>(loop.winner->id.model);
-  for (const Candidate& other : loop.runners_up) {  // of several that are refined the one that explains most
+  for (const Candidate& other : loop.runners_up) {  // of several refined motions, the one that explains most
     const auto k = static_cast<size_t>(other.id.model);
     if (motions[k]->estimate.num_explained > motions[chosen]->estimate.num_explained) chosen = k;
   }
@@ -129,7 +129,7 @@ class RansacWhy {
         bounds_(bounds),
         truth_(estimator.ScoreMotion(data.problem, *data.truth.cam2_from_cam1_true)) {}
 
-  // Of a motion beyond the bounds.
+  // Explains a motion beyond the bounds.
   Why OfFailure(const RelativePose& answer) const {
     if (const auto why = OfTruthWithoutOptimum()) return *why;
     const ScoredMotion scored = estimator_.ScoreMotion(data_.problem, answer);
@@ -162,7 +162,7 @@ class RansacWhy {
  private:
   int NumMatches() const { return static_cast<int>(data_.problem.matches.size()); }
 
-  // Where nothing that begins at the truth stays near it.
+  // Returns an explanation if no optimum reached from the truth lies near it.
   std::optional<Why> OfTruthWithoutOptimum() const {
     if (!truth_.refined.converged)
       return Why{WhyVerdict::kModelCannotTell, "the matches have no optimum near the true motion", {}};
@@ -181,7 +181,7 @@ class RansacWhy {
 
 constexpr double kSure = 0.9;
 
-// By the odds that rcme_calibrated itself gives the true motion, had its search found it.
+// Explains by the probability that rcme_calibrated itself gives the true motion, had its search found it.
 Why WhyByWeights(const WeightInspection& estimator, const TrialData& data, const MotionEstimate& estimate,
                  const FailureBounds& bounds) {
   std::vector<RelativePose> starts = {*data.truth.cam2_from_cam1_true};

@@ -1,9 +1,10 @@
-// Why an answer is wrong, or missing: did the search fail, or can the estimator's own model not tell?
+// Explains why an answer is wrong or missing: did the search fail, or can the estimator's own model not
+// tell?
 //
-// The true motion is handed to the estimator as if its search had found it, and judged by the estimator's own
-// score and tests (LoopInspection::ScoreMotion and Decide, WeightInspection::WeighMotions). It is refined
-// there first: noise moves the optimum away from the truth, and a motion that was fitted is not to be held
-// against one that was not. No call of Estimate sees the truth.
+// The true motion is scored and tested by the estimator itself, as if its search had found it
+// (LoopInspection::ScoreMotion and Decide, WeightInspection::WeighMotions). It is refined first: noise moves
+// the optimum away from the truth, and a fitted motion must not be compared with one that was not fitted.
+// Estimate itself never sees the truth.
 #pragma once
 
 #include <optional>
@@ -20,26 +21,26 @@ enum class WhyVerdict {
   // The true motion scores clearly better than the answer (by two standard deviations, or a probability of
   // 0.9), or would not have been refused.
   kSearchFailed,
-  kModelCannotTell,  // it does not, or the matches have no optimum within the bounds
-  kTestsRefuse,      // the tests would have refused the true motion, too
+  kModelCannotTell,  // the true motion does not, or the matches have no optimum within the bounds
+  kTestsRefuse,      // the tests would also have refused the true motion
   kTruthUnknown,
 };
-// "right", "search_failed", "model_cannot_tell", "tests_refuse", "truth_unknown".
+// Returns "right", "search_failed", "model_cannot_tell", "tests_refuse" or "truth_unknown".
 const char* Name(WhyVerdict verdict);
 
 struct Why {
   WhyVerdict verdict = WhyVerdict::kTruthUnknown;
-  std::string words;      // a sentence or two, with the scores
-  std::string runner_up;  // the most likely other motion, of an estimator that keeps several; empty: none
+  std::string words;      // one or two sentences with the scores
+  std::string runner_up;  // most likely other motion, if the estimator keeps several; else empty
 };
 Why ExplainOutcome(const EstimatorSpec& spec, const TrialData& data, const MotionEstimate& estimate,
                    const TrialRecord& record, const FailureBounds& bounds);
 
-// What the true motion itself rests on: the right matches, where they are known, else those that agree with
-// it at 95 %. Nothing where the truth is not known.
+// Returns the evidence for the true motion: from the right matches if they are known, else from those that
+// agree with it at 95 %. Nothing if the truth is not known.
 std::optional<MotionEvidence> EvidenceOfTruth(const TrialData& data);
 
-// The above for people, of all estimators of a trial.
+// Formats this for all estimators of a trial.
 std::string WhyAsText(const StudyPlan& plan, const TrialResult& result);
 
 }  // namespace rcme

@@ -25,8 +25,7 @@ std::uint64_t Hash(std::string_view bytes, Fnv1a hash = {}) {
   return hash.value();
 }
 
-// In this order at the beginning of a file; the key points, the descriptors and the hash of all before
-// follow.
+// The beginning of a file. The key points, the descriptors and a hash of all preceding bytes follow.
 struct CacheHeader {
   std::array<char, 16> magic = {'r', 'c', 'm', 'e', ' ', 'f', 'e', 'a',
                                 't', 'u', 'r', 'e', 's', ' ', '2', '\n'};
@@ -92,7 +91,7 @@ bool AreFeatures(const ImageFeatures& image, Detector detector) {
   const size_t num_bytes = features.key_points.size() * CountDescriptorBytes(detector);
   if (image.width < 1 || image.height < 1 || features.descriptors.size() != num_bytes) return false;
   if (!features.key_points.empty() && features.is_binary != (detector != Detector::kSift)) return false;
-  constexpr float kMarginPx = 1.0f;  // beyond the image: SIFT's shift
+  constexpr float kMarginPx = 1.0f;  // SIFT's shift moves points beyond the image
   return std::ranges::all_of(features.key_points, [&](const KeyPoint& point) {
     return point.x_px >= -kMarginPx && point.x_px <= static_cast<float>(image.width) + kMarginPx &&
            point.y_px >= -kMarginPx && point.y_px <= static_cast<float>(image.height) + kMarginPx &&

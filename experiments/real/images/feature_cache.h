@@ -1,6 +1,6 @@
-// Features of images that were seen before, by content: the name of a file in the cache is a hash of the
-// image's bytes and of all that decides what is found in them. A copied or renamed image is found again, a
-// changed one is not taken for what it was.
+// Caches the features of images by content. The name of a cache file is a hash of the image's bytes and of
+// everything that determines its features. A copied or renamed image is therefore found, and a changed one
+// is not confused with its former version.
 #pragma once
 
 #include <optional>
@@ -11,31 +11,32 @@
 namespace rcme {
 
 struct ImageFeatures {
-  int width = 0, height = 0;  // of the file, px
+  int width = 0, height = 0;  // of the image file, px
   Features features;
 };
 
 class FeatureCache {
  public:
-  // Makes the folder. Empty: nothing is kept.
+  // Makes the folder. An empty name disables the cache.
   explicit FeatureCache(std::string folder);
 
-  // Those of an image file, from the cache where they are there and undamaged; else they are found and kept:
-  // a file of the cache is written whole or not at all. Throws InputError (grey_image.h).
+  // Returns the features of an image file. They are read from the cache if they are there and undamaged,
+  // otherwise computed and stored; a cache file is written completely or not at all. Throws InputError
+  // (grey_image.h).
   ImageFeatures Get(const std::string& path, const DetectorOptions& options);
 
-  int num_found() const { return num_found_; }  // in the cache
+  int num_found() const { return num_found_; }  // found in the cache
 
  private:
   std::string folder_;
   int num_found_ = 0;
 };
 
-// As the bytes of a file of the cache, and back; nothing where they are damaged.
+// Convert to and from the bytes of a cache file. UnpackFeatures returns nothing if they are damaged.
 std::string PackFeatures(const ImageFeatures& image);
 std::optional<ImageFeatures> UnpackFeatures(const std::string& bytes);
 
-// Whether the detector can have found these: a file that is whole may have been made to harm.
+// Returns whether the detector can have produced these features: an undamaged file may still be malicious.
 bool AreFeatures(const ImageFeatures& image, Detector detector);
 
 }  // namespace rcme

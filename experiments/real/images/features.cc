@@ -23,8 +23,8 @@ cv::Ptr<cv::Feature2D> Make(const DetectorOptions& options) {
   return cv::AKAZE::create();
 }
 
-// The size of what the detector finds at its finest scale: for SIFT sigma 1.6 2^(1/3) of the doubled image,
-// as a diameter; ORB's patch; AKAZE's first sigma 1.6 with its factor of 1.5, as a diameter.
+// The size of key points at a detector's finest scale. SIFT: sigma 1.6 2^(1/3) of the doubled image, as a
+// diameter; ORB: its patch; AKAZE: first sigma 1.6 times its factor of 1.5, as a diameter.
 double FinestSize(Detector detector) {
   switch (detector) {
     case Detector::kSift:
@@ -37,7 +37,7 @@ double FinestSize(Detector detector) {
   return 4.8;
 }
 
-// The descriptors as a matrix with a row each, which shares their memory.
+// Returns the descriptors as a matrix with a row per key point, which shares their memory.
 cv::Mat MakeDescriptorMatrix(const Features& features) {
   const int num_rows = static_cast<int>(features.key_points.size());
   const int num_bytes = static_cast<int>(features.descriptors.size()) / num_rows;
@@ -46,12 +46,12 @@ cv::Mat MakeDescriptorMatrix(const Features& features) {
                             : cv::Mat(num_rows, num_bytes / static_cast<int>(sizeof(float)), CV_32FC1, bytes);
 }
 
-// Of the nearest two. Two descriptors that are the same as the first's say nothing of which is right: 1.
+// Returns the ratio for the two nearest. If both have distance 0, neither is preferred: 1.
 float RatioOfDistances(const std::vector<cv::DMatch>& two) {
   return two[1].distance > 0.0f ? two[0].distance / two[1].distance : 1.0f;
 }
 
-// Of each key point of image 1 the nearest of image 2, where it passes the ratio test.
+// Returns the nearest key point of image 2 for each of image 1 that passes the ratio test.
 std::vector<FeatureMatch> MatchNearest(const cv::Mat& rows1, const cv::Mat& rows2, bool is_binary,
                                        double max_ratio) {
   std::vector<std::vector<cv::DMatch>> nearest;
@@ -65,8 +65,7 @@ std::vector<FeatureMatch> MatchNearest(const cv::Mat& rows1, const cv::Mat& rows
   return matches;
 }
 
-// Those whose key point of image 2 has no nearer one in image 1. SIFT finds a point with two orientations
-// twice, at the same place: of matches between the same two places the first is kept.
+// Removes matches whose key point of image 2 has a nearer one in image 1.
 void KeepMutual(const cv::Mat& rows1, const cv::Mat& rows2, bool is_binary,
                 std::vector<FeatureMatch>* matches) {
   std::vector<cv::DMatch> back;
@@ -76,7 +75,8 @@ void KeepMutual(const cv::Mat& rows1, const cv::Mat& rows2, bool is_binary,
   });
 }
 
-// Of the matches at one place of an image the first.
+// Keeps the first match at each place of an image. SIFT detects a point with two orientations twice, at the
+// same place.
 void KeepOnePerPlace(const std::vector<KeyPoint>& key_points, std::uint32_t FeatureMatch::*at,
                      std::vector<FeatureMatch>* matches) {
   std::map<std::pair<float, float>, int> num_at;

@@ -16,12 +16,12 @@ namespace rcme {
 namespace {
 
 constexpr size_t kMaxImageBytes = size_t{1} << 30;
-// Of a file: .5 GB where it has 16 bits.
+// Limit for a file: .5 GB with 16 bits.
 constexpr std::int64_t kMaxFilePixels = std::int64_t{1} << 28;
-// Of what key points are looked for in: SIFT takes some 230 bytes per pixel, 3.9 GB for the largest image.
+// Limit for detection: SIFT takes some 230 bytes per pixel, 3.9 GB for the largest image.
 constexpr std::int64_t kMaxPixels = std::int64_t{4096} * 4096;
 
-// The size that is to be unpacked is known before anything is: a small file may hold a huge image.
+// Checks the size before anything is decoded, because a small file may hold a huge image.
 void CheckHeader(const std::string& bytes, const std::string& path) {
   const ImageHeader header = ReadImageHeader(bytes);
   if (header.format.empty())
@@ -36,8 +36,8 @@ void CheckHeader(const std::string& bytes, const std::string& path) {
   }
 }
 
-// Decoders fill what is missing of PNG and JPEG with grey: whether their end is there is seen here. Behind it
-// may be what a camera adds.
+// Checks that PNG and JPEG files have their end, because decoders fill missing parts with grey. Some cameras
+// append data after the end.
 void CheckIsWhole(const std::string& bytes, const std::string& path) {
   constexpr size_t kLastBytes = 4096;
   const std::string_view all(bytes), last = all.substr(all.size() - std::min(all.size(), kLastBytes));
@@ -47,7 +47,7 @@ void CheckIsWhole(const std::string& bytes, const std::string& path) {
     throw InputError(fmt::format("{}: the image is damaged: it ends early", path));
 }
 
-// 16 bits as 8, so that the picture of a 12-bit sensor is as bright as in a file of 8 bits.
+// Reduces 16 bits to 8, so that an image from a 12-bit sensor is as bright as one in an 8-bit file.
 cv::Mat TakeUpperBits(const cv::Mat& image) {
   if (image.depth() == CV_8U) return image;
   double greatest = 0.0;
@@ -92,7 +92,7 @@ GreyImage UnpackImage(std::string bytes, const std::string& path) {
   CheckIsWhole(bytes, path);
   cv::Mat image;
   try {
-    // As the sensor has it, which is what K is of: not turned as the camera was held.
+    // In the orientation of the sensor, to which K refers, not in that of the camera.
     image = DecodeImage(cv::Mat(1, static_cast<int>(bytes.size()), CV_8UC1, bytes.data()),
                         cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {

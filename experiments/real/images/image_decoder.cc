@@ -13,7 +13,8 @@ namespace rcme {
 namespace {
 
 using Decoder = cv::Mat (*)(cv::InputArray, int);
-// That there is one of this type, which its name below says again; nothing here refers to the library.
+// Checks that a function of this type exists, as the symbol name below states; this does not link to the
+// library.
 using Checked = decltype(static_cast<Decoder>(&cv::imdecode));
 
 #ifdef RCME_IMAGE_LIBRARY

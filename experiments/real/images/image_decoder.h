@@ -4,9 +4,9 @@
 
 namespace rcme {
 
-// cv::imdecode(bytes, flags). Its library is loaded with the first image: Debian's brings over a hundred
-// others along, whose loading takes longer than most commands. Throws InputError where it cannot be loaded.
-// Safe from several threads.
+// cv::imdecode(bytes, flags). Its library is loaded with the first image, because Debian's depends on over a
+// hundred others, whose loading takes longer than most commands. Throws InputError if it cannot be loaded.
+// Thread-safe.
 cv::Mat DecodeImage(cv::InputArray bytes, int flags);
 
 }  // namespace rcme

@@ -7,7 +7,7 @@ namespace {
 
 enum class ByteOrder { kBig, kLittle };
 
-// The unsigned number of `count` bytes at `at`; 0 beyond the end.
+// Returns the unsigned number of `count` bytes at `at`; 0 beyond the end.
 std::int64_t NumberAt(std::string_view bytes, size_t at, size_t count, ByteOrder order) {
   if (at > bytes.size() || count > bytes.size() - at) return 0;
   std::int64_t number = 0;
@@ -18,7 +18,7 @@ std::int64_t NumberAt(std::string_view bytes, size_t at, size_t count, ByteOrder
   return number;
 }
 
-// The first chunk: length, "IHDR", width, height (PNG specification, 11.2.2).
+// Reads the first chunk: length, "IHDR", width, height (PNG specification, 11.2.2).
 ImageHeader Png(std::string_view bytes) {
   ImageHeader header{"PNG"};
   if (bytes.substr(std::min<size_t>(12, bytes.size()), 4) != "IHDR") return header;
@@ -27,8 +27,8 @@ ImageHeader Png(std::string_view bytes) {
   return header;
 }
 
-// The frame header stands behind segments, each with its length: SOF0 to SOF15 but DHT, JPG and DAC (ITU
-// T.81, B.1).
+// The frame header follows other segments, each with its length. It is one of SOF0 to SOF15 without DHT, JPG
+// and DAC (ITU T.81, B.1).
 ImageHeader Jpeg(std::string_view bytes) {
   ImageHeader header{"JPEG"};
   for (size_t at = 2; at + 4 <= bytes.size();) {
@@ -36,7 +36,7 @@ ImageHeader Jpeg(std::string_view bytes) {
     const std::int64_t marker = NumberAt(bytes, at + 1, 1, ByteOrder::kBig);
     const bool has_no_length = marker == 0x01 || (marker >= 0xD0 && marker <= 0xD7);
     if (lead != 0xFF || marker == 0x00 || marker == 0xFF) {
-      ++at;  // filling bytes
+      ++at;  // fill bytes
     } else if (marker == 0xD9 || marker == 0xDA) {
       return header;  // the end, or data, without a frame header
     } else if (has_no_length) {
@@ -52,7 +52,8 @@ ImageHeader Jpeg(std::string_view bytes) {
   return header;
 }
 
-// Width and height, of 16 bits in the oldest form; a negative height counts rows from the top.
+// Reads width and height, which have 16 bits in the oldest form. A negative height means that rows go from
+// the top.
 ImageHeader Bmp(std::string_view bytes) {
   constexpr std::int64_t kOldestHeaderBytes = 12;
   ImageHeader header{"BMP"};
@@ -67,7 +68,7 @@ ImageHeader Bmp(std::string_view bytes) {
   return header;
 }
 
-// "P5 # comment\n 640 480": numbers in text. Ten digits are more than any limit.
+// Parses "P5 # comment\n 640 480". Numbers have at most ten digits, more than any limit.
 ImageHeader Pnm(std::string_view bytes) {
   ImageHeader header{"PNM"};
   size_t at = 2;
@@ -82,8 +83,8 @@ ImageHeader Pnm(std::string_view bytes) {
   return header;
 }
 
-// One entry of a TIFF directory: tag, type, count, value (TIFF 6.0, section 2). 0 for a tag that is not
-// there, -1 for one that stands twice or is of a type that sizes do not have.
+// Returns the value of a TIFF directory entry: tag, type, count, value (TIFF 6.0, section 2). 0 if the tag
+// is missing, -1 if it occurs twice or has a type that sizes do not have.
 std::int64_t TiffValue(std::string_view bytes, ByteOrder order, std::int64_t tag) {
   constexpr size_t kEntryBytes = 12;
   constexpr std::int64_t kShort = 3, kLong = 4;

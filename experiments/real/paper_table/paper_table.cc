@@ -18,11 +18,11 @@
 namespace rcme {
 namespace {
 
-// One call of a pair whose motion is known: how far off it is, in the greater of both errors.
+// One call for a pair with known motion, with the greater of both errors.
 struct PairError {
   std::int64_t member1 = 0, member2 = 0;
   bool is_refused = false;
-  double error_deg = 0.0;  // infinite of what is no valid motion
+  double error_deg = 0.0;  // infinite for an invalid motion
 };
 
 BoundOutcomes MeasureOutcomes(const std::vector<PairError>& errors, double bound_deg) {
@@ -71,14 +71,14 @@ struct CellEvents {
       &CellEvents::true_failure, &CellEvents::flag_of_failed, &CellEvents::flag_of_right};
 };
 
-// Of a condition: the names that a pattern may meet, and the events of each estimator.
+// A condition: the names to which patterns apply, and the events of each estimator.
 struct SceneEvents {
   std::vector<std::string> levels;
   std::vector<CellEvents> estimators;
   std::int64_t num_in_doubt = 0;
 };
 
-// Numbers of what pairs have in common, over all scenes.
+// Numbers the images (or scenes) that pairs share, over all scenes.
 class Members {
  public:
   explicit Members(TableClusters clusters) : clusters_(clusters) {}
@@ -96,7 +96,7 @@ class Members {
   }
 
  private:
-  // Of the condition's folder; of a simulated scene there are none.
+  // Returns the image names in the condition's folder; a simulated scene has none.
   const ImageNames& FindImageNames(const Condition& condition, const StudyPlan& plan) {
     std::string folder;
     std::vector<std::string> levels = condition.levels;
@@ -121,7 +121,7 @@ class Members {
   std::map<std::string, ImageNames> names_of_folder_;
 };
 
-// Only estimators that refine a hypothesis count matches before and after.
+// Only estimators that refine a hypothesis count matches before and after refinement.
 bool HasFlag(const TrialRecord& record) { return record.num_consistent_before > 0; }
 
 void AddRecord(const TrialRecord& record, bool is_truth_known, const FailureBounds& bounds,
@@ -145,7 +145,7 @@ void AddRecord(const TrialRecord& record, bool is_truth_known, const FailureBoun
     add(HasFailed(record, bounds) ? &events->flag_of_failed : &events->flag_of_right, is_flagged);
 }
 
-// Of an estimator that never counts matches before and after a refinement nothing is said by the flag.
+// Removes the flag of estimators that never count matches before and after refinement.
 void DropMissingFlags(const std::vector<bool>& has_flag, std::vector<SceneEvents>* scenes) {
   for (SceneEvents& scene : *scenes) {
     for (size_t e = 0; e < has_flag.size(); ++e) {

@@ -1,5 +1,5 @@
-// The table of the paper for a run of one's own: refusals and failures per sequence, by the paper's flag and
-// by the truth where there is one.
+// The table of the paper for your own run: refusals and failures per sequence, by the paper's flag and, if
+// it is known, by the truth.
 #pragma once
 
 #include <string>
@@ -10,61 +10,62 @@
 
 namespace rcme {
 
-// Scenes that the table also counts together. A pattern is the name of a scene, or its beginning with a star.
+// Scenes that the table also counts together. A pattern is the name of a scene, or the beginning of a name
+// and a star.
 struct SceneGroup {
   std::string name;
   std::vector<std::string> patterns;
 };
-// "indoor=MH_*,room" as text. Throws InputError that says what is allowed.
+// Parses "indoor=MH_*,room". Throws InputError that says what is allowed.
 SceneGroup ParseSceneGroup(const std::string& text);
-// By the names of the public data sets.
+// Returns groups for the names of the public data sets.
 std::vector<SceneGroup> UsualSceneGroups();
 
-// What pairs have in common that makes them dependent.
+// Which pairs depend on each other.
 enum class TableClusters {
-  kImages,    // pairs of a scene that share an image; pairs without names of images are independent
+  kImages,    // pairs of a scene that share an image; pairs without image names are independent
   kSequences  // all pairs of a scene
 };
 
-// What became of the pairs whose motion is known, by the greater of rotation and direction error e: the three
-// rates add up to 1.
+// Outcomes of the pairs whose true motion is known. e is the greater of rotation and direction error. The
+// three rates add up to 1.
 struct BoundOutcomes {
   double bound_deg = 0.0;
   SharedMemberRate refusal;  // no motion
-  SharedMemberRate failure;  // e above the bound, or an answer that is not valid
+  SharedMemberRate failure;  // e above the bound, or an invalid answer
   SharedMemberRate success;
-  SharedMemberMean area;  // AUC: of max(0, 1 - e / bound), 0 without a success
+  SharedMemberMean area;  // AUC: mean of max(0, 1 - e / bound), 0 without a success
 };
 
-// One estimator on one scene or group. Rates of all pairs, but where a line says otherwise; intervals respect
-// what pairs have in common (shared_members.h).
+// One estimator on one scene or group. Rates are over all pairs unless stated otherwise; intervals account
+// for dependent pairs (shared_members.h).
 struct TableCell {
   SharedMemberRate detect_fail;    // no candidate: the paper's Detect-fail
   SharedMemberRate other_refusal;  // no motion for any other reason
-  SharedMemberRate kappa_failure;  // the paper's Failure: n*_I / n_I <= kappa; n = 0 where there is no flag
-  SharedMemberRate true_failure;   // motion beyond a bound or not valid; of pairs whose motion is known
-  // The flag against the truth, of returned motions with both.
+  SharedMemberRate kappa_failure;  // the paper's Failure: n*_I / n_I <= kappa; n = 0 without a flag
+  SharedMemberRate true_failure;   // a motion beyond a bound or invalid; of pairs whose motion is known
+  // The flag compared with the truth, for returned motions that have both.
   SharedMemberRate flag_of_failed, flag_of_right;
-  std::vector<BoundOutcomes> outcomes;  // of each bound that was asked for
-  double median_seconds = 0.0;          // of a call; NaN without pairs
+  std::vector<BoundOutcomes> outcomes;  // for each requested bound
+  double median_seconds = 0.0;          // per call; NaN without pairs
 };
 
 struct TableRow {
   std::string name;
   bool is_group = false;
   std::vector<TableCell> cells;   // one per estimator of the study
-  std::int64_t num_in_doubt = 0;  // pairs whose truth is listed as in doubt: in no cell
+  std::int64_t num_in_doubt = 0;  // pairs listed as in doubt; no cell counts them
 };
 
 struct PaperTable {
   std::string study;
   std::vector<std::string> estimators;
   FailureBounds bounds;
-  std::vector<TableRow> rows;  // the scenes, then the groups that have any, then all
+  std::vector<TableRow> rows;  // the scenes, then the non-empty groups, then all
 };
 
-// Reads the pairs again, for the names of their images. Throws InputError if they are gone or have changed.
-// `bounds_deg`: those of the outcomes.
+// Makes the table. It reads the pairs again for the names of their images; throws InputError if they are
+// missing or have changed. `bounds_deg`: the bounds of the outcomes.
 PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>& groups,
                           TableClusters clusters, const std::vector<double>& bounds_deg = {});
 

@@ -17,7 +17,7 @@ struct CellQuantity {
   const char* name;     // in files
   const char* heading;  // for people
   SharedMemberRate TableCell::*rate;
-  bool is_of_subset = false;  // of the pairs, which the table then counts
+  bool is_of_subset = false;  // of a subset of the pairs, whose number the table then shows
 };
 constexpr CellQuantity kQuantities[] = {
     {"detect_fail", "Detect-fail %", &TableCell::detect_fail},
@@ -29,7 +29,7 @@ constexpr CellQuantity kQuantities[] = {
 };
 const NumberFormat kPercentOfHeading{100.0, "", ".2f"};
 
-// Of a rate of n pairs in per cent: as many as tell one pair from none.
+// Decimals for a rate of n pairs in per cent: enough to distinguish one pair from none.
 int CountDecimals(std::int64_t n) { return n <= 100 ? 0 : n <= 1000 ? 1 : 2; }
 
 bool HasDoubts(const PaperTable& paper_table) {
@@ -64,7 +64,7 @@ Estimate MakeEstimate(const SharedMemberRate& rate) {
   return {.value = rate.rate, .interval = rate.interval, .decimals = CountDecimals(rate.n)};
 }
 
-// What became of the pairs at one bound: a row per estimator, of each scene and group.
+// The outcomes at one bound: a row per estimator for each scene and group.
 Table MakeOutcomeTable(const PaperTable& paper_table, size_t bound) {
   const NumberFormat milliseconds{1e3, "", ".3g"};
   Table table{{Column::Key("scene"), Column::Key("estimator"), Column::Count("pairs"),
@@ -105,7 +105,7 @@ double ComputeShare(const PrintedRate& rate) {
   return static_cast<double>(rate.count) / static_cast<double>(rate.n);
 }
 
-// The printed rates come by row: the first row has all columns.
+// The printed rates by row; the first row has all columns.
 Table MakePrintedTable(const std::vector<PrintedRate>& rates) {
   Table table{{Column::Key("printed in the paper"), Column::Count("pairs")}};
   for (const PrintedRate& rate : rates) {
@@ -133,7 +133,7 @@ std::string DescribeComparisons() {
   return text;
 }
 
-// Of the files. In JSON printed rates are a list of their own.
+// The rows for files. In JSON printed rates are a list of their own.
 std::vector<Column> RateColumns(bool is_printed) {
   return {{.name = "source", .json_name = kNotInJson},
           Column::Text("scene"),
@@ -189,7 +189,7 @@ void AppendOutcomes(const TableRow& row, const TableCell& cell, const std::strin
                            {}});
 }
 
-// The pairs in doubt of a row, where there are any at all; they are no estimator's.
+// The pairs in doubt of a row, if the table has any; they belong to no estimator.
 void AppendDoubts(const PaperTable& paper_table, Table* table) {
   if (!HasDoubts(paper_table)) return;
   for (const TableRow& row : paper_table.rows) {

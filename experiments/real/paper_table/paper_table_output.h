@@ -7,8 +7,9 @@
 
 namespace rcme {
 
-// For people a table per estimator, then what the paper prints. In files a row per scene or group, estimator
-// and quantity; the printed rates follow with `source` paper, in JSON as an array of their own.
+// For people: a table per estimator, then the rates printed in the paper. In files: a row per scene or
+// group, estimator and quantity, followed by the printed rates with `source` paper; in JSON these are an
+// array of their own.
 CommandResult MakePaperResult(const PaperTable& table);
 
 }  // namespace rcme

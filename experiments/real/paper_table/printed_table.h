@@ -16,20 +16,20 @@ struct PrintedDataset {
   int rcme_detect_fail, rcme_failure, prcme_detect_fail, prcme_failure, standard_failure;
 };
 
-// The paper prints shares in per cent to two decimals; each of them is that of one number of pairs alone.
+// The paper prints percentages with two decimals; each of them corresponds to exactly one number of pairs.
 std::span<const PrintedDataset> PrintedDatasets();
 
-// One method over the indoor or the outdoor datasets, or one dataset.
+// The rate of one method on one dataset, or on all indoor or outdoor datasets.
 struct PrintedRate {
-  std::string row, method, quantity;  // RCME, pRCME, Standard; detect_fail, failure
+  std::string row, method, quantity;  // method: RCME, pRCME, Standard; quantity: detect_fail, failure
   int count = 0, n = 0;
   Interval interval;  // exact binomial, as if pairs were independent
 };
-// Every dataset, then "indoor" and "outdoor".
+// Returns the rates of every dataset, then of "indoor" and "outdoor".
 std::vector<PrintedRate> PrintedRates();
 
-// Failures of two methods on the same pairs. How many pairs both fail on is not printed: McNemar's exact
-// p-value where as many as possible are the same, and where none is.
+// The failures of two methods on the same pairs. The paper does not print on how many pairs both fail, so
+// these are McNemar's exact p-values for as many common failures as possible and for none.
 struct PrintedComparison {
   std::string row, first, second;
   int first_failures = 0, second_failures = 0, n = 0;

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kMaxImages = 2147483647;
 constexpr std::int64_t kMaxRows = 1'000'000;
 
-// SQLite's errors as sentences that name the file.
+// Turns errors of SQLite into messages that name the file.
 template <typename Action>
 auto NamingColmap(const std::string& path, Action action) {
   try {
@@ -38,14 +38,14 @@ auto NamingColmap(const std::string& path, Action action) {
   }
 }
 
-// A whole number of a row.
+// Reads a whole number of a row.
 std::int64_t WholeIn(const SQLite::Column& column, const std::string& place) {
   if (!column.isInteger())
     throw InputError(fmt::format("{}: {} is no whole number", place, column.getName()));
   return column.getInt64();
 }
 
-// The numbers of a blob, `count` of them.
+// Reads `count` numbers of a blob.
 template <typename Number>
 std::vector<Number> NumbersIn(const SQLite::Column& column, size_t count, const std::string& place) {
   if (count == 0) return {};
@@ -165,7 +165,7 @@ class ColmapPairs : public ListedPairs {
                         num_known, images_.size(), folder.string());
   }
 
-  // What the image was taken through, as well as is known.
+  // Returns the best known lens of an image.
   const Lens& FindLens(std::int64_t image) const {
     const auto view = views_.find(images_.at(image).name);
     return view == views_.end() ? cameras_.at(images_.at(image).camera) : view->second.lens;
@@ -196,8 +196,8 @@ class ColmapPairs : public ListedPairs {
     return key_points_[image] = std::move(points);
   }
 
-  // Twice the scale: x, y, scale, orientation, or x, y and a 2x2 matrix whose columns are of the scale's
-  // length.
+  // Returns twice the scale. A row is x, y, scale, orientation, or x, y and a 2x2 matrix whose columns have
+  // the length of the scale.
   static float Diameter(const float* row, size_t width) {
     if (width == 4) return 2.0f * row[2];
     if (width == 6) return std::hypot(row[2], row[4]) + std::hypot(row[3], row[5]);
@@ -213,7 +213,7 @@ class ColmapPairs : public ListedPairs {
     file.image2 = images_.at(id2).name;
     file.camera1 = FindLens(id1).camera;
     file.camera2 = FindLens(id2).camera;
-    // Pairs come in the order of their first images: what is neither of this pair's is forgotten.
+    // Pairs are ordered by their first images, so key points of other images can be dropped.
     std::erase_if(key_points_, [&](const auto& entry) { return entry.first != id1 && entry.first != id2; });
     const ColmapKeyPoints &points1 = ReadKeyPoints(id1), &points2 = ReadKeyPoints(id2);
 

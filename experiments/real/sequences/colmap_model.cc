@@ -23,7 +23,7 @@ using Views = std::map<std::string, ColmapView>;
 
 constexpr size_t kMaxNameBytes = 1023;
 
-// From cam_from_world, as COLMAP stores it.
+// Converts cam_from_world, COLMAP's convention.
 CameraPose MakeCameraPose(const std::array<double, 7>& p, const std::string& place) {
   const Eigen::Quaterniond q(p[0], p[1], p[2], p[3]);
   const Eigen::Vector3d t(p[4], p[5], p[6]);
@@ -52,7 +52,7 @@ std::int64_t ReadWholeNumber(const TableFile& table, size_t field) {
   return number;
 }
 
-// CAMERA_ID MODEL WIDTH HEIGHT PARAMS...
+// Format: CAMERA_ID MODEL WIDTH HEIGHT PARAMS...
 Lenses ReadCamerasText(const fs::path& path) {
   Lenses lenses;
   for (TableFile table(path, "it comes with images.txt", TableFile::Separator::kSpace); table.Next();) {
@@ -68,7 +68,7 @@ Lenses ReadCamerasText(const fs::path& path) {
   return lenses;
 }
 
-// IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then a line of points, which may be empty.
+// Format: IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME, then a line of points, which may be empty.
 Views ReadImagesText(const fs::path& path, const Lenses& lenses) {
   Views views;
   GzipLines lines(path.string(), {"reconstruction", "a reconstruction"});
@@ -90,7 +90,7 @@ Views ReadImagesText(const fs::path& path, const Lenses& lenses) {
   return views;
 }
 
-// Little-endian numbers one after another.
+// Reads little-endian numbers one after another.
 class Bytes {
  public:
   explicit Bytes(const fs::path& path) : path_(path.string()), file_(path, std::ios::binary) {

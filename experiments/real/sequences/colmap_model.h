@@ -1,4 +1,4 @@
-// A reconstruction of COLMAP: where the cameras are, and what they are like.
+// Reads a reconstruction of COLMAP: poses and cameras.
 #pragma once
 
 #include <cstdint>
@@ -13,11 +13,12 @@ namespace rcme {
 
 struct ColmapView {
   CameraPose pose;
-  Lens lens;  // as adjusted with the poses: the database keeps what was guessed before
+  Lens lens;  // adjusted together with the poses; the database has the initial guess
 };
 
-// By image name, from images and cameras, both .bin or both .txt, of the folder. Throws InputError that names
-// the file: one is not there, it ends early, a quaternion that is none, a camera that is none or not there.
+// Returns the views by image name, from the files images and cameras (both .bin or both .txt) in the folder.
+// Throws InputError that names the file if one is missing or truncated, or if a quaternion or camera is
+// invalid or missing.
 std::map<std::string, ColmapView> ReadColmapModel(const std::filesystem::path& folder);
 
 }  // namespace rcme

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The truth is at 200 Hz.
+// The truth has 200 Hz.
 constexpr double kLongestEurocGapS = 0.1;
 
 struct EurocSensor {
@@ -24,7 +24,7 @@ struct EurocSensor {
   CameraPose body_from_cam;  // T_BS
 };
 
-// The numbers of a list in sensor.yaml.
+// Reads the numbers of a list in sensor.yaml.
 std::vector<double> ReadNumberList(const Place& place, const YAML::Node& map, const std::string& key,
                                    size_t least) {
   const YAML::Node list = map.IsMap() ? map[key] : YAML::Node(YAML::NodeType::Undefined);

@@ -10,12 +10,12 @@
 namespace rcme {
 namespace {
 
-constexpr size_t kLeastInFront = 50;  // minTriangulated of the program
+constexpr size_t kLeastInFront = 50;  // minTriangulated in the program
 constexpr double kShareInFront = 0.9;
-constexpr double kInlierLevelOfGate = 0.05;  // chi-square at 95 %, as the program
+constexpr double kInlierLevelOfGate = 0.05;  // chi-square at 95 %, as in the program
 
-// The angles between the two rays of the matches in front of both cameras, rad, for the best of the four
-// motions.
+// Returns the angles (rad) between the two rays of the matches in front of both cameras, for the best of the
+// four motions.
 std::vector<double> AnglesInFront(const MotionProblem& problem, const TwoViewFits& fits,
                                   const std::vector<int>& inliers) {
   std::vector<double> best;

@@ -1,6 +1,6 @@
-// Which pairs are key frames: the test of ORB-SLAM2's initialiser (Mur-Artal, Montiel & Tardos 2015, section
-// IV; Tracking.cc and Initializer.cc of the program), by which the paper chose its pairs. Truth plays no
-// part.
+// Selects key-frame pairs by the test of ORB-SLAM2's initializer (Mur-Artal, Montiel & Tardos 2015, section
+// IV; the program's Tracking.cc and Initializer.cc), with which the paper chose its pairs. It does not use
+// the truth.
 #pragma once
 
 #include <limits>
@@ -12,30 +12,30 @@
 
 namespace rcme {
 
-// A pair is kept where
+// Without a criterion every pair is kept. Otherwise a pair is kept if
 //
-//   - it has least_matches matches (100, as the program);
+//   - it has at least least_matches matches (100, as in the program);
 //   - the criterion chooses the epipolar geometry: not a homography (planar_scene), not a rotation, and
-//   enough matches
-//     show parallax beyond the noise (verdict.h): neither degeneracy of Torr, Fitzgibbon & Zisserman 1999;
-//   - of the matches that agree with it, at least 90 % and 50 lie in front of both cameras for one of its
-//   four motions;
-//   - the 50th largest angle between the two rays of a match is more than least_parallax_deg (1 degree).
+//     enough matches show parallax beyond the noise (verdict.h). These are the degeneracies of Torr,
+//     Fitzgibbon & Zisserman 1999;
+//   - for one of its four motions, at least 90 % of the matches that agree with it, and at least 50, lie in
+//     front of both cameras;
+//   - the 50th largest angle between the two rays of a match exceeds least_parallax_deg (1 degree).
 struct KeyFrameGate {
-  std::optional<ModelCriterion> criterion = ModelCriterion::kOrbSlam2;  // nothing: every pair is kept
+  std::optional<ModelCriterion> criterion = ModelCriterion::kOrbSlam2;  // empty: every pair is kept
   int least_matches = 100;
   double least_parallax_deg = 1.0;
-  double sigma_px = 0.5;  // noise that the criterion assumes
+  double sigma_px = 0.5;  // noise level that the criterion assumes
 };
 
 struct KeyFrameVerdict {
-  std::string reason;  // "kept", or why not: a word of the list above
+  std::string reason;  // "kept", or which condition failed, such as "too_few_matches"
   int num_inliers = 0;
-  double parallax_deg = std::numeric_limits<double>::quiet_NaN();  // the 50th largest; NaN: not looked at
+  double parallax_deg = std::numeric_limits<double>::quiet_NaN();  // the 50th largest; NaN: not computed
 };
 inline const std::string kKeptPair = "kept", kTooFewMatches = "too_few_matches";
 
-// A pure function of the problem and the stream's name.
+// A pure function of the problem and the name of the stream.
 KeyFrameVerdict JudgePair(const MotionProblem& problem, const KeyFrameGate& gate, RandomStream& rng);
 
 }  // namespace rcme

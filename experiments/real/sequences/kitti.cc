@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A row of 12 numbers, from field `first` on: a 3x4 matrix row by row.
+// Reads a 3x4 matrix from 12 numbers, row by row, beginning at field `first`.
 Eigen::Matrix<double, 3, 4> MatrixIn(const TableFile& table, size_t first) {
   table.Need(first + 12, "a 3x4 matrix, row by row");
   Eigen::Matrix<double, 3, 4> matrix;
@@ -20,7 +20,7 @@ Eigen::Matrix<double, 3, 4> MatrixIn(const TableFile& table, size_t first) {
   return matrix;
 }
 
-// Of "P0: fx 0 cx 0 0 fy cy 0 0 0 1 0".
+// Parses "P0: fx 0 cx 0 0 fy cy 0 0 0 1 0".
 Lens KittiLens(const fs::path& path) {
   TableFile table(path, "it is part of the calibration files (data_odometry_calib.zip)",
                   TableFile::Separator::kSpace);

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kSpaces = " \t\r";
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors put it first
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors write it first
 
 std::vector<std::string> SplitWords(std::string_view line) {
   std::vector<std::string> words;
@@ -51,8 +51,9 @@ const fs::path& CheckedPath(const fs::path& path, const std::string& origin) {
   return path;
 }
 
-// The image is there; its size by its header, {0, 0} where that does not say it. A camera's JPEG has its
-// preview before the frame header, and a TIFF its directory often at the end: then all of it is read.
+// Returns the header of an existing image, with size {0, 0} if it does not state one. A camera's JPEG has a
+// preview before its frame header, and a TIFF often has its directory at the end; then the whole file is
+// read.
 ImageHeader HeaderOfImage(const Frame& frame, const std::string& sequence) {
   constexpr size_t kHeaderBytes = size_t{64} << 10;
   CheckIsThere(frame.path, fmt::format("it is an image of sequence {}", sequence));
@@ -73,7 +74,7 @@ void CheckTimes(const Sequence& sequence, const fs::path& times) {
   }
 }
 
-// Of each frame's image, as its header says it; 0: the header is damaged.
+// Returns the size of each frame's image, from its header; 0 if the header is damaged.
 using Size = std::pair<std::int64_t, std::int64_t>;
 std::vector<Size> ReadSizes(const Sequence& sequence) {
   std::vector<Size> sizes;
@@ -87,8 +88,8 @@ std::vector<Size> ReadSizes(const Sequence& sequence) {
   return sizes;
 }
 
-// Of the sizes that images have the one that K was measured in: its centre is nearest to the principal point.
-// Those about as near are told apart by their numbers.
+// Returns the image size to which K belongs: its centre is nearest to the principal point. Of sizes about
+// equally near, the most frequent.
 Size FindSizeOfK(const std::vector<Size>& sizes, const Camera& camera) {
   constexpr double kAboutAsNear = 0.02;
   std::map<Size, int> counts;
@@ -97,7 +98,7 @@ Size FindSizeOfK(const std::vector<Size>& sizes, const Camera& camera) {
     const auto width = static_cast<double>(size.first), height = static_cast<double>(size.second);
     return std::max(std::abs((camera.cx + 0.5) / width - 0.5), std::abs((camera.cy + 0.5) / height - 0.5));
   };
-  std::pair<double, int> best;  // offset, - number
+  std::pair<double, int> best;  // offset, -count
   Size found;
   for (const auto& [size, count] : counts) {
     if (size.first == 0) continue;

@@ -1,5 +1,5 @@
-// The layouts that data sets of image sequences are downloaded in, a file each. Each throws InputError that
-// names a path for what is missing, damaged or contradicts itself.
+// Readers for the download layouts of data sets of image sequences, one per file. They throw InputError that
+// names a path for anything missing, damaged or contradictory.
 #pragma once
 
 #include <string>
@@ -13,16 +13,16 @@ namespace rcme {
 // KITTI odometry benchmark (Geiger, Lenz & Urtasun 2012), rectified.
 std::vector<Sequence> ReadKitti(const DatasetOptions& options);
 
-// NAME/mav0/{cam0/{data.csv, data/*.png, sensor.yaml}, state_groundtruth_estimate0/data.csv}: the left camera
-// of the EuRoC MAV data set (Burri et al. 2016), whose truth is that of the body and is taken between its
-// samples.
+// NAME/mav0/{cam0/{data.csv, data/*.png, sensor.yaml}, state_groundtruth_estimate0/data.csv}: the left
+// camera of the EuRoC MAV data set (Burri et al. 2016). Its truth is that of the body and is interpolated.
 std::vector<Sequence> ReadEuroc(const DatasetOptions& options);
 
-// NAME/{rgb.txt, rgb/*.png, groundtruth.txt}: the TUM RGB-D benchmark (Sturm et al. 2012). Its cameras are on
-// its page and not in the folder: known here by freiburg1, 2 or 3 in the folder's name, else to be given.
+// NAME/{rgb.txt, rgb/*.png, groundtruth.txt}: the TUM RGB-D benchmark (Sturm et al. 2012). Its cameras are
+// on its web page, not in the folder: they are known here if the folder name contains freiburg1, 2 or 3,
+// otherwise they must be given.
 std::vector<Sequence> ReadTum(const DatasetOptions& options);
 
-// *.png, *.jpg, ... of one folder in the order of names, with K given: no times and no truth.
+// *.png, *.jpg, ... of one folder, ordered by name, with a given K. There are no times and no truth.
 std::vector<Sequence> ReadImageFolder(const DatasetOptions& options);
 
 }  // namespace rcme

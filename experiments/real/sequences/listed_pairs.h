@@ -1,4 +1,4 @@
-// Data sets that hold matches already: their pairs one after another.
+// Data sets that already contain matches: gives their pairs one after another.
 #pragma once
 
 #include <limits>
@@ -11,37 +11,38 @@
 namespace rcme {
 
 struct ListedPair {
-  MatchFile file;  // in pixels of cameras without distortion; truth where the data set has one
+  MatchFile file;  // in pixels of undistorted cameras; with truth if there is one
   double baseline = std::numeric_limits<double>::quiet_NaN();  // of the true motion; NaN: not known
-  bool is_direction_weak = false;                              // as the data set says itself
+  bool is_direction_weak = false;                              // stated by the data set
 };
 
 class ListedPairs {
  public:
   virtual ~ListedPairs() = default;
   virtual size_t size() const = 0;
-  virtual std::string PairId(size_t i) const = 0;  // what its match file is called
+  virtual std::string PairId(size_t i) const = 0;  // the name of its match file
   virtual ListedPair Read(size_t i) = 0;           // throws InputError that names the file
   virtual std::string Note() const { return {}; }
 };
 
-// The database of COLMAP (SQLite: cameras, images, keypoints, matches), or the folder of a database.db.
-// Matches are those of the table `matches`, before COLMAP's own verification. The poses of a reconstruction
-// (images.txt or images.bin) are taken as the truth, and with them its cameras, which were adjusted together
-// with the poses: those of the database are guesses from before. COLMAP's pixel (0.5, 0.5) is the centre of
-// the top-left one; half a pixel is taken from key points and principal point.
+// The database of COLMAP (SQLite: cameras, images, keypoints, matches), or the folder that has a
+// database.db. Matches are those of the table `matches`, before COLMAP's own verification. The poses of a
+// reconstruction (images.txt or images.bin) serve as truth. Its cameras are used too, because they were
+// adjusted together with the poses; those of the database are initial guesses. COLMAP's pixel (0.5, 0.5) is
+// the centre of the top-left one, so half a pixel is subtracted from key points and principal point.
 std::unique_ptr<ListedPairs> OpenColmap(const DatasetOptions& options);
 
-// An HDF5 file as posebench keeps pairs, a group each with x1, x2, R, t, camera1, camera2, taken one at a
-// time. Cameras and pixels are COLMAP's. Each pair is read in a process of its own (posebench_file.h): a file
-// that crashes libhdf5 is an InputError. To be called where no other thread runs. Throws InputError where the
-// program was built without the library.
+// An HDF5 file of pairs as posebench stores them: a group per pair with x1, x2, R, t, camera1, camera2, read
+// one at a time. Cameras and pixels are COLMAP's. Each pair is read in a separate process
+// (posebench_file.h), so a file that crashes libhdf5 causes an InputError. Call it only while no other
+// thread runs. Throws InputError if the program was built without the library.
 std::unique_ptr<ListedPairs> OpenPosebench(const DatasetOptions& options);
 
-// A folder of `.npz` files (npz_file.h), one a pair: `keypoints0` [n0, 2] and `keypoints1` [n1, 2] in px,
-// where (0, 0) is the centre of the first pixel; `matches` [n0], the key point of image 2 or -1, with
-// `match_confidence` or `matching_scores` [n0], or `matches` [m, 2] with `scores` [m]; without `matches`,
-// `matches0` and `matching_scores0` [n0]. Scores may be missing. The camera of both images is that of --K.
+// A folder of `.npz` files (npz_file.h), one per pair: `keypoints0` [n0, 2] and `keypoints1` [n1, 2] in px,
+// where (0, 0) is the centre of the first pixel. The matches are `matches` [n0] (key point of image 2, or
+// -1) with `match_confidence` or `matching_scores` [n0]; or `matches` [m, 2] with `scores` [m]; or, without
+// `matches`, `matches0` and `matching_scores0` [n0]. Scores may be missing. Both images have the camera of
+// --K.
 std::unique_ptr<ListedPairs> OpenNpzPairs(const DatasetOptions& options);
 
 // A folder of match files (match_file.h).

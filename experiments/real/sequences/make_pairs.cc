@@ -19,9 +19,9 @@
 namespace rcme {
 namespace {
 
-constexpr std::uint32_t kGatePurpose = 0x6761;  // of the gate's random stream; no trial has it
+constexpr std::uint32_t kGatePurpose = 0x6761;  // of the gate's random stream; trials do not use it
 
-// The upper 48 bits of the hash of a pair's name.
+// Returns the upper 48 bits of the hash of a pair's name.
 std::uint64_t HashPairId(const std::string& pair_id) {
   Fnv1a hash;
   hash.Add(pair_id);
@@ -38,7 +38,7 @@ bool IsDirectionWeak(const PairsOptions& options, double baseline) {
   return options.truth_sd.value_or(PoseSd()).IsDirectionWeak(baseline);
 }
 
-// Judges a pair, writes its file if it is kept, enters it.
+// Judges a pair, writes its file if it is kept, and adds it to the journal.
 void Decide(MatchFile file, PairRow row, const PairsOptions& options, PairJournal* journal) {
   RandomStream rng({.seed = 1, .condition = HashPairId(row.pair_id), .purpose = kGatePurpose});
   const KeyFrameVerdict verdict =
@@ -59,20 +59,20 @@ void Decide(MatchFile file, PairRow row, const PairsOptions& options, PairJourna
   journal->Add(row);
 }
 
-// An image whose turn has come.
+// An image being processed.
 struct LoadedFrame {
   size_t number = 0;
   const Frame* frame = nullptr;
-  std::shared_ptr<const ImageFeatures> image;        // null: not needed so far
-  std::vector<std::optional<Eigen::Vector2d>> x_px;  // of its key points, without distortion
+  std::shared_ptr<const ImageFeatures> image;        // null: not needed yet
+  std::vector<std::optional<Eigen::Vector2d>> x_px;  // of its key points, undistorted
 };
 
-// A ten-thousandth of a pixel is enough, and half the file.
+// Rounds to a ten-thousandth of a pixel, which is precise enough and halves the file.
 Eigen::Vector2d Rounded(const Eigen::Vector2d& x_px) {
   return {std::round(1e4 * x_px.x()) / 1e4, std::round(1e4 * x_px.y()) / 1e4};
 }
 
-// The pairs of one sequence.
+// Makes the pairs of one sequence.
 class SequencePairs {
  public:
   SequencePairs(const Sequence& sequence, const PairsOptions& options, FeatureCache* cache,
@@ -89,7 +89,7 @@ class SequencePairs {
   }
 
  private:
-  // The next image and those that wait, the latest last.
+  // Pairs the next image with the waiting ones; the latest is last.
   void Meet(LoadedFrame* frame) {
     if (journal_->FindDamaged(sequence_.name, frame->frame->name)) return;
     if (waiting_.empty()) {
@@ -107,7 +107,7 @@ class SequencePairs {
     }
   }
 
-  // The next image and those of the window before it, the latest last.
+  // Pairs the next image with those of the window before it; the latest is last.
   void MeetAll(LoadedFrame* frame) {
     if (journal_->FindDamaged(sequence_.name, frame->frame->name)) return;
     if (waiting_.empty() && !Load(frame)) return;
@@ -118,7 +118,7 @@ class SequencePairs {
     if (waiting_.size() > static_cast<size_t>(options_.window)) waiting_.pop_front();
   }
 
-  // What became of the two; null where the second is damaged. The first was read before.
+  // Returns the row of the two images; null if the second is damaged. The first was read before.
   const PairRow* Pair(LoadedFrame* frame1, LoadedFrame* frame2) {
     const std::string pair_id = fmt::format("{}_{:06}_{:06}", FileName(), frame1->number, frame2->number);
     if (const PairRow* row = journal_->Find(pair_id)) return row;
@@ -162,7 +162,7 @@ class SequencePairs {
     return file;
   }
 
-  // False, and entered: the image is damaged or skipped.
+  // Returns false if the image is damaged or skipped, and adds that to the journal.
   bool Load(LoadedFrame* frame) {
     if (frame->image) return true;
     const Camera& camera = sequence_.lens.camera;
@@ -182,7 +182,7 @@ class SequencePairs {
     return true;
   }
 
-  // Scenes may be called KITTI/00.
+  // Scenes may have names such as KITTI/00.
   std::string FileName() const {
     std::string name = sequence_.name;
     for (char& c : name) {

@@ -1,6 +1,6 @@
-// From a data set to a folder of match files: every image is read once, features are kept of few, and each
-// pair is written before it is entered in the journal (pair_index.h), so that work that was cut off goes on
-// where it was.
+// Converts a data set to a folder of match files. Every image is read once, and few images' features are
+// kept in memory. The file of a pair is written before its entry in the journal (pair_index.h), so
+// interrupted work can be continued.
 #pragma once
 
 #include <optional>
@@ -22,25 +22,24 @@ struct PairsOptions {
   MatcherOptions matcher;
   KeyFrameGate gate;
   bool has_scores = false;  // match files get the ratio of distances of each match
-  int every = 1;            // of the images every n-th
-  int neighbours = 1;       // pairs of a key frame with that many before it
-  int window = 0;           // pairs of every image with that many before it; 0: of key frames
+  int every = 1;            // use every n-th image
+  int neighbours = 1;       // pair each key frame with this many key frames before it
+  int window = 0;           // pair each image with this many before it; 0: pair key frames
   std::optional<PoseSd> truth_sd;
 };
 
-// The pairs of image sequences. As in ORB-SLAM2 an image waits as the first of a pair until a later one makes
-// a pair with it that the gate keeps; that one then waits in its place. An image that too few matches join to
-// the one that waits takes its place too. Without a criterion every image makes a pair with the one before.
-// With a window every image makes a pair with each of the last `window` images that can be read, and the gate
-// judges each pair by itself.
-// Throws InputError, and Stopped when that is requested.
+// Makes the pairs of image sequences. As in ORB-SLAM2, an image waits as the first of a pair until a later
+// image makes a pair with it that the gate keeps; that image then waits instead. If too few matches join a
+// later image to the waiting one, it also takes its place. Without a criterion every image makes a pair with
+// the one before. With a window every image makes a pair with each of the last `window` readable images, and
+// the gate judges each pair separately. Throws InputError, and Stopped after a stop request.
 void MakePairsOfImages(const std::vector<Sequence>& sequences, const PairsOptions& options,
                        PairJournal* journal);
 
-// The pairs that a data set lists, each judged by itself.
+// Makes the pairs that a data set lists; each is judged separately.
 void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJournal* journal);
 
-// INDEX.csv and pairs.txt of the folder, whole; returns both.
+// Writes INDEX.csv and pairs.txt of the folder, each completely or not at all, and returns both.
 CommandResult WritePairTables(const PairJournal& journal, const std::vector<std::string>& notes,
                               const std::string& out);
 

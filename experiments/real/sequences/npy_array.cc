@@ -34,7 +34,7 @@ struct NpyHeader {
   std::optional<std::vector<size_t>> shape;
 };
 
-// The header's dictionary, as numpy writes it.
+// Parses the header's dictionary, as numpy writes it.
 class NpyHeaderParser {
  public:
   NpyHeaderParser(std::string_view text, const std::string& place) : text_(text), place_(place) {}

@@ -19,19 +19,19 @@ constexpr size_t kEndRecordBytes = 22, kDirectoryEntryBytes = 46, kLocalHeaderBy
 constexpr std::uint32_t kEndSignature = 0x06054b50, kDirectorySignature = 0x02014b50,
                         kLocalSignature = 0x04034b50;
 constexpr size_t kStored = 0, kDeflated = 8;
-// Bit 0 says that a member is encrypted; 1, 2: how well it was deflated; 3: sizes follow the member too; 11:
-// names are UTF-8.
+// Flags: bit 0, the member is encrypted; 1 and 2, quality of compression; 3, sizes also follow the member;
+// 11, names are UTF-8.
 constexpr size_t kKnownFlags = 0x080e;
-constexpr size_t kMostDeflated = 1032;  // bytes that a byte of deflate can stand for at most
+constexpr size_t kMostDeflated = 1032;  // greatest compression ratio of deflate
 
-// Little-endian; the bytes are there.
+// Little-endian; the caller makes sure that the bytes exist.
 std::uint32_t ZipNumber(std::string_view bytes, size_t at, size_t num_bytes) {
   std::uint32_t number = 0;
   for (size_t i = num_bytes; i-- > 0;) number = number << 8 | static_cast<unsigned char>(bytes[at + i]);
   return number;
 }
 
-// Exactly `num_unpacked` bytes from all of `packed`; false if that is not what it holds.
+// Decompresses all of `packed` to exactly `num_unpacked` bytes; returns false if it does not contain that.
 bool Inflate(std::string_view packed, size_t num_unpacked, std::string* unpacked) {
   unpacked->assign(num_unpacked, '\0');
   z_stream stream = {};
@@ -72,7 +72,7 @@ NpzFile::NpzFile(const std::string& path) : path_(path) {
   ReadDirectory();
 }
 
-// The record at the end says where the directory is: right before it.
+// The record at the end states where the directory is: directly before it.
 void NpzFile::ReadDirectory() {
   size_t end = bytes_.size() < kEndRecordBytes ? 0 : bytes_.size() - kEndRecordBytes;
   const size_t least_end = end - std::min<size_t>(end, 0xffff);  // a comment may follow it
@@ -95,7 +95,7 @@ void NpzFile::ReadDirectory() {
   size_t at = directory_;
   for (size_t i = 0; i < num_members; ++i) at = AddMember(at);
   if (at != end) Fail(std::string(kZipDamaged));
-  // A damaged name would hide an array that may be missing: each stands twice.
+  // A damaged name would hide an array that may be missing, so both copies of a name are compared.
   for (const auto& [name, member] : members_) PackedBytes(name, member);
 }
 
@@ -126,7 +126,7 @@ size_t NpzFile::AddMember(size_t at) {
 
 std::string_view NpzFile::PackedBytes(const std::string& name, const Member& member) const {
   const std::string_view bytes = bytes_;
-  // All summands are below 2^33: no sum overflows.
+  // All summands are below 2^33, so no sum overflows.
   if (member.offset + kLocalHeaderBytes > directory_ || ZipNumber(bytes, member.offset, 4) != kLocalSignature)
     throw InputError(Place(name) + ": " + std::string(kZipDamaged));
   const size_t name_bytes = ZipNumber(bytes, member.offset + 26, 2);

@@ -1,4 +1,5 @@
-// A folder of `.npz` files, one a pair, as SuperGlue, LightGlue and hloc give key points and matches.
+// A folder of `.npz` files, one per pair, with key points and matches as SuperGlue, LightGlue and hloc write
+// them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ constexpr size_t kMaxNpzPairs = 100'000;
                                array.is_whole ? " of whole numbers" : "", allowed));
 }
 
-// [n, 2], px, where (0, 0) is the centre of the first pixel.
+// Shape [n, 2], px; (0, 0) is the centre of the first pixel.
 std::vector<Eigen::Vector2d> ReadNpzPoints(const NpzFile& file, const std::string& name) {
   const NpzArray array = file.Read(name);
   if (array.shape.size() != 2 || array.shape[1] != 2)
@@ -44,10 +45,10 @@ std::vector<Eigen::Vector2d> ReadNpzPoints(const NpzFile& file, const std::strin
 struct NpzMatches {
   struct Match {
     size_t point1, point2;
-    size_t score;  // its place among the scores
+    size_t score;  // index of its score
   };
   std::vector<Match> matches;
-  size_t num_scores = 0;  // that go with them
+  size_t num_scores = 0;  // number of scores that belong to them
 };
 
 size_t CheckNpzIndex(const NpzFile& file, const std::string& name, size_t row, double index,
@@ -57,7 +58,7 @@ size_t CheckNpzIndex(const NpzFile& file, const std::string& name, size_t row, d
                                index, num_points, ", counted from 0; -1 for none is allowed in [n0] only"));
 }
 
-// [n0]: of each key point of image 1 that of image 2, or -1; or [m, 2]: a row a match.
+// Reads [n0], the key point of image 2 or -1 for each of image 1, or [m, 2] with a row per match.
 NpzMatches ReadNpzMatches(const NpzFile& file, const std::string& name, size_t num_points1,
                           size_t num_points2) {
   const NpzArray array = file.Read(name);
@@ -84,7 +85,7 @@ NpzMatches ReadNpzMatches(const NpzFile& file, const std::string& name, size_t n
   return read;
 }
 
-// Of each match; nothing where the file has none. Higher is better by what these names stand for.
+// Returns a score for each match; nothing if the file has none. With these names higher is better.
 std::vector<double> ReadNpzScores(const NpzFile& file, const NpzMatches& matches,
                                   const std::vector<std::string>& names) {
   const auto name = std::ranges::find_if(names, [&](const std::string& known) { return file.Has(known); });
@@ -144,7 +145,8 @@ class NpzPairs : public ListedPairs {
   }
 
  private:
-  // The raw answer of LightGlue has `matches` and `matches0`, which say the same; hloc has the latter alone.
+  // LightGlue's raw output has both `matches` and `matches0` with the same content; hloc has only the
+  // latter.
   static void FillMatches(const NpzFile& npz, MatchFile* file) {
     const std::vector<Eigen::Vector2d> points1 = ReadNpzPoints(npz, "keypoints0"),
                                        points2 = ReadNpzPoints(npz, "keypoints1");
@@ -169,7 +171,7 @@ class NpzPairs : public ListedPairs {
     return camera;
   }
 
-  // Matches without rays are left out, and their scores.
+  // Matches without rays are left out together with their scores.
   void UndistortNpzMatches(MatchFile* file) const {
     if (lens_.model == LensModel::kPinhole) return;
     UndistortedProblem undistorted =

@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kJournalKind = "rcme pairs 1";
 constexpr size_t kMaxJournalBytes = size_t{1} << 30;
 
-// A number of the journal; NaN for null.
+// Reads a number of the journal; NaN for null.
 double RealIn(const Json& row, const char* key) {
   const Json& value = row.at(key);
   return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
@@ -196,7 +196,7 @@ std::string PairsAsTable(const std::vector<PairRow>& rows, const std::vector<Dam
     std::map<std::string, int> by_reason;
   };
   std::map<std::string, Counts> scenes;
-  std::map<std::string, int> reasons;  // other than kept
+  std::map<std::string, int> reasons;  // without "kept"
   for (const PairRow& row : rows) {
     Counts& counts = scenes[row.scene];
     ++counts.looked_at;

@@ -1,5 +1,5 @@
-// What became of every pair of images that was looked at: kept or dropped, and why. The index of a folder of
-// pairs, and the journal from which work that was cut off goes on.
+// Records for every pair of images whether it was kept, or why it was dropped: the index of a folder of
+// pairs, and the journal from which interrupted work continues.
 #pragma once
 
 #include <cstdio>
@@ -16,30 +16,30 @@ struct PairRow {
   std::string pair_id, scene, image1, image2;
   std::string reason;  // "kept", or why it was dropped
   int num_matches = 0, num_inliers = 0;
-  double time1_s = std::numeric_limits<double>::quiet_NaN(),
-         time2_s = time1_s;  // NaN: not known, here and below
+  // NaN: not known, here and below.
+  double time1_s = std::numeric_limits<double>::quiet_NaN(), time2_s = time1_s;
   double parallax_deg = time1_s;
   double rotation_deg = time1_s, baseline = time1_s;  // of the true motion
-  bool is_direction_weak = false;                     // its direction is not to be scored
+  bool is_direction_weak = false;                     // its direction is not scored
 };
 
-// An image that could not be unpacked, or is not of the size that K is of.
+// An image that could not be decoded, or whose size is not that of K.
 struct DamagedImage {
   std::string scene, image, message;
 };
 
-// In the folder OUT: pairs.journal, a line of JSON per row, the first of which says what is being made. A row
-// is there once the file of its pair is; a last line without an end was cut off and does not count.
+// The file pairs.journal in the folder OUT has a line of JSON per row; the first line says what is being
+// made. The row of a pair is written after its file. A last line without an end was cut off and is ignored.
 class PairJournal {
  public:
-  // Reads what is there. Throws InputError: the folder cannot be written, or holds pairs of another
-  // `identity`, or match files of somebody else's.
+  // Reads an existing journal. Throws InputError if the folder cannot be written, holds pairs with another
+  // `identity`, or holds match files from elsewhere.
   PairJournal(const std::string& folder, const std::string& identity);
   ~PairJournal();
   PairJournal(const PairJournal&) = delete;
   PairJournal& operator=(const PairJournal&) = delete;
 
-  // What was decided of a pair and found of an image before; null: nothing.
+  // Returns the earlier result for a pair or an image; null if there is none.
   const PairRow* Find(const std::string& pair_id) const;
   const DamagedImage* FindDamaged(const std::string& scene, const std::string& image) const;
   void Add(const PairRow& row);
@@ -61,13 +61,13 @@ class PairJournal {
   int num_before_ = 0;
 };
 
-// INDEX.csv: a row per pair, kept or dropped. pair_id and t_gt_weak are what studies read (match_folder.h).
+// Makes INDEX.csv: a row per pair, kept or dropped. Studies read pair_id and t_gt_weak (match_folder.h).
 Table MakeIndexTable(const std::vector<PairRow>& rows);
 
-// Why no pair was kept, as a sentence: how many pairs were dropped for which reason, and images skipped.
+// Explains in one sentence why no pair was kept: number of dropped pairs by reason, and skipped images.
 std::string DescribeWhyNone(const std::vector<PairRow>& rows, const std::vector<DamagedImage>& damaged);
 
-// Per scene how many pairs were kept, and dropped why; then the damaged images.
+// For each scene, the number of pairs kept and of pairs dropped by reason; then the damaged images.
 std::string PairsAsTable(const std::vector<PairRow>& rows, const std::vector<DamagedImage>& damaged);
 
 }  // namespace rcme

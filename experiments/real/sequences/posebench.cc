@@ -1,5 +1,5 @@
-// HDF5 files of pairs as posebench keeps them. What is in the file is read by a process of its own, which can
-// open no other file, a pair at a time; what it means is decided here.
+// HDF5 files of pairs in the format of posebench. A separate process, which can open no other file, reads
+// one pair at a time; this process interprets and checks the content.
 #include <fmt/format.h>
 
 #include <Eigen/LU>
@@ -21,21 +21,22 @@ namespace {
 
 using Packed = nlohmann::json;
 
-constexpr size_t kReaderMemoryBytes = size_t{512} << 20;  // beyond what the program has
+constexpr size_t kReaderMemoryBytes = size_t{512} << 20;  // in addition to what the program uses
 constexpr int kProcessorSeconds = 10;
 constexpr double kReaderSeconds = 60.0;
-// All pairs of a file together: a group that stands in it under a thousand names is unpacked a thousand
+// Limits over all pairs of a file: a group that occurs under a thousand names is decompressed a thousand
 // times.
 constexpr double kMaxNumbersPerByte = 12.5, kNumbersAlwaysAllowed = 1e6;
 
-// Numbers as bytes, and back.
+// Convert numbers to bytes and back.
 Packed PackNumbers(const std::vector<double>& numbers) {
   Packed::binary_t bytes;
   bytes.resize(numbers.size() * sizeof(double));
   if (!numbers.empty()) std::memcpy(bytes.data(), numbers.data(), bytes.size());
   return bytes;
 }
-// Of a key of the answer; `count`: so many, where that is known. Throws std::exception: the answer is none.
+// Reads the numbers of a key of the reply; `count` is their number if it is known. Throws std::exception if
+// the reply is invalid.
 std::vector<double> UnpackNumbers(const Packed& answer, const char* key, size_t count = 0) {
   const Packed::binary_t& bytes = answer.at(key).get_binary();
   std::vector<double> numbers(count > 0 ? count : bytes.size() / sizeof(double));
@@ -69,8 +70,8 @@ StoredPair UnpackPair(const Packed& packed) {
           UnpackCamera(packed.at("camera1")), UnpackCamera(packed.at("camera2"))};
 }
 
-// What `read` packs of the file, in a process of its own, is taken by `take` here. A file that crashes its
-// reader, takes too much memory or does not end is an InputError that begins with `place`.
+// Runs `read` in a separate process and passes its packed result to `take` in this one. A file that crashes
+// its reader, takes too much memory or does not end causes an InputError that begins with `place`.
 void ReadApart(const std::string& path, const std::string& place,
                const std::function<Packed(const PosebenchFile&)>& read,
                const std::function<void(const Packed&)>& take) {
@@ -98,7 +99,7 @@ void ReadApart(const std::string& path, const std::string& place,
   try {
     if (end.kind == IsolatedEnd::Kind::kDone) return take(answer);
   } catch (const std::exception&) {
-    // What came is no answer.
+    // The reply is invalid.
   }
   throw InputError(fmt::format("{}: is damaged, perhaps on purpose: the process that read it {}", place,
                                end.kind == IsolatedEnd::Kind::kSignal
@@ -157,7 +158,7 @@ void FillMatches(const StoredPair& stored, const std::string& place, MatchFile* 
   }
 }
 
-// X2 = R X1 + t; the unit of t is not said.
+// X2 = R X1 + t; the unit of t is not stated.
 void FillMotion(const StoredPair& stored, const std::string& place, ListedPair* listed) {
   CheckFinite(stored.R, "R", place);
   CheckFinite(stored.t, "t", place);
@@ -201,7 +202,7 @@ class PosebenchPairs : public ListedPairs {
   }
 
  private:
-  // Names may be of any bytes.
+  // Names may contain any bytes.
   static std::vector<std::string> ReadNames(const std::string& path) {
     const auto list = [](const PosebenchFile& file) {
       Packed names = Packed::array();

@@ -18,10 +18,11 @@ namespace {
 constexpr size_t kMaxPosebenchPairs = 1'000'000, kMaxHdf5NameBytes = 1000, kMaxModelNameBytes = 64;
 constexpr size_t kMaxAllNamesBytes = size_t{64} << 20;
 constexpr size_t kMaxCameraParams = 12;
-// Of one dataset, and of one of its chunks. gzip packs coordinates by less than ten, but zeros by a thousand.
+// Limits for a dataset and for one of its chunks. gzip compresses coordinates less than tenfold, but zeros a
+// thousandfold.
 constexpr double kMaxUnpackedPerStored = 100.0, kAlwaysAllowedBytes = 65'536.0, kMaxUnpackedBytes = 32e6;
 
-// An identifier of the library, closed when it goes. Negative: what was asked for is not there.
+// An identifier of the library, closed on destruction. Negative: the requested object does not exist.
 class Hdf5Id {
  public:
   Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
@@ -41,7 +42,7 @@ class Hdf5Id {
   throw InputError(fmt::format("{}: {} cannot be read: the file is cut off or damaged", place, name));
 }
 
-// An entry of a group that is in this file: links to others are not followed.
+// Returns an entry of a group that is in this file; links to other files are not followed.
 void CheckIsHere(hid_t group, const char* name, const std::string& place) {
   H5L_info_t link;
   if (H5Lget_info(group, name, &link, H5P_DEFAULT) < 0)
@@ -50,7 +51,7 @@ void CheckIsHere(hid_t group, const char* name, const std::string& place) {
     throw InputError(fmt::format("{}: {} is a link to elsewhere; links are not followed", place, name));
 }
 
-// The bytes of a chunk, which is unpacked whole; 0 where the dataset is not stored in chunks.
+// Returns the bytes of a chunk, which is decompressed as a whole; 0 if the dataset is not chunked.
 double CountChunkBytes(hid_t how, size_t number_bytes) {
   if (H5Pget_layout(how) != H5D_CHUNKED) return 0.0;
   hsize_t chunk[H5S_MAX_RANK] = {};
@@ -76,7 +77,8 @@ void CheckFilters(hid_t how, const char* name, const std::string& place) {
   }
 }
 
-// That the dataset lies in this file, packed by nothing but what is read here, and unpacks to little.
+// Checks that the dataset lies in this file, has only the filters allowed here, and has a bounded
+// decompressed size.
 void CheckStorage(hid_t data, const char* name, size_t count, size_t number_bytes, const std::string& place) {
   const Hdf5Id how(H5Dget_create_plist(data), H5Pclose);
   const H5D_layout_t layout = H5Pget_layout(how);
@@ -98,7 +100,7 @@ void CheckStorage(hid_t data, const char* name, size_t count, size_t number_byte
   }
 }
 
-// The lengths of a dataset of up to two dimensions.
+// Returns the lengths of a dataset of up to two dimensions.
 std::vector<hsize_t> ReadShape(hid_t data, const char* name, const std::string& place) {
   const Hdf5Id space(H5Dget_space(data), H5Sclose);
   const int rank = H5Sget_simple_extent_ndims(space);
@@ -109,7 +111,7 @@ std::vector<hsize_t> ReadShape(hid_t data, const char* name, const std::string& 
   return shape;
 }
 
-// A dataset of at most this many numbers, row by row, and its shape.
+// Reads a dataset of at most this many numbers, row by row, and its shape.
 struct Hdf5Numbers {
   std::vector<double> values;
   std::vector<hsize_t> shape;
@@ -137,7 +139,7 @@ Hdf5Numbers ReadNumbers(hid_t group, const char* name, size_t most, const std::s
   return numbers;
 }
 
-// As many numbers, of any shape.
+// Reads this many numbers, of any shape.
 std::vector<double> ReadCount(hid_t group, const char* name, size_t count, const std::string& place) {
   Hdf5Numbers numbers = ReadNumbers(group, name, 10 * count, place);
   if (numbers.values.size() != count)
@@ -146,7 +148,7 @@ std::vector<double> ReadCount(hid_t group, const char* name, size_t count, const
   return std::move(numbers.values);
 }
 
-// N x 2 numbers, row by row.
+// Reads N x 2 numbers, row by row.
 std::vector<double> ReadPoints(hid_t group, const char* name, const std::string& place) {
   Hdf5Numbers numbers = ReadNumbers(group, name, 2 * kMaxMatchesPerFile, place);
   if (numbers.shape.size() != 2 || numbers.shape[1] != 2)
@@ -154,7 +156,7 @@ std::vector<double> ReadPoints(hid_t group, const char* name, const std::string&
   return std::move(numbers.values);
 }
 
-// The one text of a dataset, of a fixed length or not.
+// Reads the only text of a dataset, of fixed or variable length.
 std::string ReadText(hid_t group, const char* name, const std::string& place) {
   CheckIsHere(group, name, place);
   const Hdf5Id data(H5Dopen2(group, name, H5P_DEFAULT), H5Dclose);
@@ -205,8 +207,7 @@ herr_t AddName(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
-// The file as it lies on the disk, by no other of the library's drivers, without its own messages and
-// plugins.
+// Opens the file on disk without the library's other drivers, messages and plugins.
 hid_t OpenFile(const std::string& path) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
   H5PLset_loading_state(0);

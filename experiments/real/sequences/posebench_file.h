@@ -1,5 +1,5 @@
-// The HDF5 files of posebench as they are stored, read with libhdf5. The library is not made for files that
-// were damaged on purpose: posebench.cc calls this in a process of its own.
+// Reads the HDF5 files of posebench with libhdf5. The library is not safe for maliciously damaged files, so
+// posebench.cc calls this in a separate process.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 namespace rcme {
 
 struct StoredCamera {
-  std::string model;  // as COLMAP calls it
+  std::string model;  // COLMAP's name
   double width = 0.0, height = 0.0;
   std::vector<double> params;
 };
@@ -20,20 +20,20 @@ struct StoredPair {
   StoredCamera camera1, camera2;
 };
 
-// A file opened for reading. Reads no other file: links, external storage and virtual datasets are refused,
-// and filters other than gzip, shuffle and fletcher32 (plugins are not loaded). What a dataset unpacks to is
-// bounded before it is unpacked, by kMaxMatchesPerFile and by what it takes in the file.
+// A file opened for reading. It reads no other file: links, external storage and virtual datasets are
+// refused, and so are filters other than gzip, shuffle and fletcher32 (plugins are not loaded). The
+// decompressed size of a dataset is bounded in advance, by kMaxMatchesPerFile and by its size in the file.
 class PosebenchFile {
  public:
-  // Throws InputError that names the path, as all below: it is no HDF5 file, or the program was built without
-  // the library.
+  // Throws InputError that names the path, like all functions below, if it is no HDF5 file or the program
+  // was built without the library.
   explicit PosebenchFile(const std::string& path);
   ~PosebenchFile();
   PosebenchFile(const PosebenchFile&) = delete;
   PosebenchFile& operator=(const PosebenchFile&) = delete;
 
-  std::vector<std::string> ListGroups() const;  // in the order of names
-  // Numbers as they are stored, finite or not; `name` is one of ListGroups.
+  std::vector<std::string> ListGroups() const;  // ordered by name
+  // Returns the stored numbers, finite or not; `name` is one of ListGroups.
   StoredPair ReadGroup(const std::string& name) const;
 
  private:

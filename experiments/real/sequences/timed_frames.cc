@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 struct TimedPoses {
   Trajectory trajectory;
-  std::set<double> ambiguous_s;  // times with more than one pose: none of them is used
+  std::set<double> ambiguous_s;  // times with several poses; none of these is used
 };
 
 TimedPoses ReadTimedPoses(const TimedFiles& files) {

@@ -1,4 +1,4 @@
-// Layouts that list images with their times in one file and where something was, at other times, in another.
+// For layouts with a file of image names and times, and a file of poses at other times.
 #pragma once
 
 #include <array>
@@ -12,21 +12,21 @@ namespace rcme {
 
 struct TimedFiles {
   TableFile::Separator separator = TableFile::Separator::kSpace;  // of both files
-  double seconds_per_unit = 1.0;                                  // of their times
+  double seconds_per_unit = 1.0;                                  // of the times in both files
 
   std::filesystem::path images;         // rows: time, name of an image
-  std::string images_origin;            // where a missing one comes from
-  std::filesystem::path images_folder;  // what the names are relative to
+  std::string images_origin;            // where to get a missing file
+  std::filesystem::path images_folder;  // names are relative to it
 
-  std::filesystem::path truth;   // rows: time, position, quaternion, ... of a body; need not be there
-  std::string truth_fields;      // as the data set calls them
-  std::array<size_t, 4> wxyz{};  // the quaternion's fields
+  std::filesystem::path truth;   // rows: time, position, quaternion, ... of a body; optional
+  std::string truth_fields;      // names in the data set
+  std::array<size_t, 4> wxyz{};  // fields of the quaternion
   CameraPose body_from_cam;      // X_body = R X_cam + center
-  double longest_gap_s = 0.0;    // between two rows of the truth that a pose is taken between
+  double longest_gap_s = 0.0;    // limit of the interval between two poses for interpolation
 };
 
-// Fills in frames, each with the pose that the truth has at its time, and finishes the sequence
-// (FinishSequence). Throws InputError.
+// Adds frames, each with the interpolated true pose at its time, and finishes the sequence (FinishSequence).
+// Throws InputError.
 void AddTimedFrames(const DatasetOptions& options, const TimedFiles& files, Sequence* sequence);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// Where a camera was, as data sets say it.
+// Camera poses and trajectories of data sets.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,8 +15,8 @@ struct CameraPose {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
 };
 
-// cam2_from_cam1 and how far the camera went, in the data set's unit. The direction is undetermined, (0, 0,
-// 1), where that is zero.
+// Returns cam2_from_cam1 and the length of the translation, in the unit of the data set. If it is zero, the
+// direction is undetermined and set to (0, 0, 1).
 struct TrueMotion12 {
   RelativePose cam2_from_cam1;
   double baseline = 0.0;
@@ -26,12 +26,12 @@ TrueMotion12 MotionBetween(const CameraPose& pose1, const CameraPose& pose2);
 // Poses over time.
 class Trajectory {
  public:
-  // Later than all before; false: it is not.
+  // Adds a pose; returns false if it is not later than all before.
   bool Add(double time_s, const CameraPose& pose);
   bool empty() const { return poses_.empty(); }
 
-  // Between the two poses about the time, linear in position and along the shortest rotation. Nothing before
-  // the first, after the last and in gaps longer than max_gap_s.
+  // Interpolates between the two poses around the time, linearly in position and along the shortest
+  // rotation. Nothing before the first pose, after the last, or in gaps longer than max_gap_s.
   std::optional<CameraPose> At(double time_s, double max_gap_s) const;
 
  private:

@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The truth is at 100 Hz and has gaps where the markers were not seen.
+// The truth has 100 Hz, with gaps where the markers were not visible.
 constexpr double kLongestTumGapS = 0.05;
 
-// The page "File Formats: Intrinsic Camera Calibration of the Kinect" of the benchmark, ROS's own
-// calibrations of the colour cameras; those of freiburg3 are of images that were undistorted already.
+// ROS's own calibrations of the colour cameras, from the benchmark's page "File Formats: Intrinsic Camera
+// Calibration of the Kinect". Images of freiburg3 were already undistorted.
 struct TumCamera {
   const char* name;
   std::array<double, 4> K;         // fx fy cx cy

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Two files' statements of the same motion, which may be written with a different number of digits.
+// Returns whether two files state the same motion, possibly with different numbers of digits.
 constexpr double kSameMotionRad = 1e-3;
 
 std::vector<std::string> NameFrontEnds(const std::vector<std::string>& folders) {
@@ -84,7 +84,7 @@ CheckedPair CheckPair(const PairFiles& files, const MotionEstimator& estimator,
     if (file.cam2_from_cam1_true) {
       const GivenTruth truth{*file.cam2_from_cam1_true, file.truth_sd, !files.is_direction_weak};
       MotionProblem problem = MakeMotionProblem(file, options.sigma_px);
-      problem.prior.reset();  // what a sensor says is no evidence of the matches
+      problem.prior.reset();  // measurements of sensors are no evidence from matches
       pair.front_ends.push_back(
           WeighTruth(problem, truth, options.bounds, estimator, options.seed, files.paths.size()));
       pair.front_ends.back().front_end = files.front_ends[f];

@@ -1,4 +1,4 @@
-// The given truths of folders of pairs, each folder of another front end.
+// Checks the given truths of folders of pairs; each folder is from another front end.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 
 namespace rcme {
 
-// The match files of one pair, by the folders that have one: the name of the file up to .csv is the same.
+// The match files of one pair, from the folders that have one: their file names are equal up to .csv.
 struct PairFiles {
   std::string pair_id;
   std::vector<std::string> front_ends;  // names of the folders
   std::vector<std::string> paths;
-  bool is_direction_weak = false;  // an INDEX.csv says so (match_folder.h)
+  bool is_direction_weak = false;  // according to an INDEX.csv (match_folder.h)
 };
-// Every pair of the folders, by pair_id. A folder is called by its own name, or where two have the same by
-// the path as given. Throws InputError (match_folder.h); a folder that is given twice is refused.
+// Lists every pair of the folders, ordered by pair_id. A folder is called by its own name, or by its given
+// path if two have the same name. Throws InputError (match_folder.h), also for a folder that is given twice.
 std::vector<PairFiles> ListPairFiles(const std::vector<std::string>& folders);
 
 struct TruthCheckOptions {
@@ -33,10 +33,10 @@ struct CheckedPair {
   std::string scene, pair_id;
   bool has_truth = false;
   PairVerdict verdict;
-  std::vector<FrontEndEvidence> front_ends;  // none without a truth
+  std::vector<FrontEndEvidence> front_ends;  // empty without a truth
   std::vector<CameraDoubt> camera_doubts;
 };
-// Throws InputError: files that cannot be read, or that state scenes or motions of a pair that differ.
+// Throws InputError if files cannot be read, or if the files of a pair state different scenes or motions.
 CheckedPair CheckPair(const PairFiles& files, const MotionEstimator& estimator,
                       const TruthCheckOptions& options);
 std::vector<CheckedPair> CheckTruths(const std::vector<std::string>& folders,

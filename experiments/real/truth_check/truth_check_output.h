@@ -8,10 +8,10 @@
 
 namespace rcme {
 
-// For people a table of the scenes, then one of the pairs in doubt; in files a row per pair and front end.
+// For people: a table of the scenes, then one of the pairs in doubt. In files: a row per pair and front end.
 CommandResult MakeTruthCheckResult(const std::vector<CheckedPair>& pairs, const TruthCheckOptions& options);
 
-// The pairs in doubt, for the key truth_in_doubt of a study (experiments/data/truth_doubts.h).
+// Lists the pairs in doubt, for the key truth_in_doubt of a study (experiments/data/truth_doubts.h).
 std::string TruthDoubtsAsCsv(const std::vector<CheckedPair>& pairs);
 
 }  // namespace rcme

@@ -22,9 +22,9 @@ constexpr int kBlocksPerSide = 6, kSquaresPerSide = 12;
 constexpr double kKeyPointRadiusPx = 1.0;
 constexpr double kMostOverChance = 2.0;
 constexpr int kMixtureSteps = 20, kChanceShifts = 8;
-constexpr int kFitsAnyMotion = 5;  // matches: as many as a motion has dimensions
+constexpr int kFitsAnyMotion = 5;  // matches: a motion has as many dimensions
 
-// The first match of each key point.
+// Keeps the first match of each key point.
 MotionProblem OneOfEachKeyPoint(const MotionProblem& problem) {
   const std::vector<int> groups = KeyPointGroups(problem.matches, kKeyPointRadiusPx);
   std::set<int> seen;
@@ -51,13 +51,14 @@ std::vector<bool> FindExplained(const MatchBlocks& matches, const RelativePose& 
   return is_explained;
 }
 
-// P(Binomial(first + second, 1 / 2) >= first).
+// Returns P(Binomial(first + second, 1 / 2) >= first).
 double SignTest(std::int64_t first, std::int64_t second) {
   if (first + second == 0) return 1.0;
   return BinomialUpperTail(static_cast<int>(first + second), static_cast<int>(first), 0.5);
 }
 
-// The share of random matches that the motion explains: each first point with the second of other matches.
+// Returns the share of random matches that the motion explains; a random match has the second point of
+// another match.
 double ShareOfRandom(const MotionProblem& problem, const RelativePose& pose,
                      const MixtureParameters& mixture) {
   const size_t n = problem.matches.size();
@@ -74,7 +75,7 @@ double ShareOfRandom(const MotionProblem& problem, const RelativePose& pose,
   return static_cast<double>(num_explained + 1) / static_cast<double>(num_random + 1);
 }
 
-// The mixture of that of the two motions which explains the matches better.
+// Fits the mixture at both motions and returns the one that explains the matches better.
 MixtureParameters FitCommonMixture(const MatchBlocks& matches, const MixturePrior& prior,
                                    const std::array<RelativePose, 2>& poses) {
   std::array<MixtureParameters, 2> mixtures;
@@ -86,8 +87,9 @@ MixtureParameters FitCommonMixture(const MatchBlocks& matches, const MixturePrio
   return mixtures[likelihoods[1] > likelihoods[0] ? 1 : 0];
 }
 
-// What the truth may be: as it is given first (truth_reach.h); in `best` the place of the one that explains
-// the matches best. Once with the mixture at the truth as it is given, then with that at the best.
+// Returns the candidates for the truth, beginning with the given one (truth_reach.h), and in `best` the
+// index of the one that explains the matches best. There are two rounds: the mixture is first fitted at the
+// given truth, then at the best candidate.
 std::vector<RelativePose> ListTruths(const MotionProblem& problem, const MatchBlocks& matches,
                                      const GivenTruth& truth, const FailureBounds& bounds,
                                      const RelativePose& motion, MixtureParameters* mixture, size_t* best) {
@@ -111,7 +113,7 @@ struct OnlyBy {
   std::int64_t truth = 0, motion = 0;
 };
 
-// What the matches of one half say when the truth is this one.
+// Counts the matches and blocks of one half for one candidate of the truth.
 void CountMatches(const std::vector<bool>& by_truth, const std::vector<bool>& by_motion,
                   const std::vector<int>& block_of, TruthContest* contest) {
   std::map<int, OnlyBy> blocks;
@@ -134,8 +136,8 @@ void CountMatches(const std::vector<bool>& by_truth, const std::vector<bool>& by
   contest->p_blocks = SignTest(contest->blocks_of_motion, contest->blocks_of_truth);
 }
 
-// That so many of n matches are more than twice as many as of random ones, `share`, and five that any motion
-// could be moved to.
+// Tests that so many of n matches are more than twice the `share` of random ones plus the five that any
+// motion can be fitted to. Returns the p-value.
 double TestAboveChance(std::int64_t num_explained, std::int64_t n, double share) {
   const auto num_found = static_cast<int>(num_explained) - kFitsAnyMotion;
   if (num_found <= 0) return 1.0;

@@ -1,38 +1,42 @@
-// Is the given truth of a pair wrong? From the matches alone, and with a known rate of false alarms.
+// Tests from the matches alone, and with a known rate of false alarms, whether the given truth of a pair is
+// wrong.
 //
 // The matches are divided into two halves that share no neighbourhood of image 1: the squares of a 12 x 12
-// chessboard. An estimator finds a motion in one half, and the other half, which it has not seen, decides
-// between this motion and the truth, moved within its reach to where it explains that half best
-// (truth_reach.h). One match of each key point counts. Both motions explain a match with the same mixture of
-// right and wrong ones (calibrated/mixture_parameters.h), that of the motion with the greater likelihood, if
-// it is right with a probability of more than one half. Then the roles of the halves are changed.
+// chessboard. An estimator finds a motion in one half. The other half, which it has not seen, decides
+// between this motion and the truth. For this, the truth is moved within its reach to the motion that
+// explains that half best (truth_reach.h). One match of each key point counts. A motion explains a match if
+// it is right with a probability above one half. Both motions use the same mixture of right and wrong
+// matches (calibrated/mixture_parameters.h), the one fitted to the motion with the greater likelihood. Then
+// the halves are exchanged.
 //
 // A half speaks against the truth if
 //
 //   (a) the motion is beyond a failure bound of the truth;
-//   (b) of the matches that only one of the two explains, more are the motion's than a coin gives: McNemar's
-//       test, one-sided, p <= the level;
-//   (c) of the blocks of image 1 (6 x 6) in which one explains more than the other, more are the motion's
-//       than a coin gives: the sign test, which takes seven blocks at least at a level of .01. A moving
-//       object or a repeated texture in a patch of the image does not pass, however many matches it has, nor
-//       do matches that depend on their neighbours count more than once;
-//   (d) the motion explains one and a half times as many matches as the truth, and at least 10. What an
-//       error of the calibration makes of a right truth is less;
-//   (e) nothing stands up for the truth, as it is given or as it is moved: of the matches that the motion
-//       leaves, it explains no more than five, which any motion could be moved to, beside twice as many as of
-//       random ones (each first point with another match's second), and in no block more than the motion
-//       (each p > .01, over the blocks by Bonferroni). A second motion of most of the image does not make the
-//       camera's, which the rest follows, doubtful.
+//   (b) of the matches that only one of the two explains, significantly more are explained by the motion:
+//       McNemar's test, one-sided, p <= the level;
+//   (c) of the blocks of image 1 (6 x 6) in which one explains more matches than the other, significantly
+//       more favour the motion: the sign test, which needs at least seven blocks at a level of .01. A moving
+//       object or a repeated texture in one part of the image therefore does not suffice, however many
+//       matches it has, and matches that depend on their neighbours count only once;
+//   (d) the motion explains at least 1.5 times as many matches as the truth, and at least 10. An error of
+//       the calibration has a smaller effect on a right truth;
+//   (e) nothing supports the truth, neither as given nor as moved. Of the matches that the motion leaves
+//       unexplained, the truth explains no more than five, to which any motion could be fitted, plus twice
+//       as many as of random ones (each first point with another match's second point); and in no block does
+//       the truth explain more than the motion (each p > .01, over the blocks by Bonferroni). A second
+//       motion of most of the image thus casts no doubt on the camera's motion, which the rest follows.
 //
-// A half speaks for the truth if it does not speak against it, and the truth explains at least 10 matches and
-// more than chance does (as in (e), of all matches). A front end doubts the truth if both halves speak
-// against it; else the truth holds if one speaks for it, and if none does, the front end is silent. A pair is
-// in doubt if a front end doubts the truth and it holds with none. The levels of (b) and (c) are .01 over the
-// number of front ends (Bonferroni): where the truth explains matches no worse than the motion, (b) holds in
-// a half with at most that probability, whatever the motion, since it does not depend on the half. So at most
-// 1 % of pairs with a right truth are in doubt, and as both halves have to speak against it, far fewer.
+// A half speaks for the truth if it does not speak against it, and the truth explains at least 10 matches
+// and more than chance does (as in (e), of all matches). A front end doubts the truth if both halves speak
+// against it. Otherwise the truth holds for this front end if a half speaks for it, and if none does, the
+// front end is silent. A pair is in doubt if a front end doubts its truth and it holds for none.
 //
-// What matches cannot show: a second motion that all of the matches follow, as if the camera had moved so.
+// The levels of (b) and (c) are .01 over the number of front ends (Bonferroni). If the truth explains
+// matches no worse than the motion, (b) holds in a half with at most this probability, whatever the motion
+// is, because the motion does not depend on that half. So at most 1 % of the pairs with a right truth are in
+// doubt; in fact far fewer, as both halves must speak against it.
+//
+// Matches cannot reveal a second motion that all of them follow, as if the camera had moved so.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +52,7 @@ inline constexpr double kTruthDoubtLevel = 0.01;
 inline constexpr double kLeastExplainedRatio = 1.5;
 inline constexpr int kLeastExplainedByHalf = 10;
 
-// The truth and another motion before the same matches.
+// The comparison of the truth with another motion on the same matches.
 struct TruthContest {
   RelativePose moved_truth;
   std::int64_t num_matches = 0;  // that count: one of each key point
@@ -62,29 +66,29 @@ struct TruthContest {
   double PValue() const;                        // the greater of (b) and (c)
   bool SpeaksAgainstTruth(double level) const;  // (b) to (e)
   bool SpeaksForTruth() const;
-  void AddCounts(const TruthContest& other);  // matches and blocks
+  void AddCounts(const TruthContest& other);  // adds matches and blocks
 };
 TruthContest CompareWithTruth(const MotionProblem& problem, const GivenTruth& truth,
                               const FailureBounds& bounds, const RelativePose& motion);
 
-// The squares of the chessboard: whether each match lies in a white one.
+// Returns for each match whether it lies in a white square of the chessboard.
 std::vector<bool> IsInWhiteSquare(const MotionProblem& problem);
 
 enum class TruthVerdict {
-  kSilent,  // too little to say
+  kSilent,  // too little evidence
   kHolds,
   kInDoubt,
 };
-// "silent", "holds", "in_doubt".
+// Returns "silent", "holds" or "in_doubt".
 const char* Name(TruthVerdict verdict);
 
-// What one front end's matches say, `num_front_ends` of the pair in all.
+// The evidence of one front end's matches; the pair has `num_front_ends` in all.
 struct FrontEndEvidence {
   std::string front_end;
   TruthVerdict verdict = TruthVerdict::kSilent;
   TruthContest counts;   // of both halves together
-  double p_value = 1.0;  // the greater of the halves'
-  // Of the motion of all matches; NaN without one.
+  double p_value = 1.0;  // the greater of both halves
+  // Errors of the motion found from all matches; NaN without a motion.
   double rotation_error_deg = 0.0, direction_error_deg = 0.0;
 };
 FrontEndEvidence WeighTruth(const MotionProblem& problem, const GivenTruth& truth,

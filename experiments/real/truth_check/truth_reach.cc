@@ -13,12 +13,12 @@ namespace rcme {
 namespace {
 
 constexpr double kReachConfidence = 0.999;
-// Of a standard deviation that is said to be zero, rad: as good as zero beside any noise.
+// Replaces a standard deviation that is stated as zero, rad: negligible beside any noise.
 constexpr double kLeastSdRad = 1e-7;
 constexpr double kWidestScale = 32.0;
 constexpr int kStepsPerScale = 6;
 
-// Newton's step from `pose`, clipped, where it does not lower the likelihood; else the pose.
+// Takes a clipped Newton step from `pose` if it raises the likelihood; otherwise returns the pose.
 RelativePose ClimbOnce(const MatchBlocks& matches, const TruthReach& reach, const RelativePose& pose,
                        const MixtureParameters& mixture, double* damping) {
   const MatchMask all = matches.All();
