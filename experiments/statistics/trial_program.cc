@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-// %SOMETHING is replaced.
+// The text of the program; each %WORD is replaced.
 constexpr const char* kProgram =
     R"program(// Trial %TRIAL of condition %CONDITION of the study %STUDY, seed %SEED: the estimator %LABEL on the same
 // problem, for a debugger. Made by `rcme replay --emit-cpp`. With an installed rcme (cmake --install), in the
@@ -66,7 +66,7 @@ int main() {
 }
 )program";
 
-// A number with all its bits.
+// Formats a number with all its bits.
 std::string Bits(double x) { return fmt::format("{:a}", x); }
 
 std::string CppText(const std::string& text) {
@@ -83,7 +83,7 @@ std::string CameraText(const Camera& camera) {
                      Bits(camera.cy), camera.width, camera.height);
 }
 
-// That the motion is the same, a line per number; nothing of a refusal.
+// Makes the comparison of the motion, a line per number; empty for a refusal.
 std::string CheckLines(const MotionEstimate& estimate) {
   if (estimate.status != MotionStatus::kOk) return "";
   std::string lines;
@@ -99,7 +99,7 @@ std::string CheckLines(const MotionEstimate& estimate) {
 
 using Replacements = std::vector<std::pair<std::string, std::string>>;
 
-// Each name once replaced by its text, wherever it stands in the program itself.
+// Replaces every name in the template by its text. The texts themselves are not searched for names.
 std::string FillIn(const Replacements& texts) {
   std::string filled;
   for (std::string_view rest = kProgram; !rest.empty();) {

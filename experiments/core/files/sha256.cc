@@ -14,7 +14,7 @@ constexpr size_t kBlockBytes = 64;
 using Words = std::array<std::uint32_t, 8>;
 
 // The first 32 bits of the fractional parts of the square roots of the first 8 primes (5.3.3), and of the
-// cube roots of the first 64 (4.2.2).
+// cube roots of the first 64 primes (4.2.2).
 constexpr Words kInitial = {0x6a09e667, 0xbb67ae85, 0x3c6ef372, 0xa54ff53a,
                             0x510e527f, 0x9b05688c, 0x1f83d9ab, 0x5be0cd19};
 constexpr std::array<std::uint32_t, 64> kRound = {
@@ -34,7 +34,7 @@ std::uint32_t WordAt(std::string_view block, size_t index) {
   return word;
 }
 
-// 6.2.2 of the standard, for one block.
+// Processes one block (6.2.2).
 void AddBlock(std::string_view block, Words* hash) {
   std::array<std::uint32_t, 64> w{};
   for (size_t t = 0; t < 16; ++t) w[t] = WordAt(block, t);
@@ -55,7 +55,8 @@ void AddBlock(std::string_view block, Words* hash) {
   for (size_t i = 0; i < added.size(); ++i) (*hash)[i] += added[i];
 }
 
-// What remains after the whole blocks, a bit 1, zeros, and the number of bits in 8 bytes (5.1.1).
+// Makes the last blocks: the bytes after the whole blocks, a bit 1, zeros, and the number of bits in 8 bytes
+// (5.1.1).
 std::string PaddedEnd(std::string_view bytes) {
   std::string end(bytes.substr(bytes.size() / kBlockBytes * kBlockBytes));
   end += '\x80';
