@@ -33,8 +33,7 @@ class OutcomeWatch {
 
   mutable std::mutex mutex_;
   std::int64_t num_simulated_ = 0, num_not_simulated_ = 0;
-  std::vector<std::map<MotionStatus, std::int64_t>>
-      no_answers_;  // by estimator: number of each status other than ok
+  std::vector<std::map<MotionStatus, std::int64_t>> no_answers_;  // by estimator: number of each status
   std::map<std::uint32_t, NotSimulatedTrials> not_simulated_;  // by condition
 };
 

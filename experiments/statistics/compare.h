@@ -5,8 +5,9 @@
 // errors have the interval of the median and the sign test. Both are wrong if the number depended on the
 // outcomes (--until) or if somebody looked repeatedly. Then the discordant trials, which are fair coin flips
 // if the estimators are equally good, are tested by a likelihood ratio of a mixture to the fair coin
-// (stats/confidence_sequence.h), and differences have betting intervals (stats/score_mean.h); both hold at
-// every look. Scores always have betting intervals.
+// (stats/confidence_sequence.h). Differences of rates then have betting intervals (stats/score_mean.h),
+// medians of errors none. These tests and intervals hold at every look. Scores always have betting
+// intervals.
 //
 // If scenes are repeated (Study::repeats_per_scene), the trials of a scene depend on each other. Events and
 // scores are then compared by the mean over a scene's pairs, with the tests and intervals of scores; errors

@@ -271,8 +271,7 @@ SummaryCell::SummaryCell(size_t num_estimators)
 SummaryCell::SummaryCell(size_t num_estimators, int repeats_per_scene) : SummaryCell(num_estimators) {
   const bool has_repeats = repeats_per_scene > 1;
   for (QuantitySums& estimator : estimators_) PrepareForRows(has_repeats, &estimator);
-  PrepareForRows(/*has_repeats=*/false,
-                 &problems_);  // all trials of a scene have the same problem, which counts once
+  PrepareForRows(/*has_repeats=*/false, &problems_);  // the trials of a scene share one problem
   if (has_repeats) splits_.assign(num_estimators, SceneSplit(repeats_per_scene));
   RankErrors();
 }

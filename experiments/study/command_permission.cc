@@ -50,9 +50,9 @@ void SetOwnOptions(EstimatorSpec* spec, const Settings& options) {
   for (const auto& [option, value] : options) {
     if (IsCommand(*spec, option)) spec->command_place.clear();
     if (spec->name != kConformEstimator || option != kConformFile) continue;
-    SetOptions(spec,
-               ConformOptions(value));  // with the digest, so that the file cannot be exchanged unnoticed
-    NoteCommandPlace(value, spec);      // a command in the file still needs permission
+    // With the digest, so that the file cannot be exchanged unnoticed.
+    SetOptions(spec, ConformOptions(value));
+    NoteCommandPlace(value, spec);  // a command in the file still needs permission
   }
 }
 

@@ -51,8 +51,8 @@ struct Restriction {
 struct Population {
   PointSet design = PointSet::kSobol;
   int number = 256;  // number of draws
-  std::vector<int>
-      draws;  // ascending numbers of chosen draws, which are no sample; empty: 0, ..., number - 1
+  // Ascending numbers of chosen draws, which are no sample. Empty: 0, ..., number - 1.
+  std::vector<int> draws;
   // Each key is followed by the keys that are drawn with its words. This is the order of the axes.
   std::vector<DrawnKey> keys;
   std::vector<Restriction> given;

@@ -23,9 +23,7 @@ void SettleOption(const Place& place, const YAML::Node& line, const Study& study
     labels.push_back(spec.label);
     if (spec.label != label) continue;
     if (IsCommand(spec, option))
-      place.Fail(
-          line, fmt::format("factors: {}: a command, or a file that may bring one, cannot vary; leave it out",
-                            factor->key));
+      place.Fail(line, fmt::format("factors: {}: a command, or a file that may bring one, cannot vary; leave it out", factor->key));
     for (std::string& level : factor->levels) {
       EstimatorSpec varied = spec;
       place.At(line, [&] {
@@ -104,8 +102,7 @@ void SettleData(const Place& place, const YAML::Node& root, Study* of) {
         place.Fail(line,
                    "factors: scene: match_files is not a simulated scene; write a separate study for it");
       const std::string text = level;
-      place.At(line,
-               [&] { level = MakeCanonical(IsChoice(factor.key) ? first : choices, factor.key, text); });
+      place.At(line, [&] { level = MakeCanonical(IsChoice(factor.key) ? first : choices, factor.key, text); });
     }
     RequireDifferentLevels(place, line, factor, given);
   }

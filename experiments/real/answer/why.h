@@ -21,7 +21,7 @@ enum class WhyVerdict {
   // The true motion scores clearly better than the answer (by two standard deviations, or a probability of
   // 0.9), or would not have been refused.
   kSearchFailed,
-  kModelCannotTell,  // the true motion does not, or the matches have no optimum within the bounds
+  kModelCannotTell,  // it does not score clearly better, or the matches have no optimum within the bounds
   kTestsRefuse,      // the tests would also have refused the true motion
   kTruthUnknown,
 };
