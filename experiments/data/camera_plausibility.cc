@@ -200,7 +200,7 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
                                             const std::string& place) {
   constexpr size_t kFewest = 50;
   constexpr double kBeyond = 1.25,
-                   kBefore = 0.02;  // of the size; distortion moves points outside on all sides
+                   kBefore = 0.02;  // of the size; undistortion moves points outside on all sides
   if (matches.size() < kFewest) return {};
   const auto [least, greatest] = MeasureSpread(matches, x_px);
   const Eigen::Vector2d centre(camera.cx, camera.cy), implied = 2.0 * centre + Eigen::Vector2d::Ones();

@@ -33,7 +33,8 @@ class OutcomeWatch {
 
   mutable std::mutex mutex_;
   std::int64_t num_simulated_ = 0, num_not_simulated_ = 0;
-  std::vector<std::map<MotionStatus, std::int64_t>> no_answers_;  // by estimator: number of each status
+  // By estimator: the number of each status except ok.
+  std::vector<std::map<MotionStatus, std::int64_t>> no_answers_;
   std::map<std::uint32_t, NotSimulatedTrials> not_simulated_;  // by condition
 };
 
