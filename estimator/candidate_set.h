@@ -13,9 +13,10 @@ struct Candidate {
   double z_statistic = 0.0;
 };
 
-// C (eq::candidate-set): the hypotheses that passed the quality test, and the size condition n_j / n >=
-// lambda omega_p. omega_p is given, or the largest n_j / n of any hypothesis that passed, as RANSAC infers
-// it; the size condition is therefore decided with the last omega_p.
+// C (eq::candidate-set): the hypotheses that passed the quality test and meet the size condition n_j / n >=
+// lambda omega_p. If no omega_p is given, it is inferred as in RANSAC: the largest n_j / n of any hypothesis
+// that passed the quality test. MeetsSizeCondition uses the omega_p of the hypotheses added so far, so the
+// set is final only after the last Add.
 class CandidateSet {
  public:
   CandidateSet(const RansacOptions& options, int num_matches);
@@ -24,7 +25,8 @@ class CandidateSet {
   bool MeetsSizeCondition(const Candidate& candidate) const;
   int CountMembers() const;
 
-  // The best members, at most `count`, the first one first at a tie; none if C is empty.
+  // The best members, at most `count`, sorted best first; of equal scores the one added first comes first.
+  // Empty if C is empty.
   std::vector<Candidate> SelectBest(int count, DecidingScore decides) const;
 
  private:

@@ -10,26 +10,27 @@
 
 namespace rcme {
 
-// What limits the work of a call.
+// The option that bounds the work of a call.
 struct Effort {
-  std::string option;         // a whole number: samples, iterations
-  bool has_own_rule = false;  // the estimator may stop earlier by a rule of its own
+  std::string option;         // integer option: number of samples or iterations
+  bool has_own_rule = false;  // the estimator may stop before the bound
 };
 
-// An estimator before it is made, with options of its own: what an entry of the registry brings
-// (estimator_registry.h). Configured once, by one thread.
+// The options of an estimator and its factory; an entry of the registry (estimator_registry.h) holds one.
+// Configure it once, from one thread.
 class EstimatorModel {
  public:
   virtual ~EstimatorModel() = default;
-  // The options by name, each with its default, range and unit, and what it does; valid as long as the model
-  // lives. Only those that have an effect on this estimator.
+  // The options that have an effect on this estimator, each with name, default, range, unit and meaning. They
+  // point into the model and are valid as long as it lives.
   virtual std::vector<Parameter> Parameters() { return {}; }
-  // Gives the options that make the estimator refuse a motion it has a value at which they refuse none. What
-  // is refused only because of them is a false refusal where the motion is good (rcme tune).
+  // Sets every option that can make the estimator refuse a motion to a value at which it never refuses. `rcme
+  // tune` uses this to find false refusals: good motions that only these options refuse.
   virtual void LiftLimits() {}
-  // With these options. Nothing: no option sets how much work a call does.
+  // The option that bounds the work of a call, under the current options; nullopt if no option does.
   virtual std::optional<Effort> EffortOption() const { return std::nullopt; }
-  // The estimator with these options. Throws InputError that names two that contradict each other.
+  // Makes the estimator with the current options. Throws InputError that names both options if two contradict
+  // each other.
   virtual std::unique_ptr<MotionEstimator> Make() const = 0;
 };
 

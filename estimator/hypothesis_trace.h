@@ -1,5 +1,5 @@
-// Every hypothesis of a call with its verdict and score: what the loop decides from scores can be decided
-// again, under other thresholds, without a new estimation.
+// All hypotheses of a call with their verdicts and scores. The loop's decisions can be repeated on them under
+// other thresholds without a new search.
 #pragma once
 
 #include <iterator>
@@ -12,16 +12,16 @@ namespace rcme {
 
 struct ScoredHypothesis {
   Proposal proposal;
-  InlierScore score;  // of all matches; only where the sample is consistent
+  InlierScore score;  // over all matches; only if the sample is consistent
 };
 
 struct HypothesisTrace {
   int num_matches = 0;
   Thresholds thresholds;
-  std::vector<ScoredHypothesis> hypotheses;  // in the order of the loop; empty: refused before it
+  std::vector<ScoredHypothesis> hypotheses;  // in the loop's order; empty: refused before the loop
 };
 
-// Every hypothesis that `search` makes of `num_iterations` samples. The decisions of the loop play no part.
+// All hypotheses that `search` makes from `num_iterations` samples; the loop's decisions have no influence.
 template <typename Search>
 requires HypothesisSolver<Search> && HypothesisScorer<Search> HypothesisTrace
 TraceHypotheses(int num_iterations, int num_matches, Search& search) {
@@ -36,7 +36,7 @@ TraceHypotheses(int num_iterations, int num_matches, Search& search) {
   return trace;
 }
 
-// Solver and scorer (ransac_loop.h) of hypotheses made before.
+// Solver and scorer (ransac_loop.h) that replay the hypotheses of a trace.
 class TraceSearch {
  public:
   explicit TraceSearch(const HypothesisTrace& trace)

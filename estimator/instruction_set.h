@@ -4,8 +4,8 @@
 
 namespace rcme {
 
-// Instruction set that the kernels use on this machine: "scalar", "AVX2", "AVX-512", elsewhere Highway's name
-// ("NEON"). Stored with results, so that two runs can be compared.
+// The instruction set that the kernels use on this machine: "scalar", "AVX2", "AVX-512", otherwise Highway's
+// name (such as "NEON"). Results store it so that runs can be compared.
 std::string InstructionSetName();
 
 }  // namespace rcme

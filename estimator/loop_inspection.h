@@ -1,5 +1,5 @@
-// The loop of an estimator taken apart, for those who look into it: rcme tune and rcme show. Estimate never
-// asks it.
+// The stages of an estimator's loop, one call each, for `rcme tune` and `rcme show`. Estimate does not use
+// this.
 #pragma once
 
 #include <map>
@@ -12,43 +12,44 @@
 
 namespace rcme {
 
-// Of the hypotheses of one problem: the estimate from each, whatever the others are.
+// The estimate refined from each hypothesis of one problem; it does not depend on the other hypotheses.
 using Refinements = std::map<HypothesisId, MotionEstimate>;
 
-// A motion that is handed to an estimator, as it would be judged had the search found it.
+// The score and the estimate that a given motion would get, had the estimator's search found it.
 struct ScoredMotion {
-  RefinedMotion refined;  // not converged: no optimum is reached from there, and there is no score
-  InlierScore score;      // of the refined motion, its covariance included, over all matches
+  RefinedMotion refined;  // not converged: the refinement failed, and there is no score
+  InlierScore score;      // of the refined motion with its covariance, over all matches
   DecidingScore decides = DecidingScore::kNumInliers;
   Thresholds thresholds;    // of the tests
-  MotionEstimate estimate;  // what would be returned, refused perhaps by the tests of the refined motion
+  MotionEstimate estimate;  // as returned; the tests of the refined motion may refuse it
 };
 
-// Make and score the hypotheses, decide, finish. Whatever the options, the estimator's Estimate(problem, rng)
-// is Finish(problem, Decide(Trace(problem, rng)), &refinements).
+// Trace makes and scores the hypotheses, Decide chooses the winner, Finish refines it. The estimator's
+// Estimate(problem, rng) equals Finish(problem, Decide(Trace(problem, rng)), &refinements), whatever the
+// options.
 //
-// Decide is the cheap part. The trace of one estimator may be decided by another whose options differ in
-// those of kDecisionOptions alone, as long as the trace has at least num_iterations samples and, where
-// likelihood selects, was made by an estimator that selects by likelihood too. They may share the refinements
-// of a problem as well.
+// Decide is cheap. The trace of one estimator may be decided by another if their options differ in
+// kDecisionOptions alone and the trace has at least num_iterations samples. If the deciding estimator selects
+// by likelihood, the estimator that made the trace must do so too. Such estimators may also share the
+// refinements of a problem.
 class LoopInspection {
  public:
   virtual ~LoopInspection() = default;
   virtual HypothesisTrace Trace(const MotionProblem& problem, RandomStream& rng) const = 0;
   virtual LoopResult Decide(const HypothesisTrace& trace) const = 0;
-  // Takes from `refinements` what is there already, and adds what is not.
+  // Reuses the estimates in `refinements` and adds those that it makes.
   virtual MotionEstimate Finish(const MotionProblem& problem, const LoopResult& loop,
                                 Refinements* refinements) const = 0;
-  // The motion refined from `start` and the matches that agree with it, and scored as a hypothesis is. Where
-  // the estimator refines nothing, refined robustly all the same.
+  // Refines `start` over the matches that agree with it, and scores the result like a hypothesis. An
+  // estimator without refinement uses the robust one here.
   virtual ScoredMotion ScoreMotion(const MotionProblem& problem, const RelativePose& start) const = 0;
   virtual const RansacOptions& options() const = 0;
-  // That of the same estimator with options that differ in those of kDecisionOptions and the levels of the
-  // tests of the refined motion alone.
+  // The inspection of the same estimator with other options. These may differ only in kDecisionOptions and in
+  // the levels of the tests of the refined motion.
   virtual std::unique_ptr<LoopInspection> With(const RansacOptions& options) const = 0;
 };
 
-// The options that act on scores and on what refinements explain alone.
+// The options that act only on scores and on the number of matches that refined motions explain.
 inline constexpr const char* kDecisionOptions[] = {"mu",
                                                    "quality_test",
                                                    "lambda",
@@ -72,7 +73,7 @@ class InspectableEstimator : public MotionEstimator {
   std::unique_ptr<const LoopInspection> inspection_;
 };
 
-// The inspection of the estimator's loop, which lives as long as the estimator; null if there is none.
+// The inspection of the estimator's loop, valid as long as the estimator lives; null if there is none.
 inline const LoopInspection* FindInspection(const MotionEstimator& estimator) {
   const auto* const inspectable = dynamic_cast<const InspectableEstimator*>(&estimator);
   return inspectable ? &inspectable->inspection() : nullptr;

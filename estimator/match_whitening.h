@@ -4,13 +4,13 @@
 
 namespace rcme {
 
-// Rays from whitened coordinates: [scale.x x, scale.y y, 1], scale = sigma / focal length.
+// Scale from whitened coordinates to rays, sigma / focal length: ray = [scale.x x, scale.y y, 1].
 struct RayScale {
   double x1, y1, x2, y2;
 };
 
-// From pixels to whitened coordinates: pixels from the principal point in units of sigma, so that the noise
-// has variance 1.
+// Maps pixels to whitened coordinates: offset from the principal point over sigma, so that the noise has
+// variance 1.
 class MatchWhitening {
  public:
   explicit MatchWhitening(const MotionProblem& problem);
@@ -19,8 +19,8 @@ class MatchWhitening {
   Eigen::Vector2d WhitenPoint2(const Eigen::Vector2d& x2_px) const { return inverse_sigma_ * (x2_px - c2_); }
   const RayScale& ray_scale() const { return ray_scale_; }
 
-  // F with x2' F x1 = 0 in whitened coordinates, of an E in rays (eq::model_motion_relation). Linear in E, so
-  // it maps tangents too.
+  // F with x2' F x1 = 0 in whitened coordinates, from E in rays (eq::model_motion_relation). The map is
+  // linear, so it also maps derivatives of E.
   Eigen::Matrix3d FundamentalFromEssential(const Eigen::Matrix3d& E) const;
 
  private:

@@ -9,41 +9,40 @@
 
 namespace rcme {
 
-// How a call ended, or why there was none. Every call ends in one of these; only kOk carries a motion,
-// kDirectionNotObservable a rotation.
+// How a call ended. kOk alone carries a whole motion, kDirectionNotObservable a rotation.
 enum class MotionStatus {
-  kOk,                      // a motion was found and refined
-  kNoCandidate,             // the paper's "Detect-fail": the candidate set is empty
-  kTooFewMatches,           // fewer distinct matches than a minimal sample needs
-  kDegenerateMatches,       // the matches cannot determine a motion (collinear, or every sample is singular)
-  kRefinementDiverged,      // the refinement found no finite optimum, or at most five matches agree with it
-  kTooFewExplained,         // the refined motion explains a smaller share of the matches than was asked for
-  kDirectionNotObservable,  // the parallax is within its noise: the rotation is given, the direction is not
-  kNotBetterThanChance,     // no more matches agree with the motion than would agree with any motion
-  kTooUncertain,            // the probability that the motion is wrong is greater than what was allowed
-  // What kind of problem it is, where the estimator is asked to look at that (model_choice/gate.h).
+  kOk,                  // a motion was found and refined
+  kNoCandidate,         // the paper's "Detect-fail": the candidate set is empty
+  kTooFewMatches,       // fewer distinct matches than a minimal sample needs
+  kDegenerateMatches,   // the matches do not determine a motion (collinear, or every sample is degenerate)
+  kRefinementDiverged,  // the refinement found no finite optimum, or at most five matches agree with it
+  kTooFewExplained,     // the refined motion explains a smaller share of the matches than required
+  kDirectionNotObservable,  // the parallax is within the noise: there is a rotation, but no direction
+  kNotBetterThanChance,     // chance explains that many agreeing matches
+  kTooUncertain,            // the failure probability is greater than allowed
+  // From the gate of model choice (model_choice/gate.h), if it is on.
   kPlanarScene,        // the matches lie on a plane
-  kRotationOnly,       // no translation to be seen
+  kRotationOnly,       // a rotation explains the matches
   kTooLittleParallax,  // too few of the matches show parallax beyond the noise
-  kLibraryError,       // another library that the estimator calls failed: an exception, or no finite motion
-  // Of estimators outside the program (peers/outside_answer.h).
-  kTimedOut,          // no answer within the time that was allowed
-  kNoAnswer,          // none at all: its process ended
-  kUnreadableAnswer,  // something that is no answer: no JSON, a matrix of another shape, an unknown status
+  kLibraryError,       // a library that the estimator calls threw, or gave no finite motion
+  // From estimators outside the program (peers/outside_answer.h).
+  kTimedOut,          // no answer within the time limit
+  kNoAnswer,          // its process ended without an answer
+  kUnreadableAnswer,  // not JSON, a matrix of the wrong shape, or an unknown status
   kInvalidInput,      // NaN or infinite coordinates, a singular camera, a noise level not positive
-  // Never an estimator's own: what the check of its answer makes of kOk.
+  // Set in the place of kOk by the check of an answer; estimators do not return these.
   kInvalidMotion,      // not a rotation and a unit vector, or not finite
   kInvalidCovariance,  // not finite, symmetric and positive semidefinite
-  // Nobody's answer: there was nothing to ask, or nothing to judge it by.
-  kNotSimulated,  // the simulator could not make this trial of a condition that was drawn from a population
-  kTruthInDoubt,  // a pair whose given truth is listed as in doubt: no answer to it is judged
+  // The trial has no answer that could be judged.
+  kNotSimulated,  // the simulator cannot make a trial of this condition, drawn from a population
+  kTruthInDoubt,  // the ground truth of this real pair is listed as doubtful: answers are not judged
 };
 
-// The status as a word for files and programs ("ok", "no_candidate", ...), and back.
+// The name of a status in files and programs ("ok", "no_candidate", ...), and all statuses.
 const std::string& StatusName(MotionStatus status);
 const std::vector<MotionStatus>& AllStatuses();
 
-// What the hypothesis loop saw, for diagnosis; counts sum to num_hypotheses.
+// Counts of the hypothesis loop, for diagnosis. The last five sum to num_hypotheses.
 struct LoopCounts {
   int num_hypotheses = 0;             // models of the drawn samples; a sample without a model counts as one
   int num_degenerate_samples = 0;     // no model from the sample, or no covariance of the model
@@ -53,51 +52,51 @@ struct LoopCounts {
   int num_candidates = 0;             // |C| (eq::candidate-set)
 };
 
-// What makes a motion uncertain first of all; the estimator's message says it in words, with numbers.
+// The main reason why a motion is uncertain; the estimator's message explains it with numbers.
 enum class Doubt {
-  kNone,              // nothing: the motion is very likely right, or the estimator does not ask
+  kNone,              // the motion is very likely right, or the estimator does not look for doubts
   kOtherMotion,       // another motion explains matches that this one does not
   kPlane,             // the matches lie near a plane: two motions explain them
   kFewMatchesDecide,  // one or a few matches with a large influence decide between motions
   kOppositeWay,       // the direction of translation may have the opposite sign
   kLowParallax,       // hardly any parallax: the direction is poorly determined
-  kFewMatches,        // few matches agree with the motion, chance might give as many
-  kModel,             // the matches are not as the estimator's model has them
+  kFewMatches,        // few matches agree with the motion: chance might explain them
+  kModel,             // the matches contradict the estimator's model of them
 };
 
-// Whether a stated probability of failure is of problems like those that it was fitted and verified on, as
-// far as the matches show that.
+// Whether the matches look like those of the problems on which a stated failure probability was fitted and
+// verified.
 enum class ProbabilityDomain {
   kNotStated,     // the estimator does not say
   kVerified,      // like them
-  kExtrapolated,  // unlike nearly all of them in some respect
+  kExtrapolated,  // in some respect outside of the range of nearly all of them
 };
 // "not_stated", "verified", "extrapolated".
 const char* Name(ProbabilityDomain domain);
 
-// What became of the prior of the motion (MotionProblem::prior).
+// How the prior of the motion (MotionProblem::prior) was used.
 enum class PriorUse {
-  kNone,          // there is none, or the estimator takes none
-  kUsed,          // the answer is of the matches and of the prior
-  kContradicted,  // the matches speak against it: the answer is of the matches alone
+  kNone,          // no prior, or the estimator takes none
+  kUsed,          // the answer is from the matches and the prior
+  kContradicted,  // the matches contradict it: the answer is from the matches alone
 };
 // "none", "used", "contradicted".
 const char* Name(PriorUse use);
 
-// Another motion that explains the matches, with what speaks for it.
+// Another motion that explains the matches, with its evidence.
 struct MotionMode {
   RelativePose cam2_from_cam1;
   Matrix5d pose_cov = Matrix5d::Zero();  // 5x5 [rotation, direction], rad^2
   double weight = 0.0;                   // probability that it is the right one
-  double explained_share = 0.0;          // of all matches: those it explains and the answer does not
+  double explained_share = 0.0;          // share of all matches that it explains and the answer does not
 };
 
 struct MotionEstimate {
   MotionStatus status = MotionStatus::kInvalidInput;
   std::string message;  // one sentence for a person
 
-  // Valid if status is kOk. If it is kDirectionNotObservable, R and the covariance's rotation block are, and
-  // the rest is NaN.
+  // Valid if the status is kOk. If it is kDirectionNotObservable, R and the rotation block of the covariance
+  // are valid and the rest is NaN.
   RelativePose cam2_from_cam1;
   Matrix5d pose_cov = Matrix5d::Zero();  // 5x5 [rotation, direction], rad^2
   std::vector<int> inliers;              // indices of the matches consistent with the motion, ascending
@@ -114,16 +113,17 @@ struct MotionEstimate {
   int num_consistent_after = 0;   // n*_I
   bool failed_by_kappa = false;   // n*_I / n_I <= kappa
 
-  // Matches, of all, that agree with the refined motion: squared Sampson distance within
-  // ConsistencyThreshold (motion_tests.h). The motion's covariance is not used, so that a poorly
-  // determined motion does not explain more matches.
+  // Number of all matches that agree with the refined motion: squared Sampson distance within
+  // ConsistencyThreshold (motion_tests.h). The motion's covariance is not used, so that a poorly determined
+  // motion does not explain more matches.
   int num_explained = 0;
 
   LoopCounts counts;
 
-  // Of estimators that give probabilities; the others leave NaN and empty lists.
-  double failure_probability = std::numeric_limits<double>::quiet_NaN();  // beyond the bounds of its options
-  double sigma_estimated_px = std::numeric_limits<double>::quiet_NaN();   // from the residuals
+  // From estimators that state probabilities; others leave NaN and empty lists.
+  double failure_probability =
+      std::numeric_limits<double>::quiet_NaN();  // error beyond the bounds in its options
+  double sigma_estimated_px = std::numeric_limits<double>::quiet_NaN();  // from the residuals
   double sigma_estimated_sd_px = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> inlier_probabilities;  // one per match
   std::vector<MotionMode> other_modes;       // the most likely first
@@ -131,10 +131,11 @@ struct MotionEstimate {
   ProbabilityDomain probability_domain = ProbabilityDomain::kNotStated;
 
   PriorUse prior = PriorUse::kNone;
-  // That a right prior is as far from the motion of the matches alone; NaN: not asked.
+  // Probability that a correct prior is at least this far from the motion of the matches alone; NaN: not
+  // computed.
   double prior_p_value = std::numeric_limits<double>::quiet_NaN();
 
-  // Time of the part of the call that ran in another process or on another machine, s; NaN: none did.
+  // Time spent in another process or on another machine, s; NaN: none.
   double seconds_elsewhere = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -6,11 +6,11 @@
 
 namespace rcme {
 
-// The contract of every estimator, the one virtual call of a trial.
+// The interface of every estimator.
 //
-// Estimate is a pure function of (problem, the stream's name): no clock, no global state, callable from
-// several threads at once. It never throws for bad matches: whatever is wrong comes back as a status and a
-// sentence. The truth never reaches it.
+// Estimate is a pure function of (problem, the stream's name). It reads no clock and no global state, and
+// several threads may call it at once. It does not throw for bad matches: failures come back as a status and
+// a message. It never sees the truth.
 class MotionEstimator {
  public:
   virtual ~MotionEstimator() = default;

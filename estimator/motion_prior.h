@@ -1,17 +1,17 @@
-// What is known of a motion beside the matches: a rotation from a gyroscope, the direction of gravity in both
-// cameras, a direction of travel from wheels or from the motion before. Each is a measurement with Gaussian
-// noise; each is optional.
+// Prior knowledge of a motion: a rotation from a gyroscope, the direction of gravity in both cameras, a
+// direction of translation from wheels or from the previous motion. Each part is optional, and a measurement
+// with Gaussian noise.
 //
-//   rotation    true R = Exp(w) R, w ~ N(0, cov): the side and the axes (camera 2's) are those of pose_cov
-//   gravity     unit vectors g1 and g2 with g2 = R g1, each turned by noise of its own (isotropic, in rad):
-//               two of the three degrees of freedom of R; a turn about gravity is not seen
-//   direction   a unit vector t, turned by isotropic noise
+//   rotation    true R = Exp(w) R, w ~ N(0, cov), in the axes of camera 2 as in pose_cov
+//   gravity     unit vectors g1 and g2 with g2 = R g1, each turned by isotropic noise (rad); fixes two of the
+//               three degrees of freedom of R, all but the turn about gravity
+//   direction   a unit vector t, turned by isotropic noise (rad)
 //
-// The residuals at a motion (R, t), in units of their standard deviations, are rotation vectors, in camera
-// 2's frame. With T(a, b) the shortest turn that takes the unit vector a to b,
+// The residuals at a motion (R, t), in units of their standard deviations, are rotation vectors in camera 2's
+// frame. With T(a, b) the shortest turn from the unit vector a to b,
 //
 //   rotation    L^-1 Log(R R_measured'),  L L' = cov
-//   gravity     T(R g1, g2) / sqrt(sd1^2 + sd2^2): the turn of R g1 by the noise of g1 and that of g2 add up
+//   gravity     T(R g1, g2) / sqrt(sd1^2 + sd2^2), as the noises of g1 and g2 add up
 //   direction   T(t, t_measured) / sd
 //
 // so that the density of the measurements is exp(-|r|^2 / 2) up to a constant. Derivatives along the tangent
@@ -51,16 +51,16 @@ struct MotionPrior {
   std::optional<DirectionPrior> direction = {};
 };
 
-// Standard deviations that are accepted: rounding of R and t is below the least.
+// Range of accepted standard deviations; its lower end is above the rounding of R and t.
 inline constexpr double kLeastPriorSdRad = 1e-6, kGreatestPriorSdRad = 1e6;
 
-// Why the prior cannot be used, in words that say what is allowed; empty: it can.
+// A message that says why the prior cannot be used and what is allowed; empty if it can be used.
 std::string FindPriorFault(const MotionPrior& prior);
 
-// Of the parts that are there: 3 for the rotation, 2 for gravity, 2 for the direction.
+// Degrees of freedom of the parts present: 3 for the rotation, 2 for gravity, 2 for the direction.
 int CountPriorFreedom(const MotionPrior& prior);
 
-// Three rows each for rotation, gravity and direction; zero for parts that are not there.
+// Three rows each for rotation, gravity and direction; rows of absent parts are zero.
 struct PriorResiduals {
   Eigen::Matrix<double, 9, 1> residual = Eigen::Matrix<double, 9, 1>::Zero();
   Eigen::Matrix<double, 9, 5> jacobian = Eigen::Matrix<double, 9, 5>::Zero();
@@ -68,23 +68,23 @@ struct PriorResiduals {
 PriorResiduals ComputePriorResiduals(const MotionPrior& prior, const RelativePose& pose);
 
 struct PriorTerms {
-  double cost = 0.0;                     // -log density, zero where all measurements are met: |r|^2 / 2
+  double cost = 0.0;                     // |r|^2 / 2
   Vector5d gradient = Vector5d::Zero();  // J' r
   Matrix5d hessian = Matrix5d::Zero();   // J' J (Gauss-Newton)
 };
 PriorTerms EvaluatePrior(const MotionPrior& prior, const RelativePose& pose);
 
-// Logarithm of the greatest density of the measurements over that of measurements which know nothing of the
-// motion (uniform over rotations and over the sphere), each part at least 0: for a small noise
+// Sum over the parts of the log ratio between the peak density of the measurement and the uniform density
+// (over rotations, or over the sphere). A negative term counts as 0. For small noise the terms are
 //   rotation   log(8 pi^2 / sqrt((2 pi)^3 det cov)),  8 pi^2 the volume of the rotations in rotation vectors
 //   gravity    log(4 pi / (2 pi (sd1^2 + sd2^2))),    direction   log(4 pi / (2 pi sd^2))
 double LogPeakOverUniform(const MotionPrior& prior);
 
 // The probability that measurements of a motion N(pose, pose_cov) depart from it at least as far as these:
-// the upper tail of chi-square at r' (I + J pose_cov J')^-1 r.
+// the upper tail of chi-square at r' (I + J pose_cov J')^-1 r, with CountPriorFreedom degrees of freedom.
 double ComputePriorTail(const MotionPrior& prior, const RelativePose& pose, const Matrix5d& pose_cov);
 
-// All numbers of a prior: equal for equal priors alone.
+// All numbers of a prior; two lists are equal only if the priors are.
 std::vector<double> ListPriorNumbers(const MotionPrior& prior);
 
 }  // namespace rcme

@@ -14,10 +14,10 @@ struct MotionProblem {
   std::vector<Correspondence> matches;
   Camera camera1, camera2;
   double sigma_px = 0.5;  // assumed standard deviation of the noise per coordinate in each image (a.2)
-  // Of each match, how many times as great its noise is as sigma_px: 1 in the median. Empty: all alike.
+  // Standard deviation of each match's noise over sigma_px; the median is 1. Empty: all matches have noise
+  // sigma_px.
   std::vector<double> noise_scale = {};
-  // What is known of the motion beside the matches; only estimators that say so use it
-  // (EstimatorEntry::uses_motion_prior).
+  // Prior knowledge of the motion; only some estimators use it (EstimatorEntry::uses_motion_prior).
   std::optional<MotionPrior> prior = {};
 };
 

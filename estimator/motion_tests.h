@@ -1,5 +1,5 @@
-// Refusals of a refined motion: one that explains no more than chance does (motion_chance.h), or whose
-// direction cannot be observed (observability.h).
+// Tests that refuse a refined motion: because chance explains as many matches (motion_chance.h), or because
+// its direction is not observable (observability.h).
 #pragma once
 
 #include "estimator/motion_estimate.h"
@@ -10,22 +10,22 @@
 namespace rcme {
 
 // The threshold of "reprojection error consistent", chi2_2(1 - alpha) (Sec. metric). The error is the squared
-// Sampson distance, its first-order minimum over the point; Huber's function does not change the verdict as
+// Sampson distance, the first-order minimum over the point. Huber's function would not change the verdict as
 // long as its corner lies at or beyond the threshold.
 double ConsistencyThreshold(double significance_level);
 
-// Refuses a motion that no more of the matches agree with, `num_explained`, than chance gives. `chance`: that
-// a random match does.
+// Refuses a motion if chance explains num_explained agreeing matches. `chance`: the probability that a random
+// match agrees.
 void RefuseByChance(int num_matches, double chance, double significance_level, MotionEstimate* estimate);
 
-// Refuses a direction whose parallax is too small against its noise, `share` of its information: direction
-// and its covariance are NaN.
+// Refuses a direction if the `share` of noise in its information (NoiseShareOfDirection) is too large; the
+// direction and its covariance become NaN.
 void RefuseNoisyDirection(double share, MotionEstimate* estimate);
 
-// Refuses the direction and puts the rotation of the best rotation alone in the place of the motion's.
+// Refuses the direction and replaces the rotation by the best pure rotation.
 void KeepRotationAlone(const RotationTest& test, MotionEstimate* estimate);
 
-// All three. `num_explained` is known. `Matches`: see refine_winner.h.
+// Runs all three tests; num_explained must be filled. `Matches`: see refine_winner.h.
 template <typename Matches>
 void RefuseByMotionTests(const Matches& matches, const RansacOptions& options, MotionEstimate* estimate) {
   const RelativePose pose = estimate->cam2_from_cam1;
@@ -47,8 +47,8 @@ void RefuseByMotionTests(const Matches& matches, const RansacOptions& options, M
       estimate);
 }
 
-// After a refinement that diverged from `start` and its matches: the rotation alone, if too little parallax
-// is the reason.
+// Call this after a refinement from `start` has diverged. If a pure rotation explains the matches, lack of
+// parallax is the reason, and the estimate becomes that rotation.
 template <typename Matches>
 void ExplainDivergence(const Matches& matches, const RansacOptions& options, const RelativePose& start,
                        const typename Matches::Set& support, MotionEstimate* estimate) {

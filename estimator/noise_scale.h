@@ -1,4 +1,4 @@
-// How noisy each match is, beside sigma_px (MotionProblem::noise_scale).
+// The noise of each match relative to sigma_px (MotionProblem::noise_scale).
 #pragma once
 
 #include <vector>
@@ -7,20 +7,19 @@
 
 namespace rcme {
 
-// Beyond a factor of a million nothing is said about noise, and products of four would overflow long after.
+// Bound that keeps products of four scales far from overflow; no statement about noise needs a larger factor.
 inline constexpr double kMaxNoiseScale = 1e6;
 
-// Of match i; 1 where all are alike.
+// The noise scale of match i; 1 if the problem has none.
 inline double NoiseScaleAt(const MotionProblem& problem, size_t i) {
   return problem.noise_scale.empty() ? 1.0 : problem.noise_scale[i];
 }
 
-// Of matches whose own standard deviations somebody states (any unit, all above 0; empty: nobody does): each
-// over their median. Only their relation is kept: how large noise is in all is assumed (sigma_px) or
-// estimated.
+// Stated standard deviations (any unit, all > 0) divided by their median; empty if empty. Only the ratios
+// matter: the noise level itself is assumed (sigma_px) or estimated.
 std::vector<double> ComputeNoiseScale(std::vector<double> sigmas);
 
-// The problem with these of its matches, in this order; `which` holds indices.
+// The problem with only the matches at the indices `which`, in this order.
 template <typename Indices>
 MotionProblem SelectPart(const MotionProblem& problem, const Indices& which) {
   MotionProblem part{{}, problem.camera1, problem.camera2, problem.sigma_px, {}, problem.prior};
