@@ -1,5 +1,5 @@
-// The hypotheses of reference_search.h, of which each that has more inliers than all before it is optimised
-// (local_optimisation.h): as in LO-RANSAC, about log k times in k hypotheses.
+// The search of reference_search.h with local optimisation (local_optimisation.h). It optimises each
+// hypothesis that has more inliers than all before it: as in LO-RANSAC, about log k of k hypotheses.
 #pragma once
 
 #include <map>
@@ -37,7 +37,7 @@ class OptimisingSearch {
     return score;
   }
 
-  // With the optimised motion in the place of its sample's, where there is one.
+  // Returns the optimised motion if the hypothesis was optimised, else that of the sample.
   std::optional<Hypothesis<Solver>> FindHypothesis(const HypothesisId& id) const {
     std::optional<Hypothesis<Solver>> hypothesis = search_.FindHypothesis(id);
     const auto found = optima_.find(id);
@@ -59,7 +59,7 @@ class OptimisingSearch {
   ReferenceSearch<Decision, Solver> search_;
   Optimise optimise_;
   RandomStream& rng_;
-  int most_inliers_ = 0;  // of one sample's motion
+  int most_inliers_ = 0;  // of any hypothesis before optimisation
   std::map<HypothesisId, Supported> optima_;
 };
 

@@ -7,12 +7,13 @@
 
 namespace rcme {
 
-// Beyond a million pixels nothing is an image coordinate, and products of four would overflow long after.
+// Bound that keeps products of four coordinates far from overflow; no image coordinate is larger.
 inline constexpr double kMaxCoordinatePx = 1e6;
 
-// What makes a problem unsolvable before any hypothesis is drawn: bad numbers (among them a
-// noise_scale of another length than the matches, and what FindPriorFault finds), fewer than `min_matches`
-// distinct matches, or points of one image on one line within the noise. Nothing: go ahead.
+// The refusal of a problem that no hypothesis can solve; nullopt if the search may begin. Reasons: invalid
+// numbers (including a noise_scale whose length differs from the number of matches, and faults found by
+// FindPriorFault), fewer than `min_matches` distinct matches, or all points of one image on one line within
+// the noise.
 std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int min_matches);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// A call of the RANSAC family: check, loop, refinement. The body of Estimate.
+// A call of the RANSAC family, the body of Estimate: check the problem, run the loop, refine the winner.
 #pragma once
 
 #include <concepts>
@@ -12,8 +12,9 @@
 
 namespace rcme {
 
-// Makes the hypotheses of one minimal solver (`search`), finds one of them again with its inliers, and holds
-// the matches for the refinement (`matches`): reference_engine.h or kernels/fast_engine.h.
+// An engine makes the hypotheses of one minimal solver (`search`), which can also reconstruct a hypothesis
+// and its inliers from its id, and holds the matches for the refinement (`matches`). There are two:
+// reference_engine.h and kernels/fast_engine.h.
 template <typename T>
 concept RansacEngine = requires(T engine, const HypothesisId& id) {
   requires HypothesisSolver<decltype(engine.search)> && HypothesisScorer<decltype(engine.search)>;
@@ -23,23 +24,23 @@ concept RansacEngine = requires(T engine, const HypothesisId& id) {
   { engine.search.FindSupport(id) } -> std::convertible_to<typename decltype(engine.matches)::Set>;
 };
 
-// What the loop says of a candidate.
+// The fields of an estimate that the loop knows of a candidate.
 MotionEstimate EstimateFromCandidate(const LoopCounts& counts, const Candidate& candidate);
 
-// Why the loop has no candidate.
+// The refusal if the loop found no candidate.
 MotionEstimate RefusalFromLoop(const LoopCounts& counts);
 
-// Refuses an estimate that explains too few of `num_matches`.
+// Refuses an estimate that explains less than options.least_explained_share of `num_matches`.
 void CheckExplainedShare(const RansacOptions& options, int num_matches, MotionEstimate* estimate);
 
-// The check before any hypothesis is drawn; a refusal, or nothing. The points of one image must not lie on
-// one line whatever the solver: the refinement moves all five degrees of freedom.
+// The check before any hypothesis is drawn: a refusal, or nullopt. It also refuses points of one image on one
+// line, whatever the solver, because the refinement moves all five degrees of freedom.
 template <RansacEngine Engine>
 std::optional<MotionEstimate> RefuseBeforeLoop(const MotionProblem& problem) {
   return RefuseUnsolvable(problem, Engine::Solver::kSampleSize);
 }
 
-// The estimate from one candidate, before others are looked at.
+// The estimate refined from one candidate.
 template <RansacEngine Engine>
 MotionEstimate RefineCandidate(Engine& engine, const RansacOptions& options, const LoopCounts& counts,
                                const Candidate& candidate) {
@@ -49,8 +50,8 @@ MotionEstimate RefineCandidate(Engine& engine, const RansacOptions& options, con
   return estimate;
 }
 
-// The winner refined, or of several candidates the one that explains most matches, the better one first at a
-// tie. `refine` makes the estimate from a candidate.
+// Refines the winner and the runners-up, and returns the estimate that explains most matches; of equal ones
+// the candidate with the better score. `refine` makes the estimate from a candidate.
 template <typename Refine>
 MotionEstimate FinishLoop(const RansacOptions& options, int num_matches, const LoopResult& loop,
                           const Refine& refine) {

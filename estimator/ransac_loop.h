@@ -1,8 +1,8 @@
-// Algorithm 1 of the paper: the one loop of standard, prcme, rcme and the variants of RANSAC.
+// Algorithm 1 of the paper: the loop of standard, prcme, rcme and the variants of RANSAC.
 //
-// The loop knows three parts. A solver draws samples and makes hypotheses of them, a scorer looks at all
-// matches, a decision accepts or refuses and chooses. Standard RANSAC accepts every inlier set and chooses
-// the largest (estimator/estimators/inlier_count.h):
+// The loop has three parts. A solver draws samples and makes hypotheses from them, a scorer scores each over
+// all matches, a decision accepts or refuses it and chooses the winner. Standard RANSAC accepts every inlier
+// set and chooses the largest (estimator/estimators/inlier_count.h):
 //
 //   struct InlierCountDecision {
 //     using PointTest = KnownPoseTest;
@@ -12,13 +12,13 @@
 //     DecidingScore deciding_score() const { return DecidingScore::kNumInliers; }
 //   };
 //
-// With one sample and one match at a time (estimator/ransac_estimate.h):
+// The call, with a search that is both solver and scorer (estimator/ransac_estimate.h):
 //
 //   const Decision decision(options, engine.search.thresholds());
 //   const LoopResult loop = RunRansacLoop(options, num_matches, engine.search, engine.search, decision);
 //
-// A search is solver and scorer in one: reference_search.h one hypothesis at a time, kernels/block_search.h
-// eight. The first two lines of the decision are for the searches (RansacDecision in reference_search.h).
+// There are two searches: reference_search.h makes one hypothesis at a time, kernels/block_search.h eight.
+// The first two lines of the decision are for the searches (RansacDecision in reference_search.h).
 #pragma once
 
 #include <concepts>
@@ -33,30 +33,30 @@ namespace rcme {
 
 enum class SampleVerdict {
   kDegenerate,    // the sample determines no motion, or no covariance of it
-  kInconsistent,  // it does not agree with the motion it made (eq::sample-p-test)
+  kInconsistent,  // the sample does not agree with its own motion (eq::sample-p-test)
   kConsistent,
 };
 
-// One model of a sample, or, degenerate, a sample without one.
+// One model of a sample; or, with verdict kDegenerate, a sample without a model.
 struct Proposal {
   HypothesisId id;
   SampleVerdict verdict = SampleVerdict::kDegenerate;
-  bool is_last = true;  // of the sample's models
+  bool is_last = true;  // the last model of its sample
 };
 
-// Makes the next hypothesis and tests it against its own sample.
+// Makes the next hypothesis and tests its sample against it.
 template <typename T>
 concept HypothesisSolver = requires(T solver) {
   { solver.Next() } -> std::same_as<Proposal>;
 };
 
-// Scores the hypothesis that the solver made last, which is consistent, on all matches.
+// Scores the solver's last hypothesis over all matches; the loop calls it only for consistent ones.
 template <typename T>
 concept HypothesisScorer = requires(T scorer) {
   { scorer.Score() } -> std::same_as<InlierScore>;
 };
 
-// Says whether an inlier set with this Z is good enough, and which number of a score selects the winner.
+// Decides whether an inlier set with this Z is good enough, and which field of a score selects the winner.
 template <typename T>
 concept LoopDecision = requires(const T decision, double z_statistic) {
   { decision.AcceptsInlierSet(z_statistic) } -> std::same_as<bool>;
@@ -65,15 +65,15 @@ concept LoopDecision = requires(const T decision, double z_statistic) {
 
 struct LoopResult {
   std::optional<Candidate> winner;    // nothing: the paper's "Fail"
-  std::vector<Candidate> runners_up;  // the next best, num_refined - 1 at most
+  std::vector<Candidate> runners_up;  // the next best, at most num_refined - 1
   LoopCounts counts;
 };
 
-// The winner among the candidates, and what is known of the loop only at its end.
+// Chooses the winner and the runners-up, and completes the counts.
 LoopResult SelectWinner(const CandidateSet& candidates, const RansacOptions& options, DecidingScore decides,
                         const LoopCounts& counts);
 
-// No heap allocation per hypothesis or match, as long as at most 4096 hypotheses pass the tests.
+// Runs the loop. No heap allocation per hypothesis or match while at most 4096 hypotheses pass the tests.
 template <HypothesisSolver Solver, HypothesisScorer Scorer, LoopDecision Decision>
 LoopResult RunRansacLoop(const RansacOptions& options, int num_matches, Solver& solver, Scorer& scorer,
                          const Decision& decision) {
@@ -101,7 +101,7 @@ LoopResult RunRansacLoop(const RansacOptions& options, int num_matches, Solver& 
       continue;
     }
     candidates.Add(candidate);  // update C (eq::candidate-set)
-    // Sec. early-terminate; a bound that is not a number never stops.
+    // Sec. early-terminate; a bound of NaN never stops the loop.
     const bool is_certain = candidate.score.mean_entropy <= options.early_stop_entropy;
     may_stop = is_certain && candidates.MeetsSizeCondition(candidate);
   }

@@ -5,8 +5,8 @@
 
 namespace rcme {
 
-// `implementation: reference`, all of it one sample and one match at a time: the oracle of
-// kernels/fast_engine.h, with no code of the kernels in it. See ransac_estimate.h.
+// `implementation: reference`, an engine (ransac_estimate.h) that works on one sample and one match at a
+// time. It is the oracle of kernels/fast_engine.h and shares no code with the kernels.
 template <RansacDecision Decision, typename SolverT>
 struct ReferenceEngine {
   using Solver = SolverT;

@@ -8,8 +8,8 @@
 
 namespace rcme {
 
-// Sets of matches as ascending indices, looked at one by one; see refine_winner.h. Shares no code with the
-// kernels.
+// Sets of matches as ascending indices, processed one by one; a model of MatchSets (refine_winner.h). Shares
+// no code with the kernels.
 class ReferenceMatches {
  public:
   using Set = std::vector<int>;
@@ -24,7 +24,7 @@ class ReferenceMatches {
   int CountConsistent(const Set& set, const RelativePose& pose, double threshold) const;
   RotationEquations LinearizeRotation(const Set& set, const Eigen::Matrix3d& R, Loss loss) const;
   Set FindRotated(const Eigen::Matrix3d& R, double threshold) const;
-  // All: the reference fits a rotation always.
+  // The trivial bound, all matches: the reference always fits a rotation.
   int BoundRotated(double) const { return static_cast<int>(problem_.matches.size()); }
   double ChanceOfAgreement(const RelativePose& pose, double threshold) const;
   Eigen::Matrix2d SumDirectionNoise(const Set& set, const RelativePose& pose,

@@ -1,5 +1,5 @@
-// The parts of the hypothesis loop in their simplest form: one sample, one match at a time. The oracle of
-// kernels/block_search.h.
+// The solver and the scorer of the loop in their simplest form, one sample and one match at a time: the
+// oracle of kernels/block_search.h.
 #pragma once
 
 #include <algorithm>
@@ -14,12 +14,12 @@
 
 namespace rcme {
 
-// Whether the matches of the sample are left out of the score: "the rest of the inputs" (Sec. Find inliers),
-// where the model fits them by construction and the score of that means nothing.
+// Whether the score leaves out the matches of the sample, "the rest of the inputs" (Sec. Find inliers). It
+// does so if the model fits them by construction and the score of an exact fit is meaningless.
 template <typename Solver, typename PointTest>
 inline constexpr bool kScoresTheRest = Solver::kSampleTestDof == 0 && !PointTest::kScoresExactFits;
 
-// Inliers and their scores, all matches but those `left_out` (eq::find-inlier, eq::score-inliers).
+// Inliers and their scores over all matches except `left_out` (eq::find-inlier, eq::score-inliers).
 template <typename PointTest>
 InlierScore ScoreInliers(const MotionProblem& problem, const PointTest& test, const Thresholds& thresholds,
                          const Sample& left_out = {}) {
@@ -36,14 +36,14 @@ InlierScore ScoreInliers(const MotionProblem& problem, const PointTest& test, co
   return score;
 }
 
-// A decision may score all squared distances of a hypothesis together (robust_scores.h): `RobustScore`, whose
-// cost takes the place of the likelihood.
+// A decision may define `RobustScore`, which scores all squared distances of a hypothesis together
+// (robust_scores.h). Its cost takes the place of the negative log-likelihood.
 template <typename T>
 concept HasRobustScore = requires {
   typename T::RobustScore;
 };
 
-// Inliers, and the robust score of all squared distances together. `distances` is room for them.
+// Inliers, and the robust score of all squared distances. `distances` is scratch memory.
 template <HasRobustScore Decision>
 InlierScore ScoreDistances(const MotionProblem& problem, const typename Decision::PointTest& test,
                            const Thresholds& thresholds, std::vector<double>* distances) {
@@ -58,9 +58,9 @@ InlierScore ScoreDistances(const MotionProblem& problem, const typename Decision
   return score;
 }
 
-// What a search needs to know of a decision, beside what the loop asks it: whether a match is an inlier and
-// with what entropy (point_consistency.h), and whether the sample is tested (eq::sample-p-test) where the
-// solver's kSampleTestDof > 0. Where it is, the reference asks
+// What a search needs from a decision beside the loop's LoopDecision: the point test that finds inliers and
+// their entropies (point_consistency.h), and whether to test the sample (eq::sample-p-test) if the solver's
+// kSampleTestDof > 0. If it does, the reference calls
 //
 //   static bool SampleIsConsistent(problem, hypothesis, point_test, thresholds);
 template <typename T>
@@ -113,7 +113,7 @@ class ReferenceSearch {
     return ScoreInliers(problem_, *test_, thresholds_);
   }
 
-  // Of the last proposal, which is not degenerate.
+  // The hypothesis of the last proposal, which must not be degenerate.
   const Hypothesis<Solver>& LastHypothesis() const { return hypotheses_.models[static_cast<size_t>(model_)]; }
 
   std::optional<Hypothesis<Solver>> FindHypothesis(const HypothesisId& id) const {
@@ -134,7 +134,7 @@ class ReferenceSearch {
   }
 
  private:
-  // Sigma_p propagated and the point test built on it; nothing if the covariance is not finite.
+  // Propagates Sigma_p and builds the point test on it; nullopt if the covariance is not finite.
   std::optional<PointTest> MakePointTest(Hypothesis<Solver>* hypothesis) const {
     if constexpr (!PointTest::kNeedsCovariance) {
       return PointTest(hypothesis->F, problem_.sigma_px);
@@ -152,7 +152,7 @@ class ReferenceSearch {
   ModelList<Hypothesis<Solver>, Solver::kMaxModels> hypotheses_;  // of the last sample
   int model_ = 0;                                                 // of the last proposal
   std::optional<PointTest> test_;
-  std::vector<double> distances_;  // of the last proposal, where they are scored together
+  std::vector<double> distances_;  // scratch memory of ScoreDistances
 };
 
 }  // namespace rcme

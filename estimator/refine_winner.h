@@ -1,6 +1,6 @@
-// Box 4 of the paper: from the winner of the loop and its inlier set to the estimate.
+// Box 4 of the paper: refines the winner of the loop over its inlier set.
 //
-// Written once for two ways to hold a set of matches and to sum over it, the models of MatchSets:
+// The code is written once for the two models of MatchSets, which hold a set of matches and sum over it:
 // reference_matches.h (one match at a time) and kernels/block_matches.h (many at a time).
 #pragma once
 
@@ -20,7 +20,7 @@
 
 namespace rcme {
 
-// Most refits after the robust fit; the fit set is nearly always stable after two or three.
+// Maximum number of refits after the robust fit; the fit set is nearly always stable after two or three.
 inline constexpr int kMaxRefits = 10;
 
 template <typename T>
@@ -32,16 +32,16 @@ concept MatchSets = requires(const T matches, const typename T::Set& set, const 
   { matches.problem() } -> std::same_as<const MotionProblem&>;
   { matches.SelectPose(projection, set) } -> std::same_as<RelativePose>;  // cheirality
   { matches.Refine(set, pose, loss) } -> std::same_as<RefinedMotion>;
-  // refinement/fit_set.h; `set` holds the matches that the motion was fitted to.
+  // See refinement/fit_set.h; `set` holds the matches that the motion was fitted to.
   { matches.FindAgreeing(motion, set, significance_level) } -> std::same_as<typename T::Set>;
   { matches.SelectFitSet(motion, set) } -> std::same_as<typename T::Set>;
-  // Of all matches: squared Sampson distance over sigma^2 at most the threshold; and how many of a set.
+  // The matches, of all or of a set, with squared Sampson distance over sigma^2 at most the threshold.
   { matches.FindConsistent(pose, threshold) } -> std::same_as<typename T::Set>;
   { matches.CountConsistent(set, pose, threshold) } -> std::same_as<int>;
   // refinement/rotation_equations.h
   { matches.LinearizeRotation(set, R, loss) } -> std::same_as<RotationEquations>;
   { matches.FindRotated(R, threshold) } -> std::same_as<typename T::Set>;
-  { matches.BoundRotated(threshold) } -> std::same_as<int>;  // at least the number for any R
+  { matches.BoundRotated(threshold) } -> std::same_as<int>;  // upper bound of the number for any R
   // motion_chance.h, observability.h
   { matches.ChanceOfAgreement(pose, threshold) } -> std::same_as<double>;
   { matches.SumDirectionNoise(set, pose, direction_cov) } -> std::same_as<Eigen::Matrix2d>;
@@ -59,9 +59,8 @@ struct Fit {
   typename Matches::Set fitted;
 };
 
-// Cheirality was decided at the hypothesis, which may be so far off that most matches seemed to lie in front
-// of the cameras for the wrong one of the four motions of E. Decided again at the optimum; E is the same for
-// all four.
+// Decides cheirality again at the optimum. The hypothesis may have been so inaccurate that for the wrong one
+// of the four motions of E most matches seemed to lie in front of the cameras. All four have the same E.
 template <MatchSets Matches>
 RefinedMotion DecideCheiralityAgain(const Matches& matches, const typename Matches::Set& support,
                                     const RefinedMotion& motion) {
@@ -71,9 +70,9 @@ RefinedMotion DecideCheiralityAgain(const Matches& matches, const typename Match
   return is_same ? motion : matches.Refine(support, chosen, Loss::kCauchy);
 }
 
-// From the support to the matches that agree. Five matches determine a motion exactly: their residuals and
-// the variances of these are zero, rounding would decide whether they agree, and nothing speaks for the
-// motion.
+// Fits the motion to the support robustly, then to the matches that agree. It does not converge on five
+// matches or fewer: they determine a motion exactly, their residuals and variances are zero, and only
+// rounding would decide whether they agree.
 template <MatchSets Matches>
 Fit<Matches> FitRobustly(const Matches& matches, const typename Matches::Set& support,
                          const RelativePose& start) {
@@ -113,16 +112,16 @@ Fit<Matches> Refine(const Matches& matches, Refinement refinement, Hypothesis<So
 std::string DivergenceMessage(int num_support, int num_fitted);
 std::string SuccessMessage(int num_inliers, int num_matches);
 
-// Refines the winner's motion over its inlier set `support`, and fills motion, covariance, final inliers, the
+// Refines the winner's motion over its inlier set `support`; fills motion, covariance, final inliers, the
 // kappa flag and the status. The final inliers are the matches that agree with the refined motion
-// (rank-aware, its covariance included). Whatever the minimal solver, the refinement moves all five degrees
-// of freedom; without one, motion and covariance are the hypothesis's own.
+// (rank-aware, with its covariance). The refinement moves all five degrees of freedom, whatever the minimal
+// solver. Without refinement, motion and covariance are the hypothesis's own.
 template <MatchSets Matches, typename Solver>
 void RefineWinner(const Matches& matches, const RansacOptions& options,
                   const std::optional<Hypothesis<Solver>>& hypothesis, const typename Matches::Set& support,
                   MotionEstimate* estimate) {
-  if (!hypothesis) {  // on the border of what has a model: the loop's arithmetic found one, this one does
-                      // not
+  // A nearly degenerate sample: the fast loop found a model, the reference arithmetic does not.
+  if (!hypothesis) {
     estimate->status = MotionStatus::kRefinementDiverged;
     estimate->message = "the selected sample is degenerate within rounding error";
     return;

@@ -1,5 +1,5 @@
-// Scores of a hypothesis that look at how well it explains the matches, not only at how many. Each takes e^2
-// of all matches, squared Sampson distances over sigma^2, and gives a cost: the least wins.
+// Scores of a hypothesis by how well, not only how many, matches fit it. Each maps e^2 of all matches, the
+// squared Sampson distances over sigma^2, to a cost; the smallest cost wins.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,7 @@
 namespace rcme {
 
 // MSAC (Torr & Zisserman 2000, "MLESAC", section 4): sum rho(e^2), rho(e^2) = e^2 within the threshold T^2 of
-// the inlier test, T^2 beyond. Of an inlier what RANSAC's count leaves out, of an outlier what it costs
-// there.
+// the inlier test, T^2 beyond it.
 struct MsacScore {
   static double Cost(std::span<const double> squared_distances, const Thresholds& thresholds) {
     double cost = 0.0;
@@ -26,9 +25,9 @@ struct MsacScore {
 //
 //   - sum ln( gamma phi(e) + (1 - gamma) / v ),   phi(e) = exp(-e^2 / 2) / sqrt(2 pi),
 //
-// errors in units of sigma; v is the range in which a wrong match may lie, the diagonal of image 2. The share
-// gamma of right matches is estimated for each hypothesis by expectation maximisation, from 1/2 on:
-// the next gamma is the mean of the probabilities gamma phi / (gamma phi + (1 - gamma) / v).
+// with errors in units of sigma and v the range of the error of a wrong match, the diagonal of image 2.
+// Expectation maximisation estimates the inlier share gamma for each hypothesis, starting at 1/2: the next
+// gamma is the mean of the probabilities gamma phi / (gamma phi + (1 - gamma) / v).
 struct MlesacScore {
   static constexpr int kNumSteps = 3;  // "two or three iterations"
 

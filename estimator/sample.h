@@ -9,10 +9,9 @@ namespace rcme {
 
 class RandomStream;
 
-inline constexpr int kMaxSampleSize = 8;  // of all minimal solvers
+inline constexpr int kMaxSampleSize = 8;  // the largest of all minimal solvers
 
-// S_j (eq::minimal_sample_set): the indices of distinct matches, as many as the minimal solver takes. No
-// heap.
+// S_j (eq::minimal_sample_set): the distinct indices of the matches of a minimal sample. No heap allocation.
 class Sample {
  public:
   constexpr Sample() = default;
@@ -37,10 +36,10 @@ class Sample {
   int size_ = 0;
 };
 
-// `size` distinct indices below n, every set equally likely; n >= size.
+// `size` distinct indices below n, uniform over all sets; n >= size.
 Sample DrawSample(int size, int n, RandomStream& rng);
 
-// What identifies a hypothesis among those of a problem: the sample, and which of the solver's models of it.
+// Identifies a hypothesis of a problem: its sample, and its number among the solver's models of that sample.
 struct HypothesisId {
   Sample sample;
   int model = 0;  // 0, 1, ... in the solver's order

@@ -1,4 +1,4 @@
-// Judges a motion that no sample made; see LoopInspection::ScoreMotion.
+// Scores a given motion that does not come from a sample; see LoopInspection::ScoreMotion.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace rcme {
 
-// The point test of a motion with its covariance, as of a hypothesis. Nothing if the covariance is not finite
-// and positive semi-definite.
+// The point test of a motion with its covariance, as for a hypothesis. nullopt if the covariance is not
+// finite and positive semi-definite.
 template <typename PointTest>
 std::optional<PointTest> MakePointTest(const MotionProblem& problem, const RelativePose& pose,
                                        const Matrix5d& pose_cov) {
