@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// RANSAC (Fischler & Bolles 1981): motions taken as exact, no test of samples or inlier sets, most inliers
-// win.
+// RANSAC (Fischler & Bolles 1981): takes each motion as exact, tests neither samples nor inlier sets, and
+// selects the motion with the most inliers.
 struct InlierCountDecision {
   using PointTest = KnownPoseTest;
   static constexpr bool kTestsSample = false;

@@ -29,8 +29,8 @@ struct ByUncertainty {
   }
 };
 
-// Its loop cannot be inspected: what an optimisation finds hangs on the samples before it, so that a
-// hypothesis cannot be made again from its sample alone.
+// The loop cannot be inspected: the result of an optimisation depends on the samples drawn before, so a
+// hypothesis cannot be reconstructed from its sample alone.
 template <typename Optimise>
 class LocalRansac : public MotionEstimator {
  public:

@@ -6,14 +6,14 @@
 
 namespace rcme {
 
-// `standard` whose so-far-best hypotheses are optimised inside the loop (local_optimisation.h), and whose
-// winner is refined as everybody's. Options of `standard` but the implementation, since there is one, that of
-// the reference, and the refinement, which is robust; and
+// `standard` with local optimisation of each new best hypothesis inside the loop (local_optimisation.h).
+// Options: those of `standard` except the implementation (always the reference) and the refinement (always
+// robust); and
 //
 //   inner_samples, inner_refits, inner_first_threshold   InnerRansac
 std::unique_ptr<EstimatorModel> LoRansacModel();
 
-//   progressive_refits                                   of OptimiseByUncertainty
+//   progressive_refits                                   num_refits of OptimiseByUncertainty
 std::unique_ptr<EstimatorModel> CovRansacModel();
 
 }  // namespace rcme

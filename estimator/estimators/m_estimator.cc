@@ -15,7 +15,7 @@
 namespace rcme {
 namespace {
 
-// What MSAC does before the refinement, and nothing that refuses a motion.
+// MSAC without refinement, and without any test that could refuse its motion.
 RansacOptions OptionsOfStart(RansacOptions options) {
   options.refinement = Refinement::kNone;
   options.least_explained_share = 0.0;
@@ -23,7 +23,7 @@ RansacOptions OptionsOfStart(RansacOptions options) {
   return options;
 }
 
-// The matches that an M-estimation has fitted: those that it does not weigh as outliers.
+// The matches to which an M-estimation has fitted the motion: those within the tuning constant.
 std::vector<int> FindFitted(const MotionProblem& problem, const RelativePose& pose,
                             const MEstimation& options) {
   const double c = options.TuningConstantOrDefault();
@@ -64,7 +64,8 @@ class MEstimator : public MotionEstimator {
   }
 
  private:
-  // Which of the four motions of E was decided at the hypothesis; the cost is the same for all four.
+  // Repeats the M-estimation if cheirality, decided again at the optimum, selects another of the four motions
+  // of E. The cost is the same for all four.
   RefinedMotion Refine(const ReferenceMatches& matches, const RelativePose& start) const {
     const MotionProblem& problem = matches.problem();
     const RefinedMotion motion = RefineByMEstimation(problem, start, estimation_);

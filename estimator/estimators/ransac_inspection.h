@@ -33,7 +33,7 @@ class RansacInspection : public LoopInspection {
       if (std::optional<MotionEstimate> refusal = RefuseBeforeLoop<Engine>(problem)) return *refusal;
     }
     RandomStream no_samples({0, 0, 0, 0});
-    std::optional<Engine> engine;  // made when the first refinement is missing
+    std::optional<Engine> engine;  // made when a refinement is missing
     const auto refine = [&](const Candidate& candidate) {
       const auto known = refinements->find(candidate.id);
       if (known == refinements->end()) {
@@ -41,7 +41,7 @@ class RansacInspection : public LoopInspection {
         return (*refinements)[candidate.id] = RefineCandidate(*engine, options_, loop.counts, candidate);
       }
       MotionEstimate estimate = known->second;
-      estimate.counts = loop.counts;  // these two depend on how the loop decided
+      estimate.counts = loop.counts;  // these two depend on the loop's decisions
       estimate.z_statistic = candidate.z_statistic;
       return estimate;
     };

@@ -12,12 +12,13 @@
 
 namespace rcme {
 
-// An estimator of the RANSAC family with its options, of which each shows those that have an effect on it.
+// The model of an estimator of the RANSAC family. Each shows only the options that have an effect on it.
 class RansacModel : public EstimatorModel {
  public:
   void LiftLimits() final {
     options_.mu = kNoQualityTest;
-    options_.inlier_ratio = std::numeric_limits<double>::quiet_NaN();  // inferred: the largest set is enough
+    options_.inlier_ratio = std::numeric_limits<double>::quiet_NaN();  // inferred: the largest inlier set
+                                                                       // always meets the condition
     options_.least_explained_share = 0.0;
   }
   std::optional<Effort> EffortOption() const final {
@@ -28,12 +29,12 @@ class RansacModel : public EstimatorModel {
   RansacOptions options_;
 };
 
-// One without entropies, whose tests of the refined motion are off by default, as the methods of the
-// literature have none.
+// The model of an estimator without entropies. The tests of the refined motion are off by default, as the
+// methods in the literature have none.
 class PlainRansacModel : public RansacModel {
  protected:
   PlainRansacModel() { options_.observability_significance_level = options_.chance_significance_level = 1.0; }
-  // The options of such estimators but those named.
+  // The options of these estimators except those named.
   std::vector<Parameter> ParametersWithout(const std::vector<std::string>& names) {
     std::vector<Parameter> all = rcme::Parameters(options_);
     for (Parameter& level : MotionTestParameters(options_, /*depend_on_reading=*/false)) {

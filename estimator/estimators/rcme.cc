@@ -7,7 +7,7 @@
 namespace rcme {
 namespace {
 
-// Each sample point on its own, as printed (eq::sample-p-test).
+// Tests each sample point on its own, as printed (eq::sample-p-test).
 struct PerPointSampleTest {
   static constexpr bool kTestsSample = true;
   template <typename Solver>
@@ -17,7 +17,7 @@ struct PerPointSampleTest {
   }
 };
 
-// What the sample has of constraints beyond the motion's five, jointly, rank-aware.
+// Rank-aware: tests the constraints that the sample has beyond the motion's five jointly.
 struct JointSampleTest {
   static constexpr bool kTestsSample = true;
   template <typename Solver>

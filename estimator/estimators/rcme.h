@@ -9,8 +9,8 @@ namespace rcme {
 
 enum class SampleTest { kOn, kOff };
 
-// RCME, and pRCME: the same without the test of the model against its sample; then sample_significance_level
-// is no option.
+// RCME, or with SampleTest::kOff pRCME: RCME without the test of a model against its sample, and without the
+// option sample_significance_level.
 std::unique_ptr<EstimatorModel> RcmeModel(SampleTest sample_test);
 
 // The same from options in the code. Throws InputError if they contradict each other.

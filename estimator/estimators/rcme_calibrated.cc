@@ -30,11 +30,11 @@ namespace rcme {
 namespace {
 
 constexpr double kNegligibleWeight = 1e-5;
-// Of a mode whose observed curvature is not worth ten passes over the matches.
+// Modes below this weight use the Gauss-Newton Hessian: the observed one costs ten passes over the matches.
 constexpr double kSmallWeight = 0.01;
-constexpr double kNotableWeight = 1e-4;  // of a mode that is reported
+constexpr double kNotableWeight = 1e-4;  // modes below this weight are not reported
 
-// The matches in an order that means nothing: order[i] is the index of the i-th.
+// The problem with its matches in random order; (*order)[i] is the original index of match i.
 MotionProblem Shuffled(const MotionProblem& problem, RandomStream& rng, std::vector<int>* order) {
   order->resize(problem.matches.size());
   std::iota(order->begin(), order->end(), 0);
@@ -48,16 +48,16 @@ MixturePrior MakePrior(const MotionProblem& problem, const CalibratedOptions& op
           problem.prior ? &*problem.prior : nullptr};
 }
 
-// What an estimate is made of.
+// The intermediate results of an estimate.
 struct Workings {
-  MotionProblem problem;  // its matches in the order that masks and lists of the modes have
+  MotionProblem problem;  // its matches in the order that the modes use
   std::vector<ExplainedMode> modes;
   ModeWeights weights;
   std::optional<double> direction_mass;
   CheckedVerdict checked;
 };
 
-// Adds the optimum that is reached from a mode, unless it is known.
+// Adds the optimum reached from a mode, unless it is in the list.
 void AddOptimumFrom(Mode mode, const MatchBlocks& matches, const MixturePrior& prior,
                     std::vector<ExplainedMode>* modes) {
   constexpr int kSteps = 20;
@@ -67,8 +67,8 @@ void AddOptimumFrom(Mode mode, const MatchBlocks& matches, const MixturePrior& p
   if (!is_known) modes->push_back({mode, Explain(matches, mode)});
 }
 
-// Of a motion whose direction may be any of these cells: the rotation's second moment about the centre, and
-// of the direction that nothing is known.
+// The covariance of a motion whose direction may be in any of these cells: the second moment of the rotation
+// about the centre, and pi^2 I for the direction, of which nothing is known.
 Matrix5d SpreadOverCells(const std::vector<DirectionCell>& cells) {
   Matrix5d spread = Matrix5d::Zero();
   for (const DirectionCell& cell : cells)
@@ -78,7 +78,7 @@ Matrix5d SpreadOverCells(const std::vector<DirectionCell>& cells) {
   return spread;
 }
 
-// The sandwich of a mode as if it were an optimum of the matches alone.
+// The sandwich covariance of a mode from the matches alone, without the prior.
 Matrix5d OwnCovarianceOfMatches(const MatchBlocks& matches, const MixturePrior& prior, Mode mode) {
   mode.hessian = FindMatchInformation(prior.motion, mode);
   mode.inverse_hessian = mode.hessian.inverse();
@@ -95,7 +95,7 @@ void FillMotion(const ExplainedMode& answer, const Verdict& verdict, double assu
   estimate->sigma_estimated_px = assumed_sigma_px * mixture.scale / mixture.noise.scale_of_gaussian;
 }
 
-// `order`: see Shuffled.
+// `order` is that of Shuffled.
 void FillMatches(const Explanation& explanation, const std::vector<int>& order, MotionEstimate* estimate) {
   estimate->inlier_probabilities.resize(order.size());
   double num_right = 0.0;
@@ -107,7 +107,7 @@ void FillMatches(const Explanation& explanation, const std::vector<int>& order, 
   }
   std::ranges::sort(estimate->inliers);
   estimate->num_support = estimate->num_explained = static_cast<int>(estimate->inliers.size());
-  // Of a variance from k degrees of freedom, 2 sigma^4 / k.
+  // A variance estimated with k degrees of freedom has variance 2 sigma^4 / k.
   const double freedom = std::max(num_right - 5.0, 1.0);
   estimate->sigma_estimated_sd_px = estimate->sigma_estimated_px / std::sqrt(2.0 * freedom);
 }
@@ -177,8 +177,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   }
 
  private:
-  // Estimate; `workings` and `posterior`, where they are given, are what it is made of. A prior that the
-  // answer of the matches alone contradicts (prior_check.h) is left out.
+  // Estimate. Leaves out a prior that the matches contradict (prior_check.h). `workings` and `posterior` may
+  // be null; otherwise they receive the intermediate results and the posterior.
   MotionEstimate EstimateAndTell(const MotionProblem& problem, RandomStream& rng, Workings* workings,
                                  std::optional<MotionPosterior>* posterior) const {
     if (!problem.prior || RefuseUnsolvable(problem, 6))
@@ -205,8 +205,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     return estimate;
   }
 
-  // The motions that the matches alone leave: those that were found without the prior, and the optimum of the
-  // matches near the answer with it, which the search without it may have missed.
+  // The motions that are possible from the matches alone: those found without the prior, and the optimum of
+  // the matches near the answer with the prior, which the search without it may have missed.
   std::vector<MotionBelief> ListBeliefs(const Workings& of_matches, const Workings& of_both) const {
     const MotionProblem& problem = of_matches.problem;
     const MatchBlocks matches(problem);
@@ -228,7 +228,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     return beliefs;
   }
 
-  // Estimate by the matches and the prior that the problem has.
+  // Estimate from the matches and the problem's prior, unchecked.
   MotionEstimate EstimateOnce(const MotionProblem& problem, RandomStream& rng, Workings* workings,
                               std::optional<MotionPosterior>* posterior) const {
     if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, 6)) return *refusal;
@@ -321,7 +321,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
                                                    : ProbabilityDomain::kExtrapolated;
   }
 
-  // `spreads`: per mode, see Judge. A covariance that is not of the modes (kRobust) is the whole answer's.
+  // `spreads` of each mode: see Judge. With CovarianceKind::kRobust the covariance is not computed per mode:
+  // the estimate's is used for the whole answer.
   MotionPosterior BuildPosterior(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
                                  const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
                                  bool is_direction_weak, const MotionEstimate& estimate) const {
@@ -343,9 +344,9 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
                                std::move(components), std::move(cells));
   }
 
-  // The covariance is the second moment, about the answer, of the modes within the bounds. `spreads`, where
-  // it is given: per mode its covariance, or how far its likelihood reaches if it is beyond the bounds; zero
-  // where the weight is negligible.
+  // Computes failure probability and covariance. The covariance is the second moment, about the answer, of
+  // the modes within the bounds. `spreads`, if not null, receives one matrix per mode: its covariance within
+  // the bounds, the reach of its likelihood beyond them, zero if the weight is negligible.
   Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
                 const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
                 const std::optional<double>& direction_mass, const ModelCheck& check, RandomStream& rng,
@@ -361,8 +362,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (weight < kNegligibleWeight && i != weights.answer) continue;
       const bool is_exact = weight > kSmallWeight || i == weights.answer;
       const Matrix5d curvature = is_exact ? InverseOfObserved(matches, mode, prior) : mode.inverse_hessian;
-      // Along a direction that the noise seems to determine (the observed curvature is below that of the
-      // residuals' first derivatives), the score varies as the latter says: H_obs^-1 H H_obs^-1.
+      // Along a direction that the noise seems to determine, the observed curvature is below that from the
+      // residuals' first derivatives. The score varies as the latter says: H_obs^-1 H H_obs^-1.
       const Matrix5d reach = curvature * mode.hessian * curvature;
       success += weight * (direction_mass && !weights.is_second_motion[i]
                                ? *direction_mass
@@ -384,14 +385,14 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mode,
                              const Matrix5d& curvature, const ModelCheck& check,
                              const MixturePrior& prior) const {
-    Matrix5d of_prior = Matrix5d::Zero();  // the inverse information has both
+    Matrix5d of_prior = Matrix5d::Zero();  // the inverse information includes the prior
     Matrix5d of_matches = options_.covariance == CovarianceKind::kInformation
                               ? mode.mode.inverse_hessian
                               : SandwichCovariance(mode.mode, mode.explanation, curvature);
     if (prior.motion != nullptr && options_.covariance != CovarianceKind::kInformation)
       of_prior = PriorCovariance(mode.mode, prior, curvature);
     if (options_.covariance == CovarianceKind::kRobust)
-      return of_matches + of_prior;  // adds what is shared to the whole
+      return of_matches + of_prior;  // MakeCovarianceRobust adds the shared errors
     if (options_.covariance == CovarianceKind::kSandwich && options_.leave_out != CalibratedStep::kModelCheck)
       of_matches *= CovarianceFactor(check);
     return of_matches + of_prior + IntrinsicsCovariance(problem, options_, mode.mode, curvature);

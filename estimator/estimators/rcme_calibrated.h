@@ -1,25 +1,23 @@
-// rcme_calibrated: RCME with what its propagated uncertainty is for, the probability that the answer is
-// wrong.
+// rcme_calibrated: an RCME that uses its propagated uncertainty to state the probability that its answer is
+// wrong. The steps:
 //
-//   0  prior         motion_prior.h                    of the motion, if the problem has one: in all steps
-//                    calibrated/prior_check.h          left out where the matches contradict it
+//   0  prior         motion_prior.h                    of the motion, if the problem has one; for all steps
+//                    calibrated/prior_check.h          not used if the matches contradict it
 //   1  hypotheses    calibrated/hypothesis_search.h    five-point samples, ranked by a soft score
 //   2  modes         calibrated/candidates.h           optima of a mixture likelihood (mixture_fit.h)
 //                    calibrated/split_mode.h           two motions in place of a compromise between them
-//   3  influence     calibrated/influence.h            without matches that decide by themselves, mostly
-//   wrong
-//                    calibrated/leverage_branches.h    fits without single ones of large influence that are
-//                    left
-//   4  twisted pair  calibrated/twisted_pair.h         the other motion of a plane; every mode the other way
-//   5  contrast      calibrated/contrast.h             which of two modes explains more where they differ
-//   6  odds          calibrated/mode_weights.h         of the other modes, a second motion, no motion
-//                    calibrated/noise_choice.h         the answer's tails: five degrees of freedom or fifteen
+//   3  influence     calibrated/influence.h            discounts matches that determine a motion alone
+//                    calibrated/leverage_branches.h    adds fits without single matches of large influence
+//   4  twisted pair  calibrated/twisted_pair.h         adds the other motion of a plane, opposite directions
+//   5  contrast      calibrated/contrast.h             compares two modes on matches where they differ
+//   6  odds          calibrated/mode_weights.h         of the modes, a second motion, and no motion
+//                    calibrated/noise_choice.h         tails of the answer's noise: Student's t, 5 or 15 dof
 //   7  P(fail)       calibrated/failure_probability.h  the mass of all modes beyond the failure bounds
-//                    calibrated/settle_direction.h     where the parallax is hardly more than the noise
-//                    calibrated/model_check.h          whether the matches are as the model has them
-//                    calibrated/checked_probability.h  what that makes of the mass and the covariance
+//                    calibrated/settle_direction.h     the direction if parallax hardly exceeds the noise
+//                    calibrated/model_check.h          how far the matches fit the assumptions
+//                    calibrated/checked_probability.h  corrects P(fail) and covariance by this check
 //   8  covariance    calibrated/mode_covariance.h      of the modes within the bounds
-//   9  posterior     calibrated/motion_posterior.h     all of this as one distribution, where it is asked for
+//   9  posterior     calibrated/motion_posterior.h     all of this as one distribution, on request
 #pragma once
 
 #include <memory>
@@ -34,7 +32,7 @@
 
 namespace rcme {
 
-// A motion that explains the matches, with the probability that the estimator gives it.
+// A motion that explains the matches, with its probability.
 struct WeighedMotion {
   RelativePose cam2_from_cam1;
   double weight = 0.0;
@@ -42,34 +40,34 @@ struct WeighedMotion {
   bool is_answer = false;
 };
 
-// What the probability of failure of an answer is made of.
+// The parts of the failure probability of an answer.
 struct CheckedVerdict {
   ModelCheck check;
-  double by_modes = 1.0;  // the probability by the modes alone, before the check
+  double by_modes = 1.0;  // failure probability from the modes alone, before the check
 };
 
-// The inspection of rcme_calibrated: its weights taken apart from its search, its probability from the check.
-// Estimate never asks it.
+// Access to the stages of rcme_calibrated: weights without the search, probability before the check. Estimate
+// does not use it.
 class WeightInspection {
  public:
   virtual ~WeightInspection() = default;
-  // What it would make of these motions, had its search found them and nothing else: the optima that are
-  // reached from them, and the others that follow from these (steps 3 to 6). A prior of the motion counts
-  // unchecked.
+  // The weighed motions if the search had found exactly `starts`: the optima reached from them, and those
+  // that steps 3 to 6 add. The prior of the motion is used unchecked.
   virtual std::vector<WeighedMotion> WeighMotions(const MotionProblem& problem,
                                                   const std::vector<RelativePose>& starts) const = 0;
-  // Estimate, and what its probability is made of; that stays as it is where there is no motion.
+  // Estimate, and the parts of its failure probability; *verdict stays unchanged if there is no motion.
   virtual MotionEstimate EstimateChecked(const MotionProblem& problem, RandomStream& rng,
                                          CheckedVerdict* verdict) const = 0;
-  // The modes that Estimate weighs (steps 1 to 4); none where it refuses before.
+  // The modes that Estimate weighs (steps 1 to 4); empty if it refuses earlier.
   virtual std::vector<ExplainedMode> ListModes(const MotionProblem& problem, RandomStream& rng) const = 0;
-  // Estimate, and the distribution that its motion, covariance and probability belong to; nothing where there
-  // is no motion. Takes some milliseconds more, up to a tenth of a second where the answer is narrowed.
+  // Estimate, and the distribution from which its motion, covariance and probability are computed; nullopt if
+  // there is no motion. Takes a few milliseconds more than Estimate, up to 0.1 s if the answer is narrowed
+  // (motion_posterior.h).
   virtual MotionEstimate EstimateWithPosterior(const MotionProblem& problem, RandomStream& rng,
                                                std::optional<MotionPosterior>* posterior) const = 0;
 };
 
-// The inspection of the estimator's weights, which lives as long as the estimator; null if there is none.
+// The WeightInspection of an estimator, valid as long as the estimator lives; null if it has none.
 inline const WeightInspection* FindWeightInspection(const MotionEstimator& estimator) {
   return dynamic_cast<const WeightInspection*>(&estimator);
 }

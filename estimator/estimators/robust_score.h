@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// `standard` with another score in the loop (robust_scores.h): its options but the implementation, since
-// there is one, that of the reference.
+// `standard` with another score in the loop (robust_scores.h). Options: those of `standard` except the
+// implementation, which is always the reference.
 std::unique_ptr<EstimatorModel> MsacModel();
 std::unique_ptr<EstimatorModel> MlesacModel();
 

@@ -15,7 +15,8 @@ std::optional<LinearModel> EightPoint::Solve(const Rays& rays1, const Rays& rays
   }
 
   // M' P = Q R: the last column of Q is normal to every row of M, the first eight are A, and M A = P R1' with
-  // the 8x8 triangle R1. One Householder QR gives the null vector, its complement and the gain.
+  // the 8x8 triangle R1. A single Householder QR therefore gives the null vector, its complement and the
+  // gain.
   const Eigen::ColPivHouseholderQR<Eigen::Matrix<double, 9, 8>> qr(M_transposed);
   const Matrix8d R1 = qr.matrixQR().topRows<8>().triangularView<Eigen::Upper>();
   const double smallest_pivot = std::abs(R1(7, 7));

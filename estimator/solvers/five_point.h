@@ -8,42 +8,42 @@
 
 namespace rcme {
 
-// All essential matrices through five correspondences of calibrated rays, the exact case: five equations for
-// the five degrees of freedom of the motion, and up to ten real solutions (Nister 2004; the action matrix of
-// Stewenius, Engels & Nister 2006).
+// All essential matrices through five correspondences of calibrated rays. It is the exact case: five
+// equations for the five degrees of freedom of the motion, with up to ten real solutions (Nister 2004; the
+// action matrix of Stewenius, Engels & Nister 2006).
 //
-// The four-dimensional null space of M (5x9, rows kron(x2, x1)) holds E = x E_1 + y E_2 + z E_3 + w E_4; the
-// ten cubics det E = 0 and 2 E E' E - tr(E E') E = 0 leave finitely many (x : y : z : w). Every one is then
-// polished by Newton's method on the five epipolar equations over the motions, so that E is an essential
-// matrix whatever the rounding of the elimination.
+// The four-dimensional null space of M (5x9, rows kron(x2, x1)) contains E = x E_1 + y E_2 + z E_3 + w E_4.
+// The ten cubics det E = 0 and 2 E E' E - tr(E E') E = 0 leave finitely many (x : y : z : w). Newton's method
+// on the five epipolar equations over the motions polishes each solution, so that E is an essential matrix
+// despite rounding in the elimination.
 class FivePoint {
  public:
   static constexpr int kSampleSize = 5;
   static constexpr int kMaxModels = 10;
   static constexpr SolverCase kCase = SolverCase::kExact;
-  static constexpr int kSampleTestDof = 0;  // the motion fits its sample: nothing is left to test
+  static constexpr int kSampleTestDof = 0;  // the motion fits its sample exactly
   using Rays = std::array<Eigen::Vector3d, kSampleSize>;
   using Model = MinimalModel<kSampleSize>;
 
-  // f = vec(E) / sqrt(2). Along the motions delta f = T delta p, T = dE/dp / sqrt(2), so that G is T (C T)^-1
-  // and Sigma_p = H^-1 D H^-T with H = C T = dg/dp.
+  // f = vec(E) / sqrt(2). Along the motions delta f = T delta p, T = dE/dp / sqrt(2), so G = T (C T)^-1 and
+  // Sigma_p = H^-1 D H^-T with H = C T = dg/dp (C: ConstraintRows).
   static ModelList<Model, kMaxModels> FindModels(const Rays& rays1, const Rays& rays2);
 
-  // The model next to `E`, by Newton's method: what FindModels has if another implementation found `E`.
-  // Nothing if the iteration does not settle or the solution is not isolated.
+  // The model nearest to `E`, by Newton's method: the one that FindModels returns for a solution `E` of
+  // another implementation. nullopt if the iteration does not settle or the solution is not isolated.
   static std::optional<Model> ModelNear(const Eigen::Matrix3d& E, const Rays& rays1, const Rays& rays2);
 
-  // E[0] ... E[count - 1], x2' E x1 = 0 in rays, Frobenius norm sqrt(2) as [t]x R has with |t| = 1; the sign
-  // is arbitrary. In descending order of |E_33|: another implementation that finds the same ones numbers them
-  // the same (kernels/block_source.h).
+  // E[0] ... E[count - 1] with x2' E x1 = 0 in rays and Frobenius norm sqrt(2), that of [t]x R with |t| = 1;
+  // the sign is arbitrary. Sorted by descending |E_33|, so that another implementation which finds the same
+  // solutions numbers them alike (kernels/block_source.h).
   struct Solutions {
     std::array<Eigen::Matrix3d, kMaxModels> E;
     int count = 0;
   };
 
-  // Only isolated solutions count: none if the points are fewer than five different ones or not finite, and
-  // none of a family such as that of a pure rotation (smallest pivot of M, or of the 5x5 Jacobian of the
-  // equations at the solution, below 1e-9 of the largest). Allocates nothing.
+  // Only isolated solutions: none if fewer than five points differ or one is not finite, and none from a
+  // family such as that of a pure rotation (the smallest pivot of M, or of the 5x5 Jacobian of the equations
+  // at the solution, is below 1e-9 of the largest). Allocates nothing.
   static Solutions Solve(const Rays& rays1, const Rays& rays2);
 };
 

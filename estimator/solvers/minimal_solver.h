@@ -1,19 +1,19 @@
-// What a minimal solver is: the paper's Omega^-1 (Sec. model_instantiate) as a type. Five parts of the
-// estimator read it: the draw of the sample, the models and their covariance (hypothesis.h), the sample test
-// (sample_consistency.h), the loop, and the option `solver` (solver_list.h). A worked example is
+// The interface of a minimal solver, the paper's Omega^-1 (Sec. model_instantiate), as a type. Five parts of
+// the estimator use it: the draw of the sample, the models and their covariance (hypothesis.h), the sample
+// test (sample_consistency.h), the loop, and the option `solver` (solver_list.h). For a worked example see
 // one_point.h.
 //
 //   struct Solver {
 //     static constexpr int kSampleSize;           // m, matches of a sample
-//     static constexpr int kMaxModels;            // a sample has at most so many
+//     static constexpr int kMaxModels;            // greatest number of models of a sample
 //     static constexpr SolverCase kCase;          // the paper's two cases, below
-//     static constexpr int kSampleTestDof;        // directions in which a sample contradicts its motion
+//     static constexpr int kSampleTestDof;        // degrees of freedom of the sample test
 //     using Rays = std::array<Eigen::Vector3d, kSampleSize>;  // K^-1 [x; 1], third component 1
 //     using Model = ...;                          // with f and G as in MinimalModel
 //     static ModelList<Model, kMaxModels> FindModels(const Rays& rays1, const Rays& rays2);
 //   };
 //
-// FindModels allocates nothing. No model: the sample is degenerate, or has bad numbers.
+// FindModels allocates nothing. It returns no model if the sample is degenerate or not finite.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,8 +32,8 @@ enum class SolverCase {
   kOverdetermined,  // f has more
 };
 
-// A model f_j of m matches, and what noise in its constraints does to it: g_k = x2_k' F x1_k (rays) disturbed
-// by n_k moves f by delta f = -G n to first order. |f| = 1, so f'G = 0; the sign of f is arbitrary.
+// A model f_j of m matches and its sensitivity to noise: if g_k = x2_k' F x1_k (rays) is disturbed by n_k, f
+// moves by delta f = -G n to first order. |f| = 1, so f'G = 0; the sign of f is arbitrary.
 template <int m>
 struct MinimalModel {
   Vector9d f = Vector9d::Zero();
@@ -62,10 +62,10 @@ Eigen::Matrix<double, static_cast<int>(m), 9> ConstraintRows(const std::array<Ei
   return rows;
 }
 
-// G of a model that m equations C f = 0 determine on an m-dimensional manifold, by implicit differentiation:
-// along the manifold delta f = T y, T (9 x m) its tangent at f, and C (f + T y) + n = 0, so y = -(C T)^-1 n
-// and G = T (C T)^-1. In the coordinates y it gives the exact case (eq. 5): Sigma_y = (C T)^-1 D (C T)^-T.
-// Nothing if C T is singular (smallest pivot below 1e-9 of the largest): the solution is not isolated.
+// G of a model that m equations C f = 0 determine on an m-dimensional manifold, by implicit differentiation.
+// Along the manifold delta f = T y, T (9 x m) its tangent at f; C (f + T y) + n = 0 gives y = -(C T)^-1 n and
+// G = T (C T)^-1. In the coordinates y this is the exact case (eq. 5): Sigma_y = (C T)^-1 D (C T)^-T. nullopt
+// if C T is singular (smallest pivot below 1e-9 of the largest): the solution is not isolated.
 template <int m>
 std::optional<Eigen::Matrix<double, 9, m>> ImplicitGain(const Eigen::Matrix<double, m, 9>& C,
                                                         const Eigen::Matrix<double, 9, m>& T) {

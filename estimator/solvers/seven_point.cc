@@ -28,8 +28,8 @@ struct Pencil {
   }
 };
 
-// The same pencil in the basis, of four, whose det A is largest in magnitude: it is the leading coefficient
-// of the cubic, and no root may be infinite.
+// The same pencil in one of four bases, chosen for the largest |det A|. det A is the leading coefficient of
+// the cubic, so it must not vanish: no root may be infinite.
 Pencil TurnAwayFromRoots(const Pencil& pencil) {
   Pencil best = pencil;
   for (int quarter = 1; quarter < 4; ++quarter) {
@@ -47,7 +47,7 @@ Eigen::Vector3d ComputeCubic(const Pencil& pencil) {
          pencil.A.determinant();
 }
 
-// f (unit) and G of a matrix of rank 2; nothing if it is no isolated solution.
+// f (unit) and G of a matrix of rank 2; nullopt if it is not an isolated solution.
 std::optional<SevenPoint::Model> ModelFrom(const Eigen::Matrix3d& F, const Eigen::Matrix<double, 7, 9>& C) {
   SevenPoint::Model model;
   model.f = Vectorize(F).normalized();

@@ -1,6 +1,6 @@
 // The minimal solvers, one line each: the class, and its name in the option `solver`. The enumeration, the
-// words of the option, the choice at run time and the instantiations of hypothesis.cc are made of these
-// lines; solver_table.h includes the header of each.
+// option's values, the dispatch at run time and the instantiations in hypothesis.cc are generated from these
+// lines. solver_table.h includes the header of each.
 #pragma once
 
 #define RCME_FOR_EACH_SOLVER(USE) \
@@ -11,7 +11,7 @@
 
 namespace rcme {
 
-// kEightPoint and so on. The first is the default: the paper's.
+// kEightPoint, kSevenPoint, ... The first is the default, as in the paper.
 enum class MinimalSolver : int {
 #define RCME_ENUMERATOR(Solver, name) k##Solver,
   RCME_FOR_EACH_SOLVER(RCME_ENUMERATOR)

@@ -16,7 +16,7 @@
 
 namespace rcme {
 
-// visit(std::type_identity<Solver>()) of the solver that is chosen; from there on it is a type.
+// Calls visit(std::type_identity<Solver>()) with the chosen solver's type.
 template <typename Visit>
 decltype(auto) VisitSolver(MinimalSolver solver, Visit&& visit) {
   switch (solver) {
@@ -33,7 +33,7 @@ decltype(auto) VisitSolver(MinimalSolver solver, Visit&& visit) {
 template <typename Solver>
 inline constexpr bool kHasFast = std::is_same_v<Solver, EightPoint> || std::is_same_v<Solver, FivePoint>;
 
-// The names of the solvers in options, in the order in which they are listed.
+// The names of the solvers in the option, in the order of the list.
 inline const std::vector<std::pair<std::string, MinimalSolver>>& SolverNames() {
   static const std::vector<std::pair<std::string, MinimalSolver>> names = {
 #define RCME_NAME(Solver, name) {name, MinimalSolver::k##Solver},
