@@ -30,14 +30,14 @@ bool CandidateSet::MeetsSizeCondition(const Candidate& candidate) const {
   return candidate.score.num_inliers >= bound * (1.0 - 1e-12);  // n_j / n * n may round to more than n_j
 }
 
-// |C|: of the hypotheses that passed the quality test, those that are large enough (eq::candidate-set).
+// |C|: the number of hypotheses that passed the quality test and meet the size condition (eq::candidate-set).
 int CandidateSet::CountMembers() const {
   return static_cast<int>(std::count_if(passed_.begin(), passed_.end(), [this](const Candidate& candidate) {
     return MeetsSizeCondition(candidate);
   }));
 }
 
-// eq::model_select_entropy: the least by `decides`, over C.
+// eq::model_select_entropy: the best by `decides`, over C.
 std::vector<Candidate> CandidateSet::SelectBest(int count, DecidingScore decides) const {
   std::vector<const Candidate*> members;
   members.reserve(passed_.size());

@@ -19,7 +19,7 @@
 namespace rcme {
 namespace {
 
-// Estimators can be given a robust covariance and be put behind the gate of model choice.
+// Adds the robust covariance and the gate of model choice to the entries that take them.
 std::vector<EstimatorEntry> WithCommonOptions(std::vector<EstimatorEntry> entries) {
   for (EstimatorEntry& entry : entries) {
     if (!entry.takes_common_options) continue;
@@ -30,7 +30,7 @@ std::vector<EstimatorEntry> WithCommonOptions(std::vector<EstimatorEntry> entrie
   return entries;
 }
 
-// All end in a fit that uses it.
+// All estimators of the project end in a fit that uses the noise scale.
 std::vector<EstimatorEntry> UsingNoiseScale(std::vector<EstimatorEntry> entries) {
   for (EstimatorEntry& entry : entries) entry.uses_noise_scale = true;
   return entries;

@@ -49,7 +49,7 @@ std::optional<Hypothesis<Solver>> InstantiateModel(const MotionProblem& problem,
   return hypotheses.models[static_cast<size_t>(id.model)];
 }
 
-// Sigma_p = J_p Sigma_f J_p' (eq::cov_p). Of at most five matches it is L L' with L = J_p G D^(1/2).
+// Sigma_p = J_p Sigma_f J_p' (eq::cov_p). For at most five matches it is L L' with L = J_p G D^(1/2).
 template <typename Solver>
 void PropagateCovariance(const MotionProblem& problem, Hypothesis<Solver>* hypothesis) {
   constexpr int m = Solver::kSampleSize;

@@ -19,7 +19,7 @@ namespace rcme {
 
 HWY_EXPORT(Target);
 
-// Dispatched as the kernels are, so that it names what they use.
+// Uses the kernels' dispatch, so it names the instruction set that they use.
 std::string InstructionSetName() {
   switch (const std::int64_t target = HWY_DYNAMIC_DISPATCH(Target)()) {
     case HWY_SCALAR:

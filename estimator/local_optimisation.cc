@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-constexpr size_t kGreatestInnerSample = 14;  // of the paper
+constexpr size_t kGreatestInnerSample = 14;  // the paper's value
 constexpr size_t kLeastToFit = 6;            // five matches fit exactly
 
 // `count` of the indices, every set equally likely, ascending.
@@ -27,7 +27,7 @@ std::vector<int> DrawSome(std::vector<int> indices, size_t count, RandomStream& 
   return indices;
 }
 
-// Nothing where the fit has no optimum.
+// nullopt if there are too few matches or the fit has no optimum.
 std::optional<RefinedMotion> FitTo(const MotionProblem& problem, const std::vector<int>& matches,
                                    const RelativePose& start) {
   if (matches.size() < kLeastToFit) return std::nullopt;

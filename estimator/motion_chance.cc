@@ -38,8 +38,9 @@ std::optional<Chord> ClipLine(const Eigen::Vector3d& l, const Box& box) {
   return Chord{foot + from * along, foot + to * along};
 }
 
-// Area of the band g^2 <= threshold (|l1|^2 + |l2|^2) around the line l2 = F x1 in the box: it is
-// 2 sqrt(threshold (1 + |l1|^2 / |l2|^2)) wide, l1 the first two of F'x2. Simpson's rule along the chord.
+// Area, within the box, of the band g^2 <= threshold (|l1|^2 + |l2|^2) around the line l2 = F x1. Its width
+// is 2 sqrt(threshold (1 + |l1|^2 / |l2|^2)), l1 the first two entries of F'x2. Integrated by Simpson's rule
+// along the chord.
 double AreaOfBand(const Eigen::Matrix3d& F, const Eigen::Vector2d& x1, double threshold, const Box& box) {
   const Eigen::Vector3d l2 = F * x1.homogeneous();
   const double norm2 = l2.head<2>().squaredNorm();
@@ -55,7 +56,7 @@ double AreaOfBand(const Eigen::Matrix3d& F, const Eigen::Vector2d& x1, double th
   return mean * (chord->end - chord->start).norm();
 }
 
-// log P(Bin(n, p) >= k); where that is too small for a double, Chernoff's bound of it.
+// log P(Bin(n, p) >= k), or Chernoff's bound of it if the probability is too small for a double.
 double LogUpperTail(int n, int k, double p) {
   const double tail = BinomialUpperTail(n, k, p), share = static_cast<double>(k) / n;
   if (tail > 1e-280) return std::log(tail);

@@ -14,9 +14,9 @@
 namespace rcme {
 namespace {
 
-constexpr double kUnitTolerance = 1e-4;  // of a length, and of R R' - I
+constexpr double kUnitTolerance = 1e-4;  // of the length of a vector, and of |R R' - I|
 
-// J^-1(w) of the header; below a hundredth of a radian by its series, 1/12 + a^2 / 720.
+// J^-1(w) of the header; below 0.01 rad its factor by the series 1/12 + a^2 / 720.
 Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& w) {
   const double angle = w.norm();
   const Eigen::Matrix3d cross = CrossMatrix(w);
@@ -25,8 +25,8 @@ Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& w) {
   return Eigen::Matrix3d::Identity() - 0.5 * cross + factor * cross * cross;
 }
 
-// T(a, b) of the header and its derivative by a. Of opposite vectors any turn: the one about an axis that the
-// basis of a chooses.
+// T(a, b) of the header and its derivative with respect to a. For opposite vectors the turn is not unique;
+// this one is about an axis of DirectionBasis(a).
 struct Turn {
   Eigen::Vector3d vector;
   Eigen::Matrix3d by_from;

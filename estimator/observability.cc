@@ -14,14 +14,14 @@
 namespace rcme {
 namespace {
 
-// Of a rotation that explains so many matches.
+// log NFA of a rotation that has `num_within` matches within c.
 double LogFalseAlarmsOfRotation(const MotionProblem& problem, double significance_level, int num_within) {
   const int n = static_cast<int>(problem.matches.size());
   const double chance = ChanceOfAgreementWithRotation(problem, TailThreshold(n, significance_level));
   return LogFalseAlarms(kRotations, n, num_within, chance);
 }
 
-// Beyond this the rotation explains nothing; `chance` that of the motion.
+// The greatest log NFA of a rotation that explains the matches. `chance` is that of the motion.
 double MostLogFalseAlarms(int num_matches, int num_agreeing, double chance, double significance_level) {
   return std::min(std::log(significance_level / 3.0),
                   LogFalseAlarms(kMotions, num_matches, num_agreeing, chance));
@@ -59,8 +59,9 @@ void DecideRotationTest(const MotionProblem& problem, double chance, double sign
 bool MayRotationExplain(const MotionProblem& problem, double chance, double significance_level,
                         int num_agreeing, int most_within) {
   const int n = static_cast<int>(problem.matches.size());
-  // Where a tail is too small for a double, LogFalseAlarms takes Chernoff's bound of it, which is at most
-  // log(2 n) / 2 above (Ash 1965, lemma 4.7.2): fewer matches may have fewer false alarms by so much.
+  // If a tail is too small for a double, LogFalseAlarms uses Chernoff's bound, which exceeds the log tail by
+  // at most log(2 n) / 2 (Ash 1965, lemma 4.7.2). A smaller number of matches may therefore get an NFA
+  // smaller by that much.
   const double least =
       LogFalseAlarmsOfRotation(problem, significance_level, most_within) - 0.5 * std::log(2.0 * n);
   return least <= MostLogFalseAlarms(n, num_agreeing, chance, significance_level);
@@ -94,8 +95,8 @@ Eigen::Matrix2d SumDirectionNoise(const MotionProblem& problem, const std::vecto
 }
 
 double NoiseShareOfDirection(const Eigen::Matrix2d& direction_cov, const Eigen::Matrix2d& noise) {
-  const Eigen::Matrix2d share = direction_cov * noise;  // its eigenvalues are real, as those of a product of
-                                                        // two positive definite matrices are
+  // The eigenvalues of a product of two positive definite matrices are real.
+  const Eigen::Matrix2d share = direction_cov * noise;
   const double half_trace = 0.5 * share.trace();
   return half_trace + std::sqrt(std::max(half_trace * half_trace - share.determinant(), 0.0));
 }

@@ -12,16 +12,14 @@
 // transfer residual of a match (refinement/rotation_equations.h). The null hypothesis is rejected at level
 // alpha. Each of three tests gets a third of alpha:
 //
-//   tail    a true match lies beyond c = -2 log(alpha / 3n), which chi2_2 exceeds with probability alpha /
-//   3n;
-//           a rotation explains the matches within c;
+//   tail    a true match lies beyond c = -2 log(alpha / 3n), which chi2_2 exceeds with probability
+//           alpha / 3n; a rotation explains the matches within c;
 //   energy  sum d2 over the k matches within c exceeds the 1 - alpha/3 quantile of chi2_{2k-3}: a small
-//           parallax in all matches. (The bound c and the selection of matches near their epipolar lines make
-//           the sum smaller, so the test is conservative.)
-//   number  of the m matches beyond c, more agree with the motion than chance explains (motion_chance.h, NFA
-//   at
-//           most alpha/3): a large parallax in some matches. Wrong matches that happen to lie near their
-//           epipolar lines do not count as parallax.
+//           parallax in all matches. (The bound c and the selection of matches near their epipolar lines
+//           make the sum smaller, so the test is conservative.)
+//   number  of the m matches beyond c, more agree with the motion than chance explains (motion_chance.h,
+//           NFA at most alpha/3): a large parallax in some matches. Wrong matches that happen to lie near
+//           their epipolar lines do not count as parallax.
 //
 // A rotation that is not rejected may still explain nothing: with few true matches all three tests are weak.
 // The direction counts as not observable only if the NFA of the rotation is at most alpha/3 and at most that

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kLogTwoPi = 1.8378770664093454835606594728112;
 
-// cov(j, g) of the gradient j and the constraint g is [[Q, a], [a', D]]: the noise of the match plus the
-// motion's.
+// The covariance of the gradient j and the constraint g, [[Q, a], [a', D]], from the noise of the match and
+// the uncertainty of the motion.
 struct ConstraintSpread {
   Eigen::Matrix4d Q;
   Eigen::Vector4d a;
@@ -34,8 +34,8 @@ ConstraintSpread SpreadOfConstraint(const UncertainFundamental& model, const Epi
   return spread;
 }
 
-// Some L with L L' = cov. Cholesky's where it exists; eigenvectors also take a covariance that is singular to
-// within rounding, such as zero for a known motion. Nothing if it is not positive semi-definite.
+// A matrix L with L L' = cov: by Cholesky, or by eigenvectors if cov is singular to within rounding, such as
+// zero for a known motion. nullopt if cov is not positive semi-definite.
 std::optional<Matrix5d> ComputeSquareRoot(const Matrix5d& cov) {
   const Eigen::LLT<Matrix5d> llt(cov);
   if (llt.info() == Eigen::Success) return llt.matrixL();
@@ -45,7 +45,7 @@ std::optional<Matrix5d> ComputeSquareRoot(const Matrix5d& cov) {
   return eigen.eigenvectors() * variances.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
-// 4x3 orthonormal basis of the complement of the unit vector u: the last columns of the Householder
+// 4x3 orthonormal basis of the complement of the unit vector u: the last three columns of the Householder
 // reflection that takes u to the first axis.
 Eigen::Matrix<double, 4, 3> ComputeComplement(const Eigen::Vector4d& u) {
   Eigen::Vector4d h = u;

@@ -18,7 +18,7 @@ MotionEstimate Refusal(MotionStatus status, std::string message) {
   return estimate;
 }
 
-// Distinct matches, counted up to `enough`.
+// The number of distinct matches; counting stops at `enough`.
 int CountDistinct(const std::vector<Correspondence>& matches, int enough) {
   std::vector<const Correspondence*> distinct;
   for (const Correspondence& match : matches) {

@@ -26,7 +26,7 @@ void RequireCovariance(const Matrix5d& covariance) {
     throw std::invalid_argument("protection level: the covariance is not positive semidefinite");
 }
 
-// Of the block's eigenvalues; what rounding leaves below 0 is 0.
+// The level of a block with these eigenvalues; negative ones (rounding) count as 0.
 double ComputeLevel(const Eigen::Vector3d& eigenvalues, double tail) {
   return std::min(std::numbers::pi, GaussianNormQuantile(eigenvalues.cwiseMax(0.0), tail));
 }

@@ -25,7 +25,7 @@ int* KeepFirstOfEach(Sample* sample) {
   return end;
 }
 
-// A size that the compiler knows: its loops are laid out, a quarter faster.
+// With the size as a template argument the loops are unrolled, a quarter faster.
 template <size_t kSize = kMaxSampleSize>
 Sample DrawSampleOfSize(size_t size, int n, RandomStream& rng) {
   if constexpr (kSize > 1) {
@@ -35,7 +35,7 @@ Sample DrawSampleOfSize(size_t size, int n, RandomStream& rng) {
   for (size_t num_drawn = 0;; num_drawn = static_cast<size_t>(KeepFirstOfEach(&sample) - sample.begin())) {
     for (size_t k = num_drawn; k < kSize; ++k)
       sample[k] = static_cast<int>(rng.IntegerBelow(static_cast<std::uint32_t>(n)));
-    // What was drawn again is drawn anew, the others keep their places.
+    // Duplicates are drawn anew; the first of each keeps its place.
     if (!HasDuplicates<kSize>(sample)) return sample;
   }
 }

@@ -42,8 +42,8 @@ Eigen::Matrix3d FundamentalFromEssential(const Eigen::Matrix3d& E, const Camera&
 EssentialProjection ProjectToEssential(const Eigen::Matrix3d& matrix) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   EssentialProjection projection{svd.matrixU(), svd.matrixV(), svd.singularValues()};
-  // The last columns meet the singular value 0 of E, so their sign is free: make U and V rotations. The
-  // matrix stays U diag(s) V' if the last singular value takes the sign.
+  // The last columns of U and V belong to the singular value 0 of E, so their sign is free: make U and V
+  // rotations. The matrix remains U diag(s) V' if the last singular value takes the sign.
   for (Eigen::Matrix3d* factor : {&projection.U, &projection.V}) {
     if (factor->determinant() > 0.0) continue;
     factor->col(2) *= -1.0;

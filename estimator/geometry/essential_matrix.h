@@ -1,5 +1,5 @@
-// The essential matrix E = [t]x R, x2' E x1 = 0 in rays. Matrices become vectors row by row, as the paper's
-// f.
+// The essential matrix E = [t]x R with x2' E x1 = 0 in rays. Matrices become vectors row by row, like the
+// paper's f.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,25 +23,24 @@ Eigen::Matrix3d EssentialFromPose(const RelativePose& pose);
 // dE/dp for the tangent [rotation 3, direction 2]: dE/dw_k = [t]x [e_k]x R, dE/db_k = [B_k]x R.
 std::array<Eigen::Matrix3d, 5> EssentialTangent(const RelativePose& pose);
 
-// F = K2^-T E K1^-1, x2' F x1 = 0 in pixels (eq::model_motion_relation, with a camera matrix for each image).
-// Linear in E, so it maps tangents too.
+// F = K2^-T E K1^-1 with x2' F x1 = 0 in pixels (eq::model_motion_relation, with a camera matrix for each
+// image). The map is linear, so it also maps derivatives of E.
 Eigen::Matrix3d FundamentalFromEssential(const Eigen::Matrix3d& E, const Camera& camera1,
                                          const Camera& camera2);
 
 // A 3x3 matrix U diag(s) V' and the nearest essential matrix U diag(1, 1, 0) V' in Frobenius norm (both up to
-// scale). This is the step from the linear 8-point solution to E: a projection in ray coordinates, not in
-// Hartley's.
+// scale). This projection takes the linear 8-point solution to E, in ray coordinates rather than Hartley's.
 struct EssentialProjection {
   Eigen::Matrix3d U, V;             // proper rotations
-  Eigen::Vector3d singular_values;  // descending; the last has the sign of the matrix's determinant
+  Eigen::Vector3d singular_values;  // descending; the last has the sign of the determinant
 
-  // False where the second singular value is zero: the direction of translation is then undetermined.
+  // False if the second singular value is zero: then the direction of translation is undetermined.
   bool DeterminesDirection() const { return singular_values(1) > 1e-9 * singular_values(0); }
 };
 EssentialProjection ProjectToEssential(const Eigen::Matrix3d& matrix);
 
-// The four poses of an essential matrix, {R_a, R_b} x {t, -t}: the solutions p of Theta(f, p) = 0
-// (eq::motion_estimate), f taken to the nearest essential matrix.
+// The four poses of an essential matrix, {R_a, R_b} x {t, -t}. They are the solutions p of Theta(f, p) = 0
+// (eq::motion_estimate) for the essential matrix nearest to f.
 std::array<RelativePose, 4> PosesFromEssential(const EssentialProjection& projection);
 
 }  // namespace rcme

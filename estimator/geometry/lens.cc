@@ -13,8 +13,8 @@ namespace {
 
 using Coefficients = std::array<double, 8>;
 
-// Of the radial factor (1 + k1 s + k2 s^2 + k3 s^3) / (1 + k4 s + k5 s^2 + k6 s^3), s = r^2: its value and
-// its derivative by s.
+// The radial factor (1 + k1 s + k2 s^2 + k3 s^3) / (1 + k4 s + k5 s^2 + k6 s^3), s = r^2, and its derivative
+// with respect to s.
 struct RadialFactor {
   double value, slope;
 };
@@ -34,7 +34,7 @@ Eigen::Vector2d DistortRadtan(const Coefficients& k, const Eigen::Vector2d& ray)
 }
 
 // With x = (x, y), s = x'x and the factor g(s): d (g x) / d x = g I + 2 g' x x'. The tangential terms are the
-// gradient of (p2 x + p1 y) (x^2 + y^2), so that their derivative is symmetric.
+// gradient of (p2 x + p1 y) (x^2 + y^2), so their derivative is symmetric.
 Eigen::Matrix2d RadtanJacobian(const Coefficients& k, const Eigen::Vector2d& ray) {
   const double x = ray.x(), y = ray.y();
   const RadialFactor radial = ComputeRadialFactor(k, ray.squaredNorm());
@@ -44,7 +44,8 @@ Eigen::Matrix2d RadtanJacobian(const Coefficients& k, const Eigen::Vector2d& ray
   return radial.value * Eigen::Matrix2d::Identity() + 2.0 * radial.slope * ray * ray.transpose() + tangential;
 }
 
-// theta (1 + k1 theta^2 + ...), the distance from the axis in focal lengths, and its derivative by theta.
+// theta (1 + k1 theta^2 + ...), the distance from the axis in focal lengths, and its derivative with respect
+// to theta.
 struct FisheyeRadius {
   double value, slope;
 };
@@ -53,7 +54,7 @@ FisheyeRadius ComputeFisheyeRadius(const Coefficients& k, double theta) {
   return {theta * (1.0 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))),
           1.0 + t2 * (3.0 * k[0] + t2 * (5.0 * k[1] + t2 * (7.0 * k[2] + t2 * 9.0 * k[3])))};
 }
-constexpr double kOnAxis = 1e-12;  // there the lens is a pinhole
+constexpr double kOnAxis = 1e-12;  // closer to the axis the lens counts as a pinhole
 
 Eigen::Vector2d DistortFisheye(const Coefficients& k, const Eigen::Vector2d& ray) {
   const double r = ray.norm();
@@ -62,7 +63,7 @@ Eigen::Vector2d DistortFisheye(const Coefficients& k, const Eigen::Vector2d& ray
 }
 
 // Along the unit vector n of the ray the radius grows by d radius / d theta * d theta / d r, d theta / d r =
-// 1 / (1 + r^2); across it everything is scaled by radius / r.
+// 1 / (1 + r^2). Across n the scale is radius / r.
 Eigen::Matrix2d FisheyeJacobian(const Coefficients& k, const Eigen::Vector2d& ray) {
   const double r = ray.norm();
   if (r < kOnAxis) return Eigen::Matrix2d::Identity();
@@ -99,7 +100,8 @@ Eigen::Matrix2d DistortJacobian(const Lens& lens, const Eigen::Vector2d& ray) {
 
 constexpr double kLargestRay = 10.0;  // focal lengths from the axis: 84.3 deg
 
-// From the centre outwards the distorted radius grows as far as `ray`: the first ray that a pixel has.
+// Whether the distorted radius grows all the way from the centre to `ray`. If so, this is the first ray that
+// reaches its pixel.
 bool IsOnFirstBranch(const Lens& lens, const Eigen::Vector2d& ray) {
   constexpr int kSteps = 20;
   if (lens.model == LensModel::kFisheye) {
@@ -167,8 +169,8 @@ std::optional<Eigen::Vector2d> Undistort(const Lens& lens, const Eigen::Vector2d
   constexpr double kDonePx = 1e-7, kLongestStep = 0.5, kRounding = 1e-14;
   const Eigen::Vector2d wanted = lens.camera.Ray(x_px).head<2>();
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
-  // Newton's steps from the centre, each of at most half a focal length. The misfit of the last is squared
-  // once more: nothing but rounding is left.
+  // Newton's method from the centre with steps of at most half a focal length. The step after a sufficiently
+  // small misfit is still taken, which squares it once more: only rounding remains.
   for (int step = 0; step < kMaxSteps; ++step) {
     const Eigen::Vector2d misfit = wanted - Distort(lens, ray);
     Eigen::Vector2d change = DistortJacobian(lens, ray).inverse() * misfit;

@@ -8,7 +8,7 @@ namespace rcme {
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
-// cam2_from_cam1: a point X1 in camera 1's frame is X2 = R X1 + t in camera 2's. The scale cannot be seen:
+// cam2_from_cam1: a point X1 in camera 1's frame is X2 = R X1 + t in camera 2's. The scale is not observable:
 // |t| = 1.
 struct RelativePose {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
@@ -28,12 +28,11 @@ Eigen::Matrix<double, 3, 2> DirectionBasis(const Eigen::Vector3d& t);
 
 // The pose at tangent coordinates [rotation 3, direction 2] (rad) around `pose`: R <- Exp(w) R, and t turned
 // by |b| along the great circle in the direction B b, B = DirectionBasis(t). To first order t <- normalise(t
-// + B b); the great circle also reaches directions more than 90 deg away, so that LocalCoordinates is finite
-// for every pose.
+// + B b). Unlike that, the great circle reaches directions more than 90 deg away, so LocalCoordinates is
+// finite for every pose.
 RelativePose Retract(const RelativePose& pose, const Vector5d& tangent);
 
-// The tangent coordinates of `other` around `pose`, such that Retract(pose, LocalCoordinates(pose, other)) ==
-// other.
+// The tangent coordinates of `other` around `pose`: Retract(pose, LocalCoordinates(pose, other)) == other.
 Vector5d LocalCoordinates(const RelativePose& pose, const RelativePose& other);
 
 // Angle (rad, [0, pi]) between two rotations and between two directions.

@@ -23,7 +23,7 @@ std::vector<std::pair<std::string, std::optional<ModelCriterion>>> Criteria() {
   return all;
 }
 
-// kOk: the verdict is no reason to refuse.
+// The status of the refusal; kOk if there is no reason to refuse.
 MotionStatus FindStatus(const ModelChoice& choice, bool refuses_planes) {
   if (choice.status != MotionStatus::kOk) return MotionStatus::kOk;
   switch (choice.verdict) {

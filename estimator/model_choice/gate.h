@@ -1,5 +1,5 @@
-// Model choice as a gate before which any estimator can be put: a motion is refused where the problem is of a
-// kind that determines none well.
+// Model choice as a gate for any estimator: it refuses a motion if the kind of problem does not determine one
+// well.
 #pragma once
 
 #include <memory>
@@ -8,18 +8,18 @@
 
 namespace rcme {
 
-// The same estimator with the options of the gate beside its own:
+// The same estimator with additional options:
 //
-//   model_choice       the criterion (verdict.h), or off, the default: Make gives what the model itself makes
+//   model_choice       the criterion (verdict.h), or off, the default: Make returns the bare estimator
 //   planar_scenes      refused (the default) or answered
 //
 // and the two of ModelChoiceOptions, parallax_significance_level and least_parallax_share.
 //
-// The gate looks after the estimator has answered, with what its random stream gives next: what is not
-// refused is the answer without the gate, number for number. A refusal (planar_scene, rotation_only,
-// too_little_parallax) has no motion. What the estimator refuses stays as it is, and so does its answer where
-// there is no verdict. A model that has an option model_choice of its own (one made of an estimator of the
-// registry) stays as it is.
+// The gate decides after the estimator has answered and draws from the same random stream, so an answer that
+// passes is identical to the one without the gate. Its refusals (planar_scene, rotation_only,
+// too_little_parallax) have no motion. The estimator's own refusals, and answers for which there is no
+// verdict, stay unchanged. A model that already has an option model_choice (one made from an estimator of the
+// registry) is returned unchanged.
 std::unique_ptr<EstimatorModel> WithGate(std::unique_ptr<EstimatorModel> model);
 
 }  // namespace rcme

@@ -17,8 +17,8 @@ constexpr int kMaxRefits = 10, kMaxSteps = 10;
 constexpr double kNegligibleDecrease = 1e-6;  // of the sum of d2
 constexpr double kLeastArea = 1e-12;          // determinant of three rays: twice their triangle's area
 
-// The first three rays as columns, scaled to sum to the fourth. Nothing where three of the four lie on one
-// line.
+// The first three rays as columns, scaled so that they sum to the fourth. nullopt if three of the four lie on
+// one line.
 std::optional<Eigen::Matrix3d> ProjectiveBasis(const FourMatches& sample, Eigen::Vector3d RayMatch::*ray) {
   Eigen::Matrix3d rays;
   rays << sample[0].*ray, sample[1].*ray, sample[2].*ray;
@@ -29,7 +29,7 @@ std::optional<Eigen::Matrix3d> ProjectiveBasis(const FourMatches& sample, Eigen:
   return Eigen::Matrix3d(rays * weights.asDiagonal());
 }
 
-// Of sum d2 / 2 over matches, C held fixed as in RotationEquations.
+// The normal equations of sum d2 / 2 over matches with C held fixed, as in RotationEquations.
 struct HomographyEquations {
   Vector9d gradient = Vector9d::Zero();
   Matrix9d hessian = Matrix9d::Zero();
@@ -52,8 +52,8 @@ HomographyEquations Linearize(const RayMatches& all, const std::vector<size_t>& 
   return equations;
 }
 
-// Least squares over the matches `fitted`. The scale of H changes nothing: H itself spans the Hessian's null
-// space, and a multiple of H H' makes it regular without moving the step.
+// Least squares over the matches `fitted`. The scale of H is free: H itself spans the null space of the
+// Hessian, and a multiple of H H' makes it regular without changing the step.
 Eigen::Matrix3d Minimize(const RayMatches& all, const std::vector<size_t>& fitted,
                          const Eigen::Matrix3d& start) {
   Eigen::Matrix3d H = start;
@@ -93,7 +93,7 @@ std::optional<Eigen::Matrix3d> HomographyOfFour(const FourMatches& sample) {
   if (!A) return std::nullopt;
   const std::optional<Eigen::Matrix3d> B = ProjectiveBasis(sample, &RayMatch::ray2);
   if (!B) return std::nullopt;
-  // H ray1 = depth ray2: the depths are the ratios of the two images' scales, and 1 of the fourth.
+  // H ray1 = depth ray2: the depths are the ratios of the scales of the two images, and 1 for the fourth.
   if (!((B->row(2).array() / A->row(2).array()) > 0.0).all()) return std::nullopt;
   const Eigen::Matrix3d H = *B * A->inverse();
   if (!H.allFinite()) return std::nullopt;
@@ -124,7 +124,7 @@ std::optional<Transfer> EvaluateTransfer(const Eigen::Matrix3d& H, const RayMatc
   C(1, 1) += noise.y2 * noise.y2;
   transfer.information = C.inverse();
   transfer.d2 = transfer.e.dot(transfer.information * transfer.e);
-  if (!(transfer.d2 >= 0.0)) return std::nullopt;  // beyond the range of numbers
+  if (!(transfer.d2 >= 0.0)) return std::nullopt;  // NaN by overflow
   return transfer;
 }
 

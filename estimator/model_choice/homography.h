@@ -1,6 +1,5 @@
-// Homographies between rays: ray2 ~ H ray1, third components 1. Of the plane m'X = 1 (camera 1's frame) H = R
-// + t m' up to scale, of a rotation without translation H = R. The sign is such that (H ray1)_z > 0 in front
-// of camera 2.
+// Homographies between rays: ray2 ~ H ray1, third components 1. For the plane m'X = 1 (camera 1's frame) H =
+// R + t m' up to scale, for a pure rotation H = R. The sign is such that (H ray1)_z > 0 in front of camera 2.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,40 +23,41 @@ struct RayMatches {
   RayScale noise;
 };
 
-// The homography of four matches: with A, B such that their columns are the first three rays of each image,
-// scaled so that they sum to the fourth, H = B A^-1. It is the null vector of the direct linear transform's
-// eight equations. Nothing where three of the points lie on one line in an image, or where the four do not
-// lie on the same side of the line that H takes to infinity, as points in front of both cameras do.
+// The homography of four matches. With A, B the matrices whose columns are the first three rays of each
+// image, scaled so that they sum to the fourth, H = B A^-1. It is the null vector of the eight equations of
+// the direct linear transform. nullopt if three points lie on one line in an image, or if the four do not lie
+// on the same side of the line that H takes to infinity, as points in front of both cameras do.
 using FourMatches = std::array<RayMatch, 4>;
 std::optional<Eigen::Matrix3d> HomographyOfFour(const FourMatches& sample);
 
-// The rotation of two matches, least squares over the rays' directions (Kabsch 1976). Nothing where the two
-// are one.
+// The rotation of two matches by least squares over the rays' directions (Kabsch 1976). nullopt if the two
+// coincide.
 using TwoMatches = std::array<RayMatch, 2>;
 std::optional<Eigen::Matrix3d> RotationOfTwo(const TwoMatches& sample);
 
 // e = x2 - h(x1), h the image of H x1. Both points carry noise, so e has the covariance C = S2 + J S1 J', J =
-// dh/dx1 (2x2) and S1, S2 those of the two points: d2 = e' C^-1 e is the squared distance of the match from
-// the homography's variety over sigma^2, to first order, and chi-square with 2 degrees of freedom for a right
-// match.
+// dh/dx1 (2x2) and S1, S2 the covariances of the two points. To first order d2 = e' C^-1 e is the squared
+// distance of the match from the variety of the homography over sigma^2, chi-square with 2 degrees of freedom
+// for a true match.
 struct Transfer {
   Eigen::Vector2d e, h;         // rays
   double depth = 0.0;           // (H ray1)_z
   Eigen::Matrix2d information;  // C^-1
   double d2 = 0.0;
 };
-// Nothing where the homography takes the point behind camera 2.
+// nullopt if the homography takes the point behind camera 2.
 std::optional<Transfer> EvaluateTransfer(const Eigen::Matrix3d& H, const RayMatch& match,
                                          const RayScale& noise);
 
-// d2 of each match; infinite where there is none.
+// d2 of each match; infinite behind camera 2.
 std::vector<double> SquaredTransfers(const RayMatches& all, const Eigen::Matrix3d& H);
 
-// sum min(d2, threshold) over all matches; once it is beyond `enough`, some number beyond that.
+// sum min(d2, threshold) over all matches. Stops early once the sum exceeds `enough`; the result is then only
+// known to exceed it.
 double TruncatedCost(const RayMatches& all, const Eigen::Matrix3d& H, double threshold, double enough);
 
-// From `start` to a maximum-likelihood fit to the matches within the threshold, until they do not change any
-// more. Never of a greater cost than `start`.
+// A maximum-likelihood fit from `start` to the matches within the threshold, repeated until these do not
+// change. Its cost never exceeds that of `start`.
 Eigen::Matrix3d RefineHomography(const RayMatches& all, const Eigen::Matrix3d& start, double threshold);
 
 }  // namespace rcme

@@ -11,7 +11,7 @@ namespace {
 constexpr double kPointBound = 5.99, kLineBound = 3.84;  // T_H and T_F
 constexpr double kGreatestScore = kPointBound;           // Gamma
 
-// rho_M of the paper; nothing for an error that is not a number.
+// rho_M of the paper; 0 for an error that is NaN.
 double ScoreError(double squared_error, double bound) {
   return squared_error < bound ? kGreatestScore - squared_error : 0.0;
 }

@@ -1,16 +1,16 @@
-// The choice of ORB-SLAM2's initialiser (Mur-Artal, Montiel & Tardos 2015, section IV; `Initializer.cc` of
-// the program).
+// The model choice of ORB-SLAM2's initialiser (Mur-Artal, Montiel & Tardos 2015, section IV; `Initializer.cc`
+// of the program).
 //
-// Each match adds to a model's score what its squared error, over sigma^2 and in each of the two images,
-// leaves of 5.99; nothing beyond the model's own bound. The error is the distance of the transferred point
-// from the point for a homography (bound 5.99, chi-square with 2 degrees of freedom at 95 %), of the point
-// from its epipolar line for a fundamental matrix (3.84, with 1). The homography is chosen where S_H / (S_H +
-// S_F) exceeds 0.40 in the program (0.45 in the paper): planes, nearly planar scenes and little parallax
-// alike.
+// In each of the two images a match adds 5.99 minus its squared error over sigma^2 to the score of a model,
+// or nothing if the error exceeds the model's bound. For a homography the error is the distance between the
+// transferred point and the point (bound 5.99, chi-square with 2 degrees of freedom at 95 %), for a
+// fundamental matrix the distance of the point from its epipolar line (bound 3.84, with 1). The homography is
+// chosen if S_H / (S_H + S_F) exceeds 0.40 in the program (0.45 in the paper): in planar or nearly planar
+// scenes and with little parallax.
 //
-// The errors are of one image against a point without noise, so that right matches exceed the bounds more
-// often than in 5 %. F here is that of the essential matrix, since the cameras are known; the program's is of
-// eight points.
+// The errors treat the point of the other image as free of noise, so true matches exceed the bounds in more
+// than 5 % of cases. F here comes from the essential matrix, since the cameras are known; the program
+// computes it from eight points.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ namespace rcme {
 
 inline constexpr double kOrbSlam2HomographyShare = 0.40;
 
-// S_H of a homography and S_F of an essential matrix, both between rays.
+// S_H of a homography and S_F of an essential matrix, each given between rays.
 double OrbSlam2HomographyScore(const MotionProblem& problem, const Eigen::Matrix3d& H);
 double OrbSlam2EpipolarScore(const MotionProblem& problem, const Eigen::Matrix3d& E);
 

@@ -17,15 +17,15 @@
 namespace rcme {
 namespace {
 
-// With six of ten matches wrong a sample of two is right with probability 0.16, of four with 0.026, of five
-// with 0.010: so many miss with probability 3e-8, 4e-4 and 0.05.
+// With 60 % wrong matches a sample of two is free of outliers with probability 0.16, of four with 0.026, of
+// five with 0.010. All samples contain outliers with probability 3e-8, 4e-4 and 0.05.
 constexpr int kRotationSamples = 100, kHomographySamples = 300, kEssentialSamples = 300;
 
-// Of the best motion alone a refinement may leave the near half of a scene out for its leverage, and keep far
-// points that any direction explains.
+// Number of motions refined. The refinement of only the best one may drop the near half of a scene for its
+// leverage and keep far points, which any direction explains.
 constexpr int kRefinedMotions = 5;
 
-// Significance level of the matches that a model is fitted to, and of those that a sample is judged by.
+// Significance level for the matches that a model is fitted to and that a sample is scored by.
 constexpr double kFitLevel = 0.001;
 
 double TransferThreshold() { return ChiSquareQuantile(2, 1.0 - kFitLevel); }
@@ -69,7 +69,7 @@ std::vector<double> SquaredSampsonDistances(const MotionProblem& problem, const 
   squared.reserve(problem.matches.size());
   for (const Correspondence& match : problem.matches) {
     const double e2 = SquaredSampsonDistance(F, match) / variance;
-    squared.push_back(e2 >= 0.0 ? e2 : 0.0);  // 0 / 0 at both epipoles, with which every line agrees
+    squared.push_back(e2 >= 0.0 ? e2 : 0.0);  // 0 / 0 if both points are epipoles
   }
   return squared;
 }
@@ -80,8 +80,8 @@ double TruncatedSum(const std::vector<double>& squared, double threshold) {
   return sum;
 }
 
-// The motion that `standard` finds from samples of five and refines; of that and of the rotation with a
-// direction along each axis the one with the least truncated sum.
+// The motion with the least truncated sum: the one that `standard` finds from samples of five and refines, or
+// the rotation with a direction along one of the axes.
 void FitEssential(const MotionProblem& problem, RandomStream& rng, TwoViewFits* fits) {
   RansacOptions options;
   options.solver = MinimalSolver::kFivePoint;

@@ -1,9 +1,9 @@
 // The three relations that two images may obey, each fitted robustly to the same matches.
 //
-// A rotation is a homography and a case of an epipolar geometry, and a plane's homography agrees with the
-// epipolar geometry of its motion: what a smaller model explains a larger one does too, to first order. The
-// searches keep to that: the homography's begins at the rotation, and where the search for a motion finds
-// none, the rotation with a direction along an axis is one.
+// To first order a larger model explains what a smaller one does: a rotation is a homography and a special
+// epipolar geometry, and a plane's homography agrees with the epipolar geometry of its motion. The searches
+// preserve this. That for a homography starts at the rotation; that for an essential matrix also tries the
+// rotation with a direction along each axis.
 #pragma once
 
 #include <array>
@@ -30,12 +30,12 @@ struct ModelFit {
 
 struct TwoViewFits {
   ModelFit rotation, homography, essential;
-  RelativePose motion;  // of the essential matrix, up to the choice among its four by cheirality
+  RelativePose motion;  // one of the essential matrix's motions; cheirality may not be decided
   const ModelFit& operator[](TwoViewModel model) const;
 };
 
-// Fits to matches that RefuseUnsolvable lets pass (problem_check.h) for six matches or more. A pure function
-// of the problem and the stream's name.
+// Fits to matches that pass RefuseUnsolvable (problem_check.h) with at least six matches. A pure function of
+// the problem and the stream's name.
 TwoViewFits FitTwoViewModels(const MotionProblem& problem, RandomStream& rng);
 
 // The matches that agree with a model at a significance level, ascending.

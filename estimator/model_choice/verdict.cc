@@ -21,12 +21,12 @@
 namespace rcme {
 namespace {
 
-// One more than determines a motion: of five the epipolar geometry has no residual, whatever they are.
+// One more than a minimal sample: five matches leave an epipolar geometry no residual.
 constexpr int kLeastMatches = 6;
 
-constexpr double kInlierLevel = 0.001;   // of a model's inliers
-constexpr double kChanceLevel = 0.001;   // of the expected number of models that random matches give
-constexpr double kAgreeingLevel = 0.01;  // of the matches that kGricOfInliers looks at
+constexpr double kInlierLevel = 0.001;   // significance level of a model's inliers
+constexpr double kChanceLevel = 0.001;   // bound of the NFA
+constexpr double kAgreeingLevel = 0.01;  // significance level of the matches that kGricOfInliers uses
 
 using Criterion = double (*)(std::span<const double>, const ModelDimensions&);
 
@@ -38,7 +38,7 @@ std::array<double, 3> ScoresBy(Criterion score, const TwoViewFits& fits) {
   return scores;
 }
 
-// S_H / (S_H + S_F) > c is c S_F < (1 - c) S_H: with both sides negative, the least wins.
+// S_H / (S_H + S_F) > c means c S_F < (1 - c) S_H; with both sides negated, the least score wins.
 std::array<double, 3> OrbSlam2Scores(const MotionProblem& problem, const TwoViewFits& fits) {
   constexpr double c = kOrbSlam2HomographyShare;
   return {kInfinity, -(1.0 - c) * OrbSlam2HomographyScore(problem, fits.homography.matrix),

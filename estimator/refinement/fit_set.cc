@@ -10,8 +10,8 @@
 namespace rcme {
 namespace {
 
-// The triangulated point lies behind a camera, and its parallax is too large to be noise around a point at
-// infinity.
+// Whether the triangulated point lies behind a camera, and its parallax is too large to be noise around a
+// point at infinity.
 bool IsClearlyBehindACamera(const MotionProblem& problem, const RelativePose& pose,
                             const Correspondence& match, double sigma_px) {
   const Eigen::Vector3d ray1 = problem.camera1.Ray(match.x1_px);

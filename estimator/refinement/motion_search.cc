@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kMaxIterations = 50;
 
-// From `start` to the optimum; nothing if it is not reached.
+// The optimum from `start`; nullopt if it is not reached.
 std::optional<RelativePose> Descend(const RelativePose& start, const MotionCost& cost, int* num_iterations) {
   RelativePose pose = start;
   NormalEquations at = cost.linearize(pose);
@@ -20,7 +20,8 @@ std::optional<RelativePose> Descend(const RelativePose& start, const MotionCost&
     if (!step.allFinite()) return std::nullopt;
     const RelativePose moved = Retract(pose, step);
     const double decrease = -0.5 * step.dot(at.gradient);
-    if (damping < 1.0 && decrease < cost.negligible_decrease) return moved;  // needs no other look
+    if (damping < 1.0 && decrease < cost.negligible_decrease)
+      return moved;  // taken without another evaluation
     NormalEquations there = cost.linearize(moved);
     if (there.cost < at.cost) {
       pose = moved;

@@ -22,13 +22,13 @@ struct RefinedMotion {
   int num_iterations = 0;
 };
 
-// Of a cost 1/2 sum rho(r^2) at a motion, in its tangent coordinates.
+// The cost 1/2 sum rho(r^2) at a motion and its derivatives in the motion's tangent coordinates.
 struct NormalEquations {
   double cost = 0.0;
   Vector5d gradient = Vector5d::Zero();  // sum rho' r r_p'
-  // sum max(psi', 0.7 rho') r_p' r_p, psi = rho' r: Gauss-Newton's for the squared loss. With rho' in the
-  // place of psi', every step would leave a fifth of the error; psi' alone vanishes far from the optimum.
-  // From the winners of 100 trials 0.25 took 9.4 evaluations, 0.5 5.6, 0.7 4.8, 0.8 5.0, 1 6.1.
+  // sum max(psi', 0.7 rho') r_p' r_p, psi = rho' r; for the squared loss that of Gauss-Newton. With rho' in
+  // the place of psi' every step would leave a fifth of the error; psi' alone vanishes far from the optimum.
+  // From the winners of 100 trials a factor of 0.25 took 9.4 evaluations, 0.5 5.6, 0.7 4.8, 0.8 5.0, 1 6.1.
   Matrix5d hessian = Matrix5d::Zero();
 };
 
@@ -38,8 +38,8 @@ struct MotionCost {
   double negligible_decrease = 1e-9;                         // of the cost; see MinimizeOverMotion
 };
 
-// The optimum from `start`. Converged when the step that is left, which is taken, would lower the cost by
-// less than `negligible_decrease` d: it is sqrt(2 d) standard deviations long.
+// Minimises the cost from `start`. Converged when the next step, which is still taken, would lower the cost
+// by less than d = `negligible_decrease`; that step is at most sqrt(2 d) standard deviations long.
 RefinedMotion MinimizeOverMotion(const RelativePose& start, const MotionCost& cost);
 
 }  // namespace rcme

@@ -40,7 +40,7 @@ RowMajorPlusJacobian PlusJacobianAt(const RelativePose& pose) {
   return jacobian;
 }
 
-// The 5-dimensional manifold of two-view motions, with the project's one retraction.
+// The 5-dimensional manifold of two-view motions with Retract (geometry/pose.h).
 class MotionManifold : public ceres::Manifold {
  public:
   int AmbientSize() const override { return kPoseSize; }
@@ -87,7 +87,7 @@ struct ReprojectionError {
 
 using ReprojectionCost = ceres::AutoDiffCostFunction<ReprojectionError, 4, kPoseSize, kPointSize>;
 
-// Start of one point: the Sampson-corrected match, triangulated.
+// The start value of a point: the triangulated Sampson-corrected match.
 Eigen::Vector3d InitialPoint(const MotionProblem& problem, const Correspondence& match,
                              const RelativePose& pose, const Eigen::Matrix3d& F) {
   const Eigen::Vector4d correction = SampsonVector(F, match);
@@ -96,8 +96,8 @@ Eigen::Vector3d InitialPoint(const MotionProblem& problem, const Correspondence&
   return {ray1.x(), ray1.y(), InverseDepth(pose, ray1, ray2)};
 }
 
-// One match's share of the Fisher information of the motion, its point marginalised: of the four residuals,
-// three are spent on the point, and the one normal to them informs the motion.
+// One match's share of the Fisher information of the motion with its point marginalised. Of the four
+// residuals three determine the point; the one normal to them informs about the motion.
 Matrix5d MarginalInformation(const ReprojectionCost& cost, const double* pose, const double* point) {
   Eigen::Matrix<double, 4, kPoseSize, Eigen::RowMajor> d_pose;
   Eigen::Matrix<double, 4, kPointSize, Eigen::RowMajor> d_point;

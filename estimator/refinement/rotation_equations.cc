@@ -13,7 +13,7 @@ struct Transfer {
   double d2;
 };
 
-// Nothing behind camera 2. With y = R ray1, h(y) = [fx y0 / y2 + cx, fy y1 / y2 + cy]; w moves y by w x y.
+// nullopt behind camera 2. With y = R ray1, h(y) = [fx y0 / y2 + cx, fy y1 / y2 + cy]; w moves y by w x y.
 std::optional<Transfer> EvaluateTransfer(const MotionProblem& problem, const Eigen::Matrix3d& R,
                                          const Correspondence& match) {
   const Camera &camera1 = problem.camera1, &camera2 = problem.camera2;

@@ -1,7 +1,7 @@
-// The rotation without a translation that fits a set of matches best.
+// The pure rotation that fits a set of matches best.
 //
-// `Matches` holds sets of matches and sums their equations, refinement/rotation_equations.h or
-// kernels/rotation_equations.h; its interface: refine_winner.h.
+// `Matches` holds sets of matches and sums their equations; its interface is MatchSets of refine_winner.h.
+// Equations: refinement/rotation_equations.h or kernels/rotation_equations.h.
 #pragma once
 
 #include <functional>
@@ -14,26 +14,26 @@ namespace rcme {
 struct RotationFit {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();         // cam2_from_cam1
   Eigen::Matrix3d rotation_cov = Eigen::Matrix3d::Zero();  // 3x3, rad^2, as the block of pose_cov
-  int num_within = 0;                                      // of all matches: d2 <= threshold under R
-  int num_fitted = 0;                                      // of the set: the same; these were fitted
-  double energy =
-      0.0;  // sum d2 over these; chi-square with 2 num_fitted - 3 degrees of freedom for a rotation
+  int num_within = 0;  // number of all matches with d2 <= threshold under R
+  int num_fitted = 0;  // the same within the set; R was fitted to these
+  // sum d2 over the fitted; chi-square with 2 num_fitted - 3 degrees of freedom for a rotation
+  double energy = 0.0;
 };
 
-// Reweighted least squares from `start`, to a step of 0.001 standard deviations; of 0.1 with Cauchy's loss,
-// which serves to find the wrong matches.
+// Reweighted least squares from `start`, until a step is shorter than 0.001 standard deviations; 0.1 with
+// Cauchy's loss, which only serves to find the wrong matches.
 Eigen::Matrix3d MinimizeOverRotation(
     const Eigen::Matrix3d& start, Loss loss,
     const std::function<RotationEquations(const Eigen::Matrix3d& R, Loss loss)>& linearize);
 
-// The inverse of the Hessian; not finite where it is singular.
+// The inverse of the Hessian; not finite if it is singular.
 Eigen::Matrix3d ComputeRotationCovariance(const RotationEquations& equations);
 
-// Most fits after the robust one.
+// Maximum number of fits after the robust one.
 inline constexpr int kMaxRotationRefits = 10;
 
-// From `start` with Cauchy's loss over the set, then maximum likelihood over its matches within the
-// threshold, until they do not change any more. None are fitted where fewer than three are left.
+// Fits from `start` with Cauchy's loss over the set, then by maximum likelihood to its matches within the
+// threshold, until these do not change. Stops with num_fitted = 0 if fewer than three of them are left.
 template <typename Matches>
 RotationFit FitRotation(const Matches& matches, const typename Matches::Set& set,
                         const Eigen::Matrix3d& start, double threshold) {

@@ -1,5 +1,5 @@
-// The normal equations of the Sampson distance, one match at a time, in pixels. The many-at-a-time twin that
-// the fast implementation takes is kernels/sampson_equations.h; the two share no formula.
+// The normal equations of the Sampson distance, one match at a time, in pixels. The fast implementation is
+// kernels/sampson_equations.h; the two share no formula.
 #pragma once
 
 #include <array>
@@ -14,20 +14,20 @@ namespace rcme {
 struct SampsonResidual {
   double r = 0.0;     // g / (sigma |J|), sigma that of the match
   double norm = 0.0;  // sigma |J|
-  Vector5d g_p;       // of g
-  Vector5d r_p;       // of r
+  Vector5d g_p;       // derivatives of g
+  Vector5d r_p;       // derivatives of r
 };
 // The same without the derivatives of r, which take most of the time.
 struct SampsonScore {
   double r = 0.0;            // g / (sigma |J|)
   double norm = 0.0;         // sigma |J|
-  Vector5d g_p;              // of g
+  Vector5d g_p;              // derivatives of g
   Eigen::Vector4d gradient;  // J'
 };
 class SampsonLinearization {
  public:
   SampsonLinearization(const MotionProblem& problem, const RelativePose& pose);
-  // Of a match whose sigma is sigma_px times `noise_scale`.
+  // For a match with sigma = sigma_px * noise_scale.
   SampsonResidual Evaluate(const Correspondence& match, double noise_scale = 1.0) const;
   SampsonScore Score(const Correspondence& match, double noise_scale = 1.0) const;
 
@@ -37,8 +37,9 @@ class SampsonLinearization {
   std::array<Eigen::Matrix3d, 5> dF_;  // px
 };
 
-// Of sum rho(r^2) / 2 over the matches `indices` at a motion, r = g / (sigma |J|). The derivative of r along
-// coordinate k of the motion is (g_k - r sigma J J_k' / |J|) / (sigma |J|), g_k and J_k those of g and J.
+// The equations of sum rho(r^2) / 2 over the matches `indices` at a motion, r = g / (sigma |J|). The
+// derivative of r along coordinate k of the motion is (g_k - r sigma J J_k' / |J|) / (sigma |J|), g_k and J_k
+// the derivatives of g and J.
 NormalEquations LinearizeSampson(const MotionProblem& problem, std::span<const int> indices,
                                  const RelativePose& pose, Loss loss);
 

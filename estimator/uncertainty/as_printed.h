@@ -1,5 +1,5 @@
-// The paper's formulas read to the letter, where the estimator uses another route to the same number or to
-// the right one. The claim audit holds them against each other.
+// The paper's formulas exactly as printed, where the estimator computes the same number, or the correct one,
+// in another way. The claim audit compares the two.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,7 +22,7 @@ Matrix9d OverdeterminedCovariance(const Matrix9d& information, const Eigen::Matr
 // axis `onto` (0..8). They are normal to f only for the last axis.
 Eigen::Matrix<double, 9, 8> HouseholderColumns(const Vector9d& f, int onto);
 
-// delta' Sigma^+ delta with the pseudo-inverse of the rank that Sigma_delta has to first order: one.
+// delta' Sigma^+ delta with the pseudo-inverse of rank one, the rank of Sigma_delta to first order.
 double RankOneDistance(const Eigen::Vector4d& delta, const Eigen::Matrix4d& delta_cov);
 
 }  // namespace rcme

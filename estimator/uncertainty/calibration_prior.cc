@@ -3,7 +3,7 @@
 namespace rcme {
 namespace {
 
-// What a step of one intrinsic does to the problem, image by image.
+// Changes one intrinsic of one image of the problem by a step.
 using Change = std::function<void(Camera&, Eigen::Vector2d Correspondence::*, double, MotionProblem&)>;
 
 void ScaleFocal(Camera& camera, Eigen::Vector2d Correspondence::*, double by, MotionProblem&) {
@@ -11,7 +11,7 @@ void ScaleFocal(Camera& camera, Eigen::Vector2d Correspondence::*, double by, Mo
   camera.fy *= 1.0 + by;
 }
 
-// The pinhole's point of an image with this k1, to first order.
+// Undistorts the points of one image by this k1, to first order.
 void Undistort(Camera& camera, Eigen::Vector2d Correspondence::*x_px, double k1, MotionProblem& problem) {
   const Eigen::Vector2d centre_px(camera.cx, camera.cy);
   for (Correspondence& match : problem.matches) {

@@ -1,4 +1,4 @@
-// What an uncertain calibration adds to the covariance of a motion.
+// The contribution of an uncertain calibration to the covariance of a motion.
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace rcme {
 
-// Standard deviations of the intrinsics, of both cameras independently; of one camera that took both images,
-// whose intrinsics are the same in both, of that camera.
+// Standard deviations of the intrinsics. Two cameras have independent errors; a single camera that took both
+// images (equal K) has the same errors in both.
 struct CalibrationPrior {
   double focal_sd = 0.0;               // relative
   double principal_point_sd_px = 0.0;  // per coordinate
@@ -25,9 +25,9 @@ Parameter PrincipalPointParameter(double* principal_point_sd_px);
 Parameter DistortionParameter(double* distortion_sd);
 
 // G Sigma_K G', 5x5 [rotation, direction], rad^2. A motion at which the gradient g(p, K) of a cost vanishes
-// moves with K by G = dp/dK = -H^-1 dg/dK (implicit function theorem), H the Hessian of the cost; dg/dK by
-// differences, with a step that moves the points by little of their noise. `gradient_of` is g at the motion,
-// of a problem with other intrinsics or, as if undistorted, other matches.
+// moves with K by G = dp/dK = -H^-1 dg/dK (implicit function theorem), H the Hessian of the cost. dg/dK is
+// computed by finite differences; a step moves the points by a small part of their noise. `gradient_of` gives
+// g at the motion for a problem with other intrinsics, or with matches undistorted by another k1.
 Matrix5d CalibrationCovariance(const MotionProblem& problem, const CalibrationPrior& prior,
                                const Matrix5d& inverse_hessian,
                                const std::function<Vector5d(const MotionProblem&)>& gradient_of);

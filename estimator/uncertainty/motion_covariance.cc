@@ -27,7 +27,7 @@ Matrix5d CovarianceOfMotion(const RelativePose& pose, const Matrix9d& f_cov) {
   return J_p * f_cov * J_p.transpose();
 }
 
-// Of five matches: the exact case (eq. 5), carried on to the motion.
+// For five matches: the exact case (eq. 5), carried on to the motion.
 std::optional<Matrix5d> FirstOrderMotionCovariance(const RelativePose& pose, const Camera& camera1,
                                                    const Camera& camera2,
                                                    std::span<const Correspondence> matches, double sigma_px) {
@@ -37,8 +37,8 @@ std::optional<Matrix5d> FirstOrderMotionCovariance(const RelativePose& pose, con
   for (Eigen::Matrix3d& derivative : dF_dp)
     derivative = FundamentalFromEssential(derivative, camera1, camera2);
 
-  // The triangle of the whitened rows' QR factorization, row after row by plane rotations: root' root is the
-  // information, but its condition number is not squared.
+  // The triangle of the QR factorization of the whitened rows, updated row by row with plane rotations. root'
+  // root is the information, but its condition number is not squared.
   Matrix5d root = Matrix5d::Zero();
   for (const Correspondence& match : matches) {
     const double variance = sigma_px * sigma_px * EvaluateConstraint(F, match).squared_gradient();

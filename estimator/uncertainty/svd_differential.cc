@@ -14,20 +14,21 @@ namespace rcme {
 //   Q_ij = s_j Omega_U,ij - s_i Omega_V,ij         Omega_U,ij = (s_j Q_ij + s_i Q_ji) / (s_j^2 - s_i^2)
 //   Q_ji = s_j Omega_V,ij - s_i Omega_U,ij   =>    Omega_V,ij = (s_i Q_ij + s_j Q_ji) / (s_j^2 - s_i^2).
 //
-// R = U W V', W a turn by a quarter (or back) about e3, moves by dR R' = U (Omega_U - W Omega_V W') U', a
-// rotation by the vector w = U (omega_U - W omega_V), omega = (Omega_32, Omega_13, Omega_21). W mixes the
-// first two entries of omega_V and keeps the third, where
+// R = U W V', W a quarter turn (or back) about e3, moves by dR R' = U (Omega_U - W Omega_V W') U', a rotation
+// by the vector w = U (omega_U - W omega_V), omega = (Omega_32, Omega_13, Omega_21). W mixes the first two
+// entries of omega_V and keeps the third, where
 //
-//   Omega_U,21 - Omega_V,21 = (Q_21 - Q_12) (s1 - s2) / (s1^2 - s2^2) = (Q_21 - Q_12) / (s1 + s2):
+//   Omega_U,21 - Omega_V,21 = (Q_21 - Q_12) (s1 - s2) / (s1^2 - s2^2) = (Q_21 - Q_12) / (s1 + s2).
 //
-// the turn of U and V about e3 in common, which is free at s1 = s2, is not seen in R. Nor is it in
-// t = +-U e3: dt = +-U (omega_U x e3).
+// A common turn of U and V about e3, which is undetermined at s1 = s2, cancels in R. It also cancels in t =
+// +-U e3: dt = +-U (omega_U x e3).
 Eigen::Matrix<double, 5, 9> MotionJacobianBySvd(const EssentialProjection& projection,
                                                 const RelativePose& pose) {
   const Eigen::Matrix3d &U = projection.U, &V = projection.V;
   const double s1 = projection.singular_values(0), s2 = projection.singular_values(1),
                s3 = projection.singular_values(2);
-  // Which of the four: W turns by +90 deg (W_21 = 1) or by -90 deg (W_21 = -1), and t = u3 or -u3.
+  // Identifies the motion among the four: W turns by +90 deg (W_21 = 1) or by -90 deg (W_21 = -1), and t = u3
+  // or -u3.
   const double turn = (U.transpose() * pose.R * V)(1, 0) > 0.0 ? 1.0 : -1.0;
   const double side = U.col(2).dot(pose.t) > 0.0 ? 1.0 : -1.0;
   const Eigen::Matrix<double, 2, 3> to_tangent = DirectionBasis(pose.t).transpose() * (side * U);
