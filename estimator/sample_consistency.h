@@ -12,8 +12,8 @@
 
 namespace rcme {
 
-// As printed (eq::sample-p-test): every sample point must pass the point test, d2 within its threshold (eq.
-// 12), as if the motion had not been computed from it.
+// As printed (eq::sample-p-test): every sample point must pass the point test, d2 within its threshold
+// (eq. 12), as if the motion had not been computed from it.
 template <typename Solver, typename PointTest>
 bool EverySamplePointFits(const MotionProblem& problem, const Hypothesis<Solver>& hypothesis,
                           const PointTest& test, double threshold) {
