@@ -84,8 +84,8 @@ Eigen::Matrix<double, kRows, kColumns> FromCv(const cv::Mat& matrix) {
   return copy;
 }
 
-// d [position, rotation about camera 1's axes] / d [w, b], 6x5. From R <- Exp(w) R, t <- t + B b: R' turns
-// into R' Exp(-w) = Exp(-R'w) R', and -R't into -R'(I - [w]x)(t + B b) = -R't - R'[t]x w - R' B b.
+// d [position, rotation about camera 1's axes] / d [w, b], 6x5. From R <- Exp(w) R, t <- t + B b: R' becomes
+// R' Exp(-w) = Exp(-R'w) R', and -R't becomes -R'(I - [w]x)(t + B b) = -R't - R'[t]x w - R' B b.
 Eigen::Matrix<double, 6, 5> RosJacobian(const RelativePose& pose) {
   Eigen::Matrix<double, 6, 5> J = Eigen::Matrix<double, 6, 5>::Zero();
   J.topLeftCorner<3, 3>() = -pose.R.transpose() * CrossMatrix(pose.t);
@@ -94,7 +94,7 @@ Eigen::Matrix<double, 6, 5> RosJacobian(const RelativePose& pose) {
   return J;
 }
 
-// `is_conformed`: the answer's domain is that of the file.
+// `is_conformed`: the answer's probability domain is that of the file `conform`.
 TwoViewMotion MotionFrom(const MotionProblem& problem, const MotionEstimate& estimate,
                          double greatest_probability, double integrity_risk, bool is_conformed) {
   TwoViewMotion motion;
@@ -201,7 +201,8 @@ TwoViewMotion TwoViewInitializer::Estimate(const std::vector<cv::Point2f>& point
     RandomStream rng({.seed = setup_->seed});
     return MotionFrom(problem, setup_->estimator->Estimate(problem, rng),
                       setup_->greatest_failure_probability, setup_->integrity_risk, setup_->is_conformed);
-  } catch (const std::exception& error) {  // memory, or a fault of ours: a robot goes on without this pair
+  } catch (const std::exception&
+               error) {  // out of memory or an internal error: the robot goes on without this pair
     return BadInput(fmt::format("internal error: {}", error.what()));
   }
 }

@@ -12,7 +12,7 @@ constexpr double kNarrowest = 1.0 + 1e-5;  // the search ends at this ratio of i
 constexpr double kLeast_m = 1e-9, kGreatest_m = 1e9;
 constexpr int kMaxSteps = 200;
 
-// To six digits: the same on machines whose elementary functions differ in their last bits.
+// Six digits, so that the result is the same on machines whose elementary functions differ in the last bits.
 double Rounded(double x) {
   const double step = std::pow(10.0, std::floor(std::log10(x)) - 5.0);
   return step * std::round(x / step);
@@ -37,7 +37,8 @@ BaselineSearch FindBaseline(const ParallaxOfBaseline& parallax_deg, double wante
     } else {
       too_long = tried;
     }
-    // From the second step on the first guess in proportion is about right; it may not grow without bounds.
+    // A step in proportion is about right, but must stay between the two baselines. Otherwise: twice the
+    // shorter one if there is no longer one yet, else their geometric mean.
     const double in_proportion = tried * wanted_deg / parallax;
     const bool is_inside = in_proportion > too_short && in_proportion < too_long;
     tried = Rounded(is_inside              ? in_proportion

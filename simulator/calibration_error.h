@@ -8,7 +8,7 @@
 
 namespace rcme {
 
-// What the estimators assume where it differs from the truth.
+// Assumptions of the estimators that differ from the truth.
 struct CalibrationError {
   double assumed_sigma_px = std::numeric_limits<double>::quiet_NaN();  // NaN: the true one
   double focal_error = 0.0;               // relative: assumed f = true f (1 + error), both cameras

@@ -5,12 +5,12 @@
 namespace rcme {
 namespace {
 
-// The row of a point decides on the time, which moves its row: each round is better by the share of the image
-// that a point moves meanwhile, a tenth or less.
+// The row of a point determines its time, which in turn moves the row. Each round reduces the error by the
+// share of the image that a point moves meanwhile, a tenth or less.
 constexpr int kRounds = 8;
 
 Eigen::Vector2d ProjectDistorted(const SceneCamera& camera, double k1, const Eigen::Vector3d& point_in_cam) {
-  if (camera.HasLens()) {  // which bends the rays that are left
+  if (camera.HasLens()) {  // the residual distortion acts on the rays before the lens
     const double r2 = point_in_cam.head<2>().squaredNorm() / (point_in_cam.z() * point_in_cam.z());
     const Eigen::Vector2d bent = (1.0 + k1 * r2) * point_in_cam.head<2>();
     return camera.Project({bent.x(), bent.y(), point_in_cam.z()});
@@ -20,7 +20,7 @@ Eigen::Vector2d ProjectDistorted(const SceneCamera& camera, double k1, const Eig
   return centre_px + (1.0 + k1 * ray.squaredNorm()) * (x_px - centre_px);
 }
 
-// The image whose middle row is read at the time `middle`.
+// The pixel of a point in the image whose middle row is read at the time `middle`.
 Eigen::Vector2d ImagedPoint(const ViewPair& view, const SceneCamera& camera, double middle,
                             const CameraDefects& defects, const Eigen::Vector3d& point_in_cam1) {
   const Eigen::Vector3d w = VectorFromRotation(view.cam2_from_cam1_true.R);

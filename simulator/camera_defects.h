@@ -8,21 +8,21 @@
 
 namespace rcme {
 
-// What real cameras have and an ideal pinhole does not; no estimator knows of it.
+// Departures of real cameras from the pinhole model. Estimators do not know about them.
 struct CameraDefects {
-  // Radial distortion that a calibration has left, of both cameras: a point (x, y, 1) of a ray is imaged as
-  // (1 + k1 (x^2 + y^2)) (x, y).
+  // Radial distortion left by a calibration, in both cameras: a point (x, y, 1) of a ray is imaged as (1 + k1
+  // (x^2 + y^2)) (x, y).
   double distortion_k1 = 0.0;
-  // The rows of an image are read one after the other: time from its first to its last, as a share of the
-  // time between the two images. The motion's rotation vector w and translation T grow evenly in time, X(a) =
-  // Exp(a w) X1 + a T; the middle rows are read at a = 0 and a = 1, so that the true motion is between these.
+  // Rolling shutter: the time from the first to the last row of an image, as a share of the time between the
+  // two images. The motion's rotation vector w and translation T grow linearly in time, X(a) = Exp(a w) X1 +
+  // a T. The middle rows are read at a = 0 and a = 1; the true motion is between these.
   double rolling_shutter = 0.0;
 
   bool IsNone() const { return distortion_k1 == 0.0 && rolling_shutter == 0.0; }
 };
 std::vector<Parameter> Parameters(CameraDefects& defects);
 
-// Where the two images show a point (camera 1's frame, m), before noise; ExactMatch without defects.
+// The match of a point (camera 1's frame, m) with defects, before noise. Without defects it is ExactMatch.
 Correspondence ImagedMatch(const ViewPair& view, const CameraDefects& defects,
                            const Eigen::Vector3d& point_in_cam1);
 

@@ -8,7 +8,7 @@
 
 namespace rcme {
 
-// The two cameras of every trial of a condition: the plug-in contract of simulator/cameras.
+// The two cameras of every trial of a condition: the interface of the files in simulator/cameras.
 class CameraModel {
  public:
   virtual ~CameraModel() = default;

@@ -23,7 +23,7 @@ std::vector<Parameter> Parameters(Baseline& baseline) {
 }
 
 Eigen::Vector3d DrawDirection(RandomStream& rng) {
-  // Archimedes: the height on the axis is uniform.
+  // On the sphere the height along an axis is uniform (Archimedes).
   const double z = rng.Uniform(-1.0, 1.0);
   const double radius = std::sqrt(1.0 - z * z);
   const CosSin azimuth = PortableCosSinOfTurn(rng.Uniform());

@@ -14,7 +14,7 @@ Eigen::Vector3d DrawNormals(RandomStream& rng) {
   return {x, y, z};
 }
 
-// A unit vector turned by the parts of these rotation vectors that lie across it.
+// A unit vector turned by the components of these rotation vectors perpendicular to it.
 Eigen::Vector3d Turned(const Eigen::Vector3d& v, const Eigen::Vector3d& noise_rad,
                        const Eigen::Vector3d& bias_axis, double bias_rad) {
   const auto across = [&](const Eigen::Vector3d& w) { return Eigen::Vector3d(w - w.dot(v) * v); };

@@ -10,26 +10,25 @@
 
 namespace rcme {
 
-// A law of detection noise: the plug-in contract of simulator/noise. Configured once, then const and shared
-// by threads.
+// A law of detection noise: the interface of the files in simulator/noise. Configured once, then const and
+// shared by threads.
 //
-// Every law has the key sigma_px, and scales itself so that sigma_px is the root mean square of the noise
-// over the four coordinates of a match: laws differ in shape, not in power. (The exception is
-// `quantised`, whose rounding adds noise that its sigma_px does not include.)
+// Every law has the key sigma_px, the root mean square of the noise over the four coordinates of a match:
+// laws differ in shape, not in power. (The exception is `quantised`, whose rounding adds noise beyond
+// sigma_px.)
 class NoiseModel {
  public:
   virtual ~NoiseModel() = default;
   // The parameters by name, sigma_px among them; valid as long as the model lives.
   virtual std::vector<Parameter> Parameters() = 0;
   virtual double sigma_px() const = 0;
-  // Which point of the scene each match is of: `points` holds 0, 1, ..., a point for each match; a law under
-  // which some are matched again and others not at all changes it.
+  // Assigns a scene point to each match. `points` holds 0, 1, ..., one point per match; a law that detects
+  // some points several times changes it, so that other points are not matched.
   virtual void DrawPoints(std::span<std::uint32_t>, RandomStream&) const {}
-  // Adds noise to the exact matches of these points, independent from match to match unless the law says
-  // otherwise.
+  // Adds noise to exact matches, independent between matches unless the law says otherwise.
   virtual void AddTo(std::span<Correspondence> matches, RandomStream& rng) const = 0;
-  // The same, and what a detector says of it: each match's standard deviation over sigma_px. Empty: it says
-  // nothing of single matches.
+  // The same; also returns each match's standard deviation over sigma_px as a detector would state it. Empty:
+  // the detector states nothing.
   virtual std::vector<double> AddAndTell(std::span<Correspondence> matches, RandomStream& rng) const {
     AddTo(matches, rng);
     return {};

@@ -29,7 +29,7 @@ Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierMo
   std::vector<Correspondence> matches = exact;
   const std::vector<double> noise_scale = noise.AddAndTell(matches, noise_rng);
 
-  // A random order; the first matches in it become wrong, then the list is read in a second random order.
+  // In a random order the first matches become wrong; then the list is shuffled again.
   const OutlierModel::Drawn drawn = outliers.DrawCount(static_cast<int>(n), outlier_rng);
   const auto num_outliers = static_cast<size_t>(drawn.num_outliers);
   std::vector<std::uint32_t> order(n);

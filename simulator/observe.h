@@ -11,19 +11,18 @@
 
 namespace rcme {
 
-// What the two images give: noisy matches in random order, and which of them are true (for scoring alone).
+// The noisy matches in random order, and which of them are true (for scoring alone).
 struct Observation {
   std::vector<Correspondence> matches;
-  std::vector<std::uint32_t> point;  // which point of the scene each match is of, or was of
+  std::vector<std::uint32_t> point;  // the scene point of each match; for a wrong one, before it became wrong
   std::vector<bool> is_inlier_true;
-  std::vector<bool> is_undetectable;  // wrong, but on the true epipolar line: no epipolar test can tell it
-  std::vector<double> noise_scale;    // what the detector says of each (noise_model.h); empty: nothing
+  std::vector<bool> is_undetectable;  // wrong, but on the true epipolar line
+  std::vector<double> noise_scale;    // as the detector states it (noise_model.h); may be empty
   double weight = 1.0;                // of the trial (outlier_model.h)
 };
 
-// Noise and outliers each draw from a stream of their own, so that the noise of a match does not depend on
-// the outlier ratio. Noise may carry a point a little over the image border, as a detector's would not; it is
-// left there.
+// Noise and outliers draw from separate streams, so the noise of a match does not depend on the outlier
+// ratio. Noise may move a point slightly outside the image, which a real detector would not; it is kept.
 Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierModel& outliers,
                     RandomStream& noise_rng, RandomStream& outlier_rng, const CameraDefects& defects = {});
 

@@ -12,49 +12,50 @@
 
 namespace rcme {
 
-// What an outlier law may see and change: the noisy matches of all points, matches[i] that of
-// scene.points_in_cam1[i], or under some noise laws of another point that is matched again.
+// The input and output of an outlier law. matches[i] is the noisy match of scene.points_in_cam1[i], or of
+// another point if the noise law detects points several times.
 struct MatchedScene {
   const Scene& scene;
   std::span<const std::uint32_t> inliers;  // points whose matches stay true, in random order
   std::span<Correspondence> matches;
-  // To be set for wrong matches that satisfy the true epipolar constraint: no epipolar test can detect them.
+  // Set this for wrong matches that satisfy the true epipolar constraint: no epipolar test can detect them.
   std::vector<bool>& is_undetectable;
   std::span<const Correspondence> exact;  // the matches before noise
 };
 
-// How a wrong match comes about: the plug-in contract of simulator/outliers. Configured once, then const and
+// A law of wrong matches: the interface of the files in simulator/outliers. Configured once, then const and
 // shared by threads.
 class OutlierLaw {
  public:
   virtual ~OutlierLaw() = default;
   // The parameters by name; valid as long as the law lives.
   virtual std::vector<Parameter> Parameters() { return {}; }
-  // Makes the matches of `points` (disjoint from the inliers, in random order) wrong; no points, no draw and
-  // no error. Both ends stay in their images, but for noise. Throws InputError that names the keys if that is
-  // impossible.
+  // Makes the matches of `points` (disjoint from the inliers, in random order) wrong. Without points it draws
+  // nothing and throws nothing. Except for noise both ends stay in their images. Throws InputError that names
+  // the keys if that is impossible.
   virtual void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,
                        RandomStream& rng) const = 0;
 };
 
-// Draws for one outlier, after which a law counts as impossible: less than about one in a thousand fits.
+// Maximum number of draws for one outlier. If none fits, less than about 0.1 % of the draws do, and the law
+// is impossible.
 inline constexpr int kMaxOutlierDraws = 10'000;
 
-// What the noise law has added to a point's match (px), for laws that put the match elsewhere and keep its
-// noise. To be asked before the match is changed.
+// The noise of a point's match (px), for laws that move the match and keep its noise. Call it before the
+// match is changed.
 inline Correspondence ComputeMatchNoise(const MatchedScene& matched, std::uint32_t point) {
   const Correspondence& exact = matched.exact[point];
   return {matched.matches[point].x1_px - exact.x1_px, matched.matches[point].x2_px - exact.x2_px};
 }
 
-// A key that several laws have.
+// A parameter shared by several laws.
 inline Parameter MinShiftParameter(double* min_shift_px) {
   return Parameter::Real("outlier_min_shift_px", min_shift_px, {0.0, 1e5}, "px",
                          "least distance between the wrong and the true point in image 2, before noise");
 }
 
-// Uniform over the image, whose border runs half a pixel outside the outermost pixel centres; behind a lens
-// over the pixels that a ray reaches, of which an image that shows a point has enough.
+// Uniform over the image, whose border runs half a pixel outside the outermost pixel centres. With a lens:
+// uniform over the pixels that a ray reaches, which are numerous in every image that shows a point.
 inline Eigen::Vector2d DrawPixel(const SceneCamera& camera, RandomStream& rng) {
   Eigen::Vector2d x_px;
   for (int draw = 0; draw < kMaxOutlierDraws; ++draw) {

@@ -9,7 +9,7 @@
 
 namespace rcme {
 
-// How many matches are wrong, and how they come about.
+// The number of wrong matches and their law.
 struct OutlierModel {
   enum class Count { kExact, kBernoulli };
 
@@ -19,20 +19,20 @@ struct OutlierModel {
 
   double outlier_ratio = 0.2;
   Count count = Count::kExact;
-  // q of stats/tilted_binomial.h: the number is drawn as if the ratio were anything between outlier_ratio and
-  // this. NaN: it is not tilted. Only for a Bernoulli count; throws InputError otherwise, when it is drawn.
+  // q of stats/tilted_binomial.h: the number is drawn with a ratio uniform between outlier_ratio and this.
+  // NaN: no tilting. Only for a Bernoulli count; otherwise DrawCount throws InputError.
   double tilted_to = std::numeric_limits<double>::quiet_NaN();
   std::shared_ptr<OutlierLaw> law;
 
-  // The number of wrong matches of a trial, and the trial's weight: the probability of that number under the
-  // model, divided by that under the law it was drawn from. It is 1 unless the number is tilted.
+  // The number of wrong matches of a trial, and the trial's weight: the probability of this number under the
+  // model divided by that under the law it was drawn from. It is 1 without tilting.
   struct Drawn {
     int num_outliers = 0;
     double weight = 1.0;
   };
   Drawn DrawCount(int num_matches, RandomStream& rng) const;
 };
-// Those of the law included.
+// Includes the parameters of the law.
 std::vector<Parameter> Parameters(OutlierModel& outliers);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// Tables of what there is to simulate: one line per scene, motion, camera pair, noise and outlier law.
+// The registries of the simulator: scenes, motions, camera pairs, noise laws and outlier laws, one line each.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ struct RegistryEntry {
   std::function<std::unique_ptr<Model>()> make;  // with default parameters
 };
 
-// The entry called `name`. Throws InputError that names `key` and lists what is allowed.
+// The entry called `name`. Throws InputError that names `key` and lists the known names.
 template <typename Entry>
 const Entry& FindEntry(const std::vector<Entry>& registry, const std::string& key, const std::string& name) {
   const auto entry = std::ranges::find(registry, name, &Entry::name);

@@ -5,12 +5,11 @@
 
 namespace rcme {
 
-// A camera of the simulator, which may have a lens. Its pixels and its size are those of the image as it is
-// taken, which the lens distorts. What it is as a Camera is what undistortion makes of it: the pinhole camera
-// of the same K.
+// A camera of the simulator, possibly with a lens. Its pixels and its size are those of the distorted image.
+// Its base Camera is the pinhole camera with the same K, to which undistortion leads.
 struct SceneCamera : Camera {
   SceneCamera() = default;
-  SceneCamera(const Camera& pinhole) : Camera(pinhole) {}  // converts: without a lens
+  SceneCamera(const Camera& pinhole) : Camera(pinhole) {}  // implicit: without a lens
   explicit SceneCamera(const Lens& lens) : Camera(lens.camera), model(lens.model), k(lens.k) {}
 
   LensModel model = LensModel::kPinhole;
@@ -19,12 +18,12 @@ struct SceneCamera : Camera {
   bool HasLens() const { return model != LensModel::kPinhole; }
   Lens AsLens() const { return {*this, model, k}; }
 
-  // Pixel of a point in the camera's frame, whose depth must not be zero. Behind a lens only points that the
-  // image Shows() have one.
+  // Pixel of a point in the camera's frame; the depth must not be zero. With a lens it is defined only for
+  // points that the image Shows().
   Eigen::Vector2d Project(const Eigen::Vector3d& point_in_cam) const {
     return HasLens() ? ProjectThrough(AsLens(), Normalize(point_in_cam)) : Camera::Project(point_in_cam);
   }
-  // The viewing ray of a pixel, with third component 1; NaN where the lens sends no ray.
+  // The viewing ray of a pixel, with third component 1; NaN if no ray reaches the pixel.
   Eigen::Vector3d Ray(const Eigen::Vector2d& x_px) const {
     return HasLens() ? RayThroughLens(x_px) : Camera::Ray(x_px);
   }
@@ -37,7 +36,7 @@ struct SceneCamera : Camera {
     return point_in_cam.z() > 0.0 && Camera::IsInImage(Project(point_in_cam)) &&
            (!HasLens() || IsImaged(AsLens(), Normalize(point_in_cam)));
   }
-  // d pixel / d ray (2x2, px) of the ray (x, y, 1).
+  // d pixel / d ray (2x2, px) at the ray (x, y, 1).
   Eigen::Matrix2d RayJacobian(const Eigen::Vector2d& ray) const {
     return ProjectThroughJacobian(AsLens(), ray);
   }

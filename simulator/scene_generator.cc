@@ -21,22 +21,22 @@
 namespace rcme {
 namespace {
 
-// Draws per point, after which a scene counts as impossible: both images see less than about 1 % of the
-// world.
+// Maximum number of draws per point. Beyond it both images see less than about 1 % of the world, and the
+// scene is impossible.
 constexpr size_t kMaxDrawsPerPoint = 100;
 constexpr size_t kMinDraws = 10'000;
 
-// Scenes, and matches in each at most, from which the baseline of a parallax is found. The median parallax of
-// a scene scatters by about 35 % where the translation has any direction: 1000 scenes fix its mean to 1.1 %.
+// Number of pilot scenes, and most matches in each, for the baseline of a parallax. The median parallax of a
+// scene varies by about 35 % if the translation has any direction: 1000 scenes fix the mean to 1.1 %.
 constexpr std::uint32_t kPilotScenes = 1000;
 constexpr int kPilotMatches = 100;
-// So many of them may show too little of the scene, as a trial may, before the baseline counts as too long.
+// Number of pilot scenes that may be impossible, as a trial may be, before the baseline counts as too long.
 constexpr std::uint32_t kMaxRefusedPilots = 20;
 
 using Clearances = std::array<double, PointBlock::kSize>;  // negative if the image does not show the point
 
-// An image shows a point (x, y, z) with z > 0 if |fx x / z + cx - (width - 1) / 2| <= width / 2, y likewise.
-// Times 2 z / width: |a| <= c and |b| <= c, where (a, b, c) = clip_from_cam (x, y, z).
+// An image shows a point (x, y, z) with z > 0 if |fx x / z + cx - (width - 1) / 2| <= width / 2, and likewise
+// for y. Multiplied by 2 z / width: |a| <= c and |b| <= c, where (a, b, c) = clip_from_cam (x, y, z).
 Eigen::Matrix3d ClipFromCam(const Camera& camera) {
   Eigen::Matrix3d clip_from_cam = Eigen::Matrix3d::Identity();
   clip_from_cam.row(0) << 2.0 * camera.fx, 0.0, 2.0 * camera.cx - (camera.width - 1);
@@ -46,7 +46,7 @@ Eigen::Matrix3d ClipFromCam(const Camera& camera) {
   return clip_from_cam;
 }
 
-// For points in camera 1's frame, (a, b, c) = A point + t.
+// Clearance c - max(|a|, |b|) of points in camera 1's frame, (a, b, c) = A point + t.
 void MeasureClearance(const Eigen::Matrix3d& A, const Eigen::Vector3d& t, const PointBlock& points,
                       Clearances* clearance) {
   for (size_t i = 0; i < PointBlock::kSize; ++i) {
@@ -154,7 +154,8 @@ void SceneGenerator::DrawPart(const World& world, size_t part, size_t num_points
                         clip_from_cam2 = ClipFromCam(scene->camera2);
   const Eigen::Matrix3d A2 = clip_from_cam2 * scene->cam2_from_cam1_true.R;
   const Eigen::Vector3d t2 = clip_from_cam2 * (scene->baseline_m * scene->cam2_from_cam1_true.t);
-  // Every candidate is written behind the accepted ones, and stays there if both images see it: no branch.
+  // Without a branch: every candidate is written behind the accepted ones, and stays there if both images see
+  // it.
   std::vector<Eigen::Vector3d>& points = scene->points_in_cam1;
   size_t num_accepted = points.size();
   const size_t num_wanted = num_accepted + num_points;

@@ -12,11 +12,11 @@
 
 namespace rcme {
 
-// Const and shared by threads once its parameters are set.
+// Const and shared by threads once the parameters are set.
 class SceneGenerator {
  public:
-  // By the names of their registries; no name: the one the scene is usually seen with. Throws InputError that
-  // lists what is allowed.
+  // Takes names from the registries; an empty name means the scene's default. Throws InputError that lists
+  // the known names.
   explicit SceneGenerator(const std::string& scene, const std::string& cameras = "",
                           const std::string& motion = "");
 
@@ -25,18 +25,18 @@ class SceneGenerator {
 
   // num_matches and the parameters of scene, cameras and motion.
   std::vector<Parameter> Parameters();
-  // Where the motion's length is given as parallax: fixes the baseline such that the median parallax of a
-  // scene's points is that on average, as found in scenes drawn from the streams that `pilot` names (by their
-  // trial). To be called once all parameters are set, before the first scene. Throws InputError if no
-  // baseline gives it.
+  // If the baseline is given as parallax: fixes the baseline such that the median parallax of a scene's
+  // points has this value on average over pilot scenes. These are drawn from the streams that `pilot` names,
+  // one per trial. Call it once all parameters are set, before the first scene. Throws InputError if no
+  // baseline gives this parallax.
   void FixBaseline(const StreamName& pilot);
-  // The length of every motion; NaN where it is not given as parallax.
+  // The baseline that FixBaseline has found; NaN if the length is not given as parallax.
   double BaselineOfParallax() const;
 
-  // One scene, from a stream of its own, of which more may be drawn than is used. Throws InputError that
-  // names the keys if the parameters admit no such scene.
+  // Draws one scene from its own stream (the number of draws varies). Throws InputError that names the keys
+  // if the parameters admit no such scene.
   Scene Generate(RandomStream& rng) const { return Generate(num_matches_, rng); }
-  // One of this motion.
+  // Draws a scene with this motion.
   Scene GenerateWith(const Motion& motion, RandomStream& rng) const {
     return GenerateWith(motion, num_matches_, rng);
   }
@@ -54,7 +54,7 @@ class SceneGenerator {
   std::unique_ptr<SceneModel> scene_;
   std::unique_ptr<CameraModel> cameras_;
   std::unique_ptr<MotionModel> motion_;
-  std::string keys_;  // all of them, for messages
+  std::string keys_;  // all keys, for messages
   int num_matches_ = 500;
 };
 

@@ -1,8 +1,8 @@
-// How a family of scenes lays out its points: the plug-in contract of simulator/scenes.
+// A family of scenes: the interface of the files in simulator/scenes.
 //
-// A trial draws the motion first, then a world (where this trial's clusters, planes or walls are), then
-// points of that world, block after block, until enough of them are seen in both images. A world may consist
-// of several parts; each gets its exact share of the points.
+// A trial first draws the motion and then a world, which fixes this trial's clusters, planes or walls. It
+// then draws points of that world, block after block, until enough of them are seen in both images. A world
+// may have several parts; each gets its exact share of the points.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,7 +16,7 @@
 
 namespace rcme {
 
-// Candidate points in camera 1's frame (m), as arrays for the check of what the cameras see.
+// Candidate points in camera 1's frame (m), as arrays for fast visibility tests.
 struct PointBlock {
   static constexpr size_t kSize = 128;
   std::array<double, kSize> x_m, y_m, z_m;
@@ -28,18 +28,18 @@ struct PointBlock {
   }
 };
 
-// A candidate that no image shows, where a draw meets nothing: it lies behind camera 1.
+// A candidate that no image shows, for draws that hit nothing: it lies behind camera 1.
 inline Eigen::Vector3d UnseenPoint() { return {0.0, 0.0, -1.0}; }
 
 // One world, drawn for one trial.
 class World {
  public:
   virtual ~World() = default;
-  // The share of the points that each part of the world gets; they sum to 1.
+  // The share of the points in each part of the world; they sum to 1.
   virtual std::vector<double> PartShares() const { return {1.0}; }
-  // Fills the block with candidates on a part, `num_before` of which have been drawn before. They may lie
-  // behind a camera or outside its image: only those that both see are kept. Candidates are independent, or,
-  // where a part has a finite number of points, all different.
+  // Fills the block with candidates on a part; `num_before` of its candidates were drawn before. They may lie
+  // behind a camera or outside its image: only those that both cameras see are kept. Candidates are
+  // independent or, on a part with finitely many points, all different.
   virtual void DrawCandidates(size_t part, size_t num_before, RandomStream& rng, PointBlock* block) const = 0;
   // See Scene::repeat_steps_m.
   virtual std::vector<Eigen::Vector3d> RepeatSteps() const { return {}; }

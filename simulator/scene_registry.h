@@ -5,7 +5,7 @@
 
 namespace rcme {
 
-// A scene comes with the cameras and the motion that it is usually seen with; a study may choose others.
+// A scene with its default cameras and motion; a study may choose others.
 struct SceneEntry : RegistryEntry<SceneModel> {
   std::string cameras = "pinhole";
   std::string motion = "general";

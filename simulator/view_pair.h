@@ -10,7 +10,7 @@ namespace rcme {
 // Two cameras and the motion between them, with its length.
 struct ViewPair {
   SceneCamera camera1, camera2;
-  RelativePose cam2_from_cam1_true;  // |t| = 1; t means nothing where the baseline is zero
+  RelativePose cam2_from_cam1_true;  // |t| = 1; t is arbitrary if the baseline is zero
   double baseline_m = 0.0;           // length of the translation
 
   // A pure rotation has no direction of translation.

@@ -7,14 +7,14 @@
 
 namespace rcme {
 
-// Ideal cameras with the principal point in the middle, both equal or each with its own size and focal length;
-// or with all intrinsics of either.
+// Ideal cameras with the principal point in the middle, both equal or each with its own size and focal
+// length; or with all intrinsics of each camera given.
 std::unique_ptr<CameraModel> MakePinhole();
 std::unique_ptr<CameraModel> MakeTwoPinholes();
 std::unique_ptr<CameraModel> MakeOwnIntrinsics();
 
-// Two equal cameras with a lens (estimator/geometry/lens.h), the principal point in the middle. Their images
-// are those that the lens distorts.
+// Two equal cameras with a lens (estimator/geometry/lens.h) and the principal point in the middle. Their
+// images are distorted.
 std::unique_ptr<CameraModel> MakeRadtan();
 std::unique_ptr<CameraModel> MakeFisheye();
 

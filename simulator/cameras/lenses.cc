@@ -5,7 +5,7 @@
 namespace rcme {
 namespace {
 
-// Both cameras alike; what a lens adds are its coefficients, in the order of Lens::k.
+// Two equal cameras. A lens adds its coefficients as parameters, in the order of Lens::k.
 class LensPair : public CameraModel {
  public:
   explicit LensPair(const Lens& lens) : lens_(lens) {}

@@ -60,7 +60,7 @@ struct Intrinsics {
   double fx_px = 700.0, fy_px = 700.0;  // focal lengths
   double cx_px = kMiddle, cy_px = kMiddle;
 
-  // With the number of the camera in their names.
+  // The parameters, with the number of the camera in their names.
   std::vector<Parameter> Parameters(const std::string& number) {
     const std::string camera = "camera " + number, middle = "middle";
     const Parameter::Range anywhere{-1e5, 1e5};

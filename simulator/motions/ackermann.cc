@@ -7,7 +7,8 @@ namespace rcme {
 namespace {
 
 // The motion of a camera above the rear axle of a car that drives a circular arc on flat ground and turns
-// right by `yaw`: the chord of the arc makes half the yaw with the first heading (Scaramuzza et al. 2009).
+// right by `yaw`. The chord of the arc makes half the yaw angle with the initial heading (Scaramuzza et al.
+// 2009).
 RelativePose ArcPose(double yaw) {
   const Eigen::Matrix3d R = RotationFromVector({0.0, -yaw, 0.0});  // y points down: a right turn is positive
   const Eigen::Vector3d centre2_in_cam1(std::sin(0.5 * yaw), 0.0, std::cos(0.5 * yaw));
@@ -16,8 +17,7 @@ RelativePose ArcPose(double yaw) {
 
 class Ackermann : public MotionModel {
  public:
-  // `jitter_deg` is the standard deviation of pitch and roll, and of the direction's slip, from arc to
-  // motion.
+  // `jitter_deg` is the standard deviation of pitch, of roll, and of the direction's deviation from the arc.
   explicit Ackermann(double jitter_deg) : is_jittered_(jitter_deg > 0.0), jitter_deg_(jitter_deg) {
     baseline_.baseline_m = 1.0;  // 36 km/h at 10 images a second
   }

@@ -8,16 +8,16 @@
 namespace rcme {
 namespace {
 
-// Back into [0, high] from a place not farther beyond it than its width.
+// x reflected into [0, high]; it may lie outside by at most `high`.
 double Reflected(double x, double high) { return x < 0.0 ? -x : x > high ? 2.0 * high - x : x; }
 
-// Uniform steps on the unit sphere: as likely there as back.
+// A symmetric random step on the unit sphere: the step back is equally likely.
 Eigen::Vector3d NearDirection(const Eigen::Vector3d& direction, double step, RandomStream& rng) {
   const double x = rng.Normal(), y = rng.Normal(), z = rng.Normal();
   return (direction + step * Eigen::Vector3d(x, y, z)).normalized();
 }
 
-// Camera 2 stands in the direction of an axis of camera 1, uniform in a cone around it.
+// Camera 2 lies in the direction of an axis of camera 1, uniform in a cone around it.
 class DirectedMotion : public MotionModel {
  public:
   DirectedMotion(const Eigen::Vector3d& axis, bool is_either_way)
@@ -46,9 +46,9 @@ class DirectedMotion : public MotionModel {
     return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length()};
   }
 
-  // Axis and angle of the rotation move by themselves, as they are drawn: a uniform angle that is reflected
-  // at its bounds, a uniform axis. So does the direction, uniform on its cap, which it does not leave
-  // (Metropolis).
+  // Each part moves separately. The angle of the rotation is uniform: it takes a uniform step, reflected at
+  // the bounds. The axis is uniform on the sphere. The direction is uniform on its cap; steps that leave the
+  // cap are rejected (Metropolis).
   std::optional<Motion> DrawNear(const Motion& motion, double step, RandomStream& rng) const override {
     const Eigen::Matrix3d& R_before = motion.cam2_from_cam1.R;
     const Eigen::AngleAxisd before(R_before);
@@ -64,7 +64,7 @@ class DirectedMotion : public MotionModel {
   }
 
  private:
-  // The height of the rim on the unit sphere.
+  // Height of the rim of the cone on the unit sphere.
   double RimOfCone() const { return std::cos(max_deviation_deg_ * kRadPerDeg); }
 
   // Uniform on the circle of unit vectors normal to `axis`.

@@ -5,8 +5,8 @@
 namespace rcme {
 namespace {
 
-// Yaw with the full standard deviation, pitch and roll with half of it; the camera moves across its view (x
-// and y) more than along it (z).
+// Yaw has the full standard deviation, pitch and roll half of it. The camera moves across its view (x and y)
+// more than along it (z).
 class HandHeld : public MotionModel {
  public:
   HandHeld() { baseline_.baseline_m = 0.2; }

@@ -9,18 +9,18 @@ namespace rcme {
 
 // Rotation about a uniform axis, translation in a uniform direction.
 std::unique_ptr<MotionModel> MakeGeneralMotion();
-// The same with a baseline that is next to nothing.
+// The same with a baseline close to zero.
 std::unique_ptr<MotionModel> MakeVanishingBaseline();
-// Along the optical axis, or across it, give or take a few degrees.
+// Along the optical axis, or across it, within a cone of a few degrees.
 std::unique_ptr<MotionModel> MakeForwardMotion();
 std::unique_ptr<MotionModel> MakeSidewaysMotion();
-// Around a point in front of camera 1, looking at it all the time.
+// Around a point in front of camera 1; both cameras look at it.
 std::unique_ptr<MotionModel> MakeOrbit();
-// A car on a flat road: a circular arc with one yaw angle, which gives the direction too.
+// A car on a flat road: a circular arc, whose yaw angle also determines the direction.
 std::unique_ptr<MotionModel> MakeAckermann();
 // No translation at all (Type A): the direction is not defined.
 std::unique_ptr<MotionModel> MakePureRotation();
-// A camera in the hand, and one in a car on a real road: arc, pitch, roll.
+// A hand-held camera; a camera in a car on a real road: arc, pitch, roll.
 std::unique_ptr<MotionModel> MakeHandHeld();
 std::unique_ptr<MotionModel> MakeVehicle();
 

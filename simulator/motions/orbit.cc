@@ -23,8 +23,9 @@ class Orbit : public MotionModel {
   Motion Draw(RandomStream& rng) const override {
     const double side = rng.Uniform() < 0.5 ? -1.0 : 1.0;
     const double angle = RadFromDeg(side * orbit_deg_);
-    // The chord runs sideways and half the angle towards the point; seen from camera 2, which has turned the
-    // other way by the whole angle, camera 1 lies sideways and half the angle towards the point too.
+    // In camera 1 the chord points sideways, turned by half the angle towards the point. Camera 2 has turned
+    // back by the whole angle, so seen from it the chord to camera 1 is also turned by half the angle towards
+    // the point.
     const Eigen::Matrix3d R = RotationFromVector({0.0, angle, 0.0});
     const Eigen::Vector3d centre2_in_cam1(std::cos(0.5 * angle) * side, 0.0, std::abs(std::sin(0.5 * angle)));
     return {{R, -(R * centre2_in_cam1).normalized()}, baseline_.Length()};

@@ -6,9 +6,9 @@
 namespace rcme {
 namespace {
 
-// Normal with one covariance (2x2, px^2) in both images: standard deviations a >= b along two normal axes,
-// and the noise along the same axis of image 1 and image 2 correlated. The root mean square over the
-// coordinates is that over the axes: a^2 + b^2 = 2 sigma_px^2.
+// Normal with the same covariance (2x2, px^2) in both images: standard deviations a >= b along two
+// perpendicular axes. The noise along an axis is correlated between image 1 and image 2. The root mean square
+// over the coordinates equals that over the axes: a^2 + b^2 = 2 sigma_px^2.
 class AnisotropicNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {

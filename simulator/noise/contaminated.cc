@@ -6,8 +6,8 @@
 namespace rcme {
 namespace {
 
-// Tukey's contaminated normal, match by match: a share p of the matches has c times the standard deviation of
-// the others, in all four coordinates. With the others' standard deviation s, (1 - p) s^2 + p c^2 s^2 =
+// Tukey's contaminated normal, per match: a share p of the matches has c times the standard deviation of the
+// others in all four coordinates. With s the others' standard deviation, (1 - p) s^2 + p c^2 s^2 =
 // sigma_px^2.
 class ContaminatedNoise : public NoiseModel {
  public:

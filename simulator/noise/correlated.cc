@@ -9,13 +9,13 @@
 namespace rcme {
 namespace {
 
-// A mosaic on the plane of one image: a square lattice, turned by a uniform angle and shifted uniformly, with
-// independent standard normals (x and y) in each cell. Two points at the distance d, side s, u = d / s <= 1,
-// lie in one cell with the probability
+// A mosaic over one image: a square lattice, turned by a uniform angle and shifted uniformly, with
+// independent standard normals (x and y) in each cell. With cells of side s, two points at distance d, u = d
+// / s <= 1, lie in one cell with probability
 //
 //   E_angle (1 - u |cos|)(1 - u |sin|) = 1 - 4 u / pi + u^2 / pi,
 //
-// which is the correlation of their normals; it is 0 from u = sqrt(2) on.
+// which is the correlation of their normals. It is 0 from u = sqrt(2) on.
 class Mosaic {
  public:
   Mosaic(double side_px, RandomStream& rng) : side_px_(side_px), turn_(PortableCosSinOfTurn(rng.Uniform())) {
@@ -42,10 +42,11 @@ class Mosaic {
   std::map<std::pair<double, double>, Eigen::Vector2d> normals_;  // by cell
 };
 
-// Normal, and correlated between neighbours as key points on one piece of texture are: a share rho of the
-// variance is that of a mosaic over each image, the rest each point's own. The correlation of two points'
-// errors in one image at the distance d is rho (1 - 4 u / pi + u^2 / pi), u = d / noise_correlation_length_px
-// <= 1. With Student's scales all four errors of a match are large together, as those of a large key point.
+// Normal and correlated between neighbours, like key points on the same piece of texture. A share rho of the
+// variance comes from a mosaic over each image, the rest is independent for each point. The errors of two
+// points in one image at distance d have the correlation rho (1 - 4 u / pi + u^2 / pi), u = d /
+// noise_correlation_length_px <= 1. With Student's scales all four errors of a match are large together, like
+// those of a large key point.
 class CorrelatedNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {

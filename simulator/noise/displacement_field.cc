@@ -33,8 +33,8 @@ Eigen::Vector2d DisplacementField::At(const Eigen::Vector2d& x_px) const {
 
 namespace {
 
-// Normal noise of which a share is a field over each image, drawn anew in every trial: what a lens leaves,
-// air that moves, a rolling shutter under vibration. The rest is each point's own.
+// Normal noise. A share of its variance is a field over each image, drawn in every trial: residual lens
+// distortion, moving air, a rolling shutter under vibration. The rest is independent for each point.
 class DisplacementFieldNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {

@@ -8,9 +8,9 @@
 namespace rcme {
 namespace {
 
-// A detector that finds some points several times (one blob at two scales, with two orientations): a match is
-// with a probability p one more of a match before it, of the same point, and the errors of the matches of one
-// point have the correlation rho. Independent otherwise. Normal.
+// Normal noise of a detector that finds some points several times (one blob at two scales, with two
+// orientations). With probability p a match repeats the scene point of an earlier match. The errors of
+// matches of one point have correlation rho; all others are independent.
 class DuplicatedNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -28,7 +28,7 @@ class DuplicatedNoise : public NoiseModel {
     }
   }
 
-  // Matches of one point are those at one place in both images.
+  // Matches of one point are recognised by their equal exact places in both images.
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     std::map<std::array<double, 4>, std::array<double, 4>> shared;  // normals, by place
     const double shared_px = sigma_px_ * std::sqrt(correlation_),

@@ -7,8 +7,7 @@
 namespace rcme {
 namespace {
 
-// Density exp(-|e| / b) / (2 b) in every coordinate, independent from coordinate to coordinate; its variance
-// is 2 b^2.
+// Density exp(-|e| / b) / (2 b), variance 2 b^2, independent in every coordinate.
 class LaplaceNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override { return {SigmaParameter(&sigma_px_)}; }

@@ -6,17 +6,16 @@
 namespace rcme {
 namespace {
 
-// A detector on an image pyramid with the scale factor f. Level k has f^(-2k) times the area of level 0, and
-// as many times its points; an error there is f^(g k) as large in pixels of level 0, g = octave_growth: f^k
-// where a key point is found within a given part of a pixel of its level (g = 1), the same on all where g =
-// 0. A match has the same level in both images.
+// A detector on an image pyramid with scale factor f. Level k has f^(-2k) times the area of level 0 and as
+// many times its points. Its error in pixels of level 0 grows as f^(g k), g = octave_growth. With g = 1 a key
+// point is located within a fixed fraction of a pixel of its level, with g = 0 the error is the same on all
+// levels. A match has the same level in both images.
 //
-// With g = 1 of the levels' variance f^(2k) each holds the same part, since P(k) f^(2k) does not depend on k:
+// With g = 1 every level contributes the same part to the variance, since P(k) f^(2k) does not depend on k:
 //   E f^(2k) = L / sum_k f^(-2k),  L levels,
-// so that a standard deviation of sigma_px f^k sqrt(sum f^(-2k) / L) has the root mean square sigma_px.
+// so a standard deviation of sigma_px f^k sqrt(sum f^(-2k) / L) has the root mean square sigma_px.
 //
-// The detector knows a key point's level, and may take its error to be f^(h k), h = stated_growth: this is
-// what it states; with h = 0 nothing.
+// The detector states that the error grows as f^(h k), h = stated_growth; with h = 0 it states nothing.
 class OctaveNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -50,10 +49,10 @@ class OctaveNoise : public NoiseModel {
   }
 
  private:
-  // Level by level.
+  // One entry per level.
   struct Pyramid {
     std::vector<double> area_up_to, sds;  // px
-    std::vector<double> stated;           // over sigma_px; true where stated_growth is octave_growth
+    std::vector<double> stated;           // over sigma_px; correct if stated_growth = octave_growth
     double total_area = 0.0;
   };
   Pyramid MakePyramid() const {
@@ -75,7 +74,7 @@ class OctaveNoise : public NoiseModel {
   }
 
   double sigma_px_ = 0.5;
-  int num_levels_ = 8;  // with the factor: ORB's pyramid
+  int num_levels_ = 8;  // with factor 1.2: ORB's pyramid
   double factor_ = 1.2;
   double growth_ = 1.0, stated_growth_ = 0.0;
 };

@@ -6,11 +6,11 @@
 namespace rcme {
 namespace {
 
-// A detector on the pixel grid: normal noise, then every coordinate is rounded to the nearest multiple of the
-// step (pixel centres for a step of 1). This is the law whose sigma_px is not its root mean square: sigma_px
-// is that of the normal part alone, as if the rounding had been forgotten. The total variance is sigma_px^2 +
-// step^2 / 12 to a good approximation (the rounding error is uniform and does not depend on the point where
-// scene and noise spread over many steps), so that the assumed noise level is too small.
+// A detector on a pixel grid: normal noise, then every coordinate is rounded to the nearest multiple of the
+// step (pixel centres for a step of 1). In this law alone sigma_px is not the root mean square of the noise,
+// but that of its normal part. To a good approximation the total variance is sigma_px^2 + step^2 / 12, as the
+// rounding error is uniform and independent of the point if scene and noise spread over many steps. The
+// assumed noise level is therefore too small.
 class QuantisedNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {

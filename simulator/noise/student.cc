@@ -8,8 +8,8 @@ namespace rcme {
 namespace {
 
 // Gamma(shape, 1), shape >= 1 (Marsaglia & Tsang 2000): d (1 + c Z)^3 with d = shape - 1/3, c = 1 / sqrt(9 d)
-// is nearly gamma, and accepted with the ratio of the densities, more than 95 % of the times. Arithmetic,
-// square roots and PortableLog alone, as stats/random.h promises.
+// is nearly gamma, and accepted with the ratio of the densities in more than 95 % of the draws. Only
+// arithmetic, square roots and PortableLog are used, for reproducibility across machines (stats/random.h).
 double DrawGamma(double shape, RandomStream& rng) {
   const double d = shape - 1.0 / 3.0, c = 1.0 / std::sqrt(9.0 * d);
   while (true) {
@@ -21,9 +21,9 @@ double DrawGamma(double shape, RandomStream& rng) {
   }
 }
 
-// Student's t in every coordinate, independent from coordinate to coordinate: the tails of a detector that
-// fails in one direction at a time. (The multivariate t would make all four large at once, which is what
-// `contaminated` does.) t with m degrees of freedom is Z / sqrt(chi^2_m / m) and has variance m / (m - 2).
+// Student's t, independent in every coordinate: the tails of a detector that fails in one direction at a
+// time. (The multivariate t would make all four errors large at once, as `contaminated` does.) t with m
+// degrees of freedom is Z / sqrt(chi^2_m / m) and has variance m / (m - 2).
 class StudentNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {

@@ -8,13 +8,13 @@ namespace {
 
 enum class ClusteredIn { kImage1, kImage2, kBoth };
 
-// A Neyman-Scott process: a few cluster centres uniform over the image, every point at a normal offset from
-// one of them. In one image: the other end is uniform (the cluster lies in image 1) or stays (in image 2). In
-// both: a cluster has a centre in each image and a match has the same offset from both, up to its own noise;
-// that is a patch of image 1 found in the wrong place of image 2, and all matches of a patch agree with a
-// motion, though not with the true one.
+// A Neyman-Scott process: a few cluster centres uniform over the image, each point at a normal offset from
+// one of them. With clusters in image 1 the other end is uniform, with clusters in image 2 it stays. With
+// clusters in both, a cluster has a centre in each image, and a match has the same offset from both, up to
+// its own noise. This is a patch of image 1 found in the wrong place of image 2; all matches of a patch agree
+// with a motion, though not with the true one.
 //
-// Offsets that lead out of an image are drawn again.
+// Offsets that leave an image are drawn again.
 class ClusteredOutliers : public OutlierLaw {
  public:
   explicit ClusteredOutliers(ClusteredIn images) : images_(images) {}

@@ -9,8 +9,8 @@
 namespace rcme {
 namespace {
 
-// The point in image 2 is the noisy true one plus a shift, uniform in an annulus; shifts that lead out of the
-// image (before noise) are drawn again.
+// The point in image 2 is the noisy true one plus a shift, uniform in an annulus. Shifts that leave the image
+// (before noise) are drawn again.
 class DisplacedOutliers : public OutlierLaw {
  public:
   std::vector<Parameter> Parameters() override {
@@ -46,7 +46,7 @@ class DisplacedOutliers : public OutlierLaw {
                     min_shift_px_, max_shift_px_, kMaxOutlierDraws, camera2.width, camera2.height));
   }
 
-  // The area within a radius grows with its square, which is therefore uniform.
+  // The area within a radius grows with its square, so the square is drawn uniformly.
   Eigen::Vector2d DrawShift(RandomStream& rng) const {
     const double radius_px =
         std::sqrt(rng.Uniform(min_shift_px_ * min_shift_px_, max_shift_px_ * max_shift_px_));

@@ -12,17 +12,17 @@
 namespace rcme {
 namespace {
 
-// The part of a viewing ray of camera 1 that image 2 shows. A point of the ray at inverse depth w = 1 / z is,
-// up to the factor z, P + w Q in camera 2's frame, P = R ray, Q = the translation (m). w runs from 0
+// The part of a viewing ray of camera 1 that image 2 shows. Up to the factor z, the ray's point at inverse
+// depth w = 1 / z is P + w Q in camera 2's frame, P = R ray, Q = the translation (m). w runs from 0
 // (infinitely far) to infinity (camera 1's centre).
 struct VisibleRay {
   Eigen::Vector3d far_in_cam2, near_in_cam2;  // its ends, each up to a positive factor
   Eigen::Vector2d far_px, near_px;            // their images
 
   double Length() const { return (near_px - far_px).norm(); }
-  // The image of the ray's point that is seen `from_far_px` along the line from the far to the near end. The
-  // sum of the ends at depth 1 in camera 2 with weights that sum to 1 is seen there, and is a point of the
-  // ray again, since its coefficients of P and Q are positive.
+  // The image of the ray's point that lies `from_far_px` along the line from the far to the near end. It is
+  // the weighted sum of the ends, each at depth 1 in camera 2, with weights that sum to 1. The sum is a point
+  // of the ray, since its coefficients of P and Q are positive.
   Eigen::Vector2d Project(const Camera& camera2, double from_far_px) const {
     const double share = from_far_px / Length();
     return camera2.Project((1.0 - share) / far_in_cam2.z() * far_in_cam2 +
@@ -30,15 +30,15 @@ struct VisibleRay {
   }
 };
 
-// Four numbers, all >= 0 if image 2 shows the point (camera 2's frame): its distances from the image's
-// borders (px) times its depth.
+// The distances of the point's pixel from the four borders of the image (px), times its depth in camera 2's
+// frame. All are >= 0 if the image shows the point.
 std::array<double, 4> BorderDistances(const Camera& camera, const Eigen::Vector3d& point_in_cam) {
   const double x = camera.fx * point_in_cam.x(), y = camera.fy * point_in_cam.y(), z = point_in_cam.z();
   return {x + (camera.cx + 0.5) * z, (camera.width - 0.5 - camera.cx) * z - x, y + (camera.cy + 0.5) * z,
           (camera.height - 0.5 - camera.cy) * z - y};
 }
 
-// What image 2 shows of the ray through x1, of which it shows something. All borders are linear in w.
+// The part of the ray through x1 that image 2 shows, which must not be empty. All borders are linear in w.
 VisibleRay ClipToImage2(const ViewPair& view, const Eigen::Vector2d& x1_px) {
   const Eigen::Vector3d P = view.cam2_from_cam1_true.R * view.camera1.Ray(x1_px);
   const Eigen::Vector3d Q = view.baseline_m * view.cam2_from_cam1_true.t;
@@ -51,16 +51,17 @@ VisibleRay ClipToImage2(const ViewPair& view, const Eigen::Vector2d& x1_px) {
   }
   VisibleRay ray;
   ray.far_in_cam2 = P + w_far * Q;
-  ray.near_in_cam2 = std::isinf(w_near) ? Q : P + w_near * Q;  // image 2 shows the epipole
+  ray.near_in_cam2 =
+      std::isinf(w_near) ? Q : P + w_near * Q;  // w_near is infinite if image 2 shows the epipole
   ray.far_px = view.camera2.Project(ray.far_in_cam2);
   ray.near_px = view.camera2.Project(ray.near_in_cam2);
   return ray;
 }
 
-// Behind a lens the image of a ray is a curve, which may leave image 2 and come back. A point uniform along
-// it, but for the places within min_shift_px of the true one; nothing where that leaves no place. The curve
-// is a polygon whose sides count if both their ends do: the directions of its corners are (1 - s) P + s Q,
-// P and Q of unit length, s = 0, 1 / 256, ... 1, which are points of the ray as above.
+// With a lens the image of a ray is a curve, which may leave image 2 and come back. Draws a point uniform
+// along the curve, except within min_shift_px of the true one; nullopt if no place is left. The curve is
+// approximated by a polygon whose sides count if both their ends do. The directions of its corners are (1 -
+// s) P + s Q, P and Q of unit length, s = 0, 1 / 256, ... 1, which are points of the ray as above.
 std::optional<Eigen::Vector2d> DrawOnCurve(const ViewPair& view, const Correspondence& exact,
                                            double min_shift_px, RandomStream& rng) {
   constexpr int kSides = 256;
@@ -73,7 +74,7 @@ std::optional<Eigen::Vector2d> DrawOnCurve(const ViewPair& view, const Correspon
     return camera2.Shows(direction(s)) &&
            (camera2.Project(direction(s)) - exact.x2_px).norm() >= min_shift_px;
   };
-  std::array<double, kSides + 1> up_to_px{};  // length of what counts, up to each corner
+  std::array<double, kSides + 1> up_to_px{};  // length of the sides that count, up to each corner
   bool was_place = is_place(0.0);
   for (size_t i = 1; i <= kSides; ++i) {
     const double s = 1.0 * static_cast<double>(i) / kSides, before = s - 1.0 / kSides;
@@ -89,16 +90,16 @@ std::optional<Eigen::Vector2d> DrawOnCurve(const ViewPair& view, const Correspon
   if (end == up_to_px.end()) return std::nullopt;
   const double side = static_cast<double>(end - up_to_px.begin() - 1);
   const double s = (side + (place_px - *(end - 1)) / (*end - *(end - 1))) / kSides;
-  if (!is_place(s)) return std::nullopt;  // a side that runs out of the image between its ends
+  if (!is_place(s)) return std::nullopt;  // the side leaves the image between its ends
   return camera2.Project(direction(s));
 }
 
-// The point in image 2 is that of another point on the viewing ray of the exact x1. What image 2 shows of the
-// ray is a segment; the point is uniform on it, but for the places less than outlier_min_shift_px from the
-// true one. (Without rotation, sideways, this is uniform in inverse depth.) The match's noise stays.
+// The point in image 2 is that of another point on the viewing ray of the exact x1. Image 2 shows a segment
+// of the ray; the point is uniform on it, except within outlier_min_shift_px of the true one. (For a sideways
+// motion without rotation this is uniform in inverse depth.) The match keeps its noise.
 //
-// On a ray that image 2 shows too little of, as all rays near the direction of the motion, there is no such
-// place. Then the match moves to the ray of another scene point, drawn at random, in image 1 too.
+// If image 2 shows too little of the ray, as near the direction of the motion, there is no such place. The
+// match then moves, in image 1 too, to the ray of another scene point drawn at random.
 class EpipolarOutliers : public OutlierLaw {
  public:
   std::vector<Parameter> Parameters() override { return {MinShiftParameter(&min_shift_px_)}; }
@@ -130,7 +131,7 @@ class EpipolarOutliers : public OutlierLaw {
   }
 
  private:
-  // Nothing where the visible ray leaves no place.
+  // nullopt if the visible part of the ray leaves no place.
   std::optional<Eigen::Vector2d> DrawOnRay(const Scene& scene, std::uint32_t point, RandomStream& rng) const {
     const Correspondence exact = ExactMatch(scene, scene.points_in_cam1[point]);
     if (scene.camera2.HasLens()) return DrawOnCurve(scene, exact, min_shift_px_, rng);

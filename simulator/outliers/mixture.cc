@@ -8,8 +8,8 @@
 namespace rcme {
 namespace {
 
-// All other laws of the registry, each with a weight; the wrong matches are split by the weights to one
-// match, which of them follow which law is random. A key that several laws have sets them all.
+// All other laws of the registry, each with a weight. The wrong matches are split by the weights to within
+// one match; which match follows which law is random. A key shared by several laws sets all of them.
 class OutlierMixture : public OutlierLaw {
  public:
   OutlierMixture() {

@@ -21,15 +21,15 @@ struct MovingBody {
   }
 };
 
-// A second rigid motion. One object a trial: it lies around a point of the scene, its points are normal
-// around it, it turns about its centre by an angle uniform from 0 and shifts in a uniform direction. A match
-// shows a point of the object before the motion in image 1 and after it in image 2, with the noise of the
-// match that it replaces. (Which matches become wrong is not for a law to choose; so the object brings points
-// of its own, compact in the image as the scene's points would not be.)
+// An object with a rigid motion of its own, one per trial. It lies around a scene point; its points are
+// normal around its centre. It turns about the centre by an angle uniform from 0 and shifts in a uniform
+// direction. A match shows a point of the object before the motion in image 1 and after it in image 2, with
+// the noise of the match that it replaces. (A law does not choose which matches become wrong. The object
+// therefore has points of its own, which are compact in the image as the replaced scene points would not be.)
 //
-// By chance an object may move so that its matches satisfy the epipolar constraint of the camera too.
+// By chance an object may move such that its matches also satisfy the camera's epipolar constraint.
 //
-// Points that an image does not show are drawn again, and so is an object of which too little is in view.
+// Points outside of an image are drawn again, and so is an object that is hardly in view.
 class MovingObject : public OutlierLaw {
  public:
   std::vector<Parameter> Parameters() override {
@@ -70,7 +70,7 @@ class MovingObject : public OutlierLaw {
     return Correspondence{view.camera1.Project(before), view.camera2.Project(after_in_cam2)};
   }
 
-  // The exact matches of one object: the first of 200 objects of whose points at least one in 20 or so is
+  // The exact matches of one object: the first of up to 200 objects of which about one point in 20 or more is
   // seen.
   std::vector<Correspondence> DrawObject(size_t num_matches, const Scene& scene, RandomStream& rng) const {
     constexpr int kMaxObjects = 200;

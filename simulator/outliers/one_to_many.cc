@@ -4,9 +4,9 @@
 namespace rcme {
 namespace {
 
-// A point in image 1 that has a true match is matched again, to anywhere in image 2: the noisy x1 is that of
-// an inlier, to the bit. Inliers are taken in their (random) order, outlier_fan_out wrong matches each; where
-// there are not enough of them, in turn again.
+// A point in image 1 that has a true match is matched again, to anywhere in image 2; its noisy x1 is exactly
+// that of the inlier. Each inlier in their (random) order gets outlier_fan_out wrong matches; after the last
+// inlier the first follows again.
 class OneToManyOutliers : public OutlierLaw {
  public:
   std::vector<Parameter> Parameters() override {

@@ -11,12 +11,12 @@ namespace rcme {
 std::unique_ptr<OutlierLaw> MakeUniformOutliers();
 std::unique_ptr<OutlierLaw> MakeDisplacedOutliers();
 
-// Where a detector or a matcher is drawn to a few places of one image, or takes one patch for another.
+// Clusters: key points crowd in a few places of one image, or one patch is taken for another.
 std::unique_ptr<OutlierLaw> MakeClusteredInImage1();
 std::unique_ptr<OutlierLaw> MakeClusteredInImage2();
 std::unique_ptr<OutlierLaw> MakeClusteredInBoth();
 
-// Wrong matches with an explanation in space: another motion, another repetition, another depth.
+// Wrong matches with a geometric cause: another motion, another repetition, another depth.
 std::unique_ptr<OutlierLaw> MakeMovingObject();
 std::unique_ptr<OutlierLaw> MakeRepeatedTexture();
 std::unique_ptr<OutlierLaw> MakeEpipolarOutliers();
@@ -24,7 +24,7 @@ std::unique_ptr<OutlierLaw> MakeEpipolarOutliers();
 // A point of image 1 matched several times, once correctly.
 std::unique_ptr<OutlierLaw> MakeOneToManyOutliers();
 
-// All of the above in shares.
+// A mixture of all of the above.
 std::unique_ptr<OutlierLaw> MakeOutlierMixture();
 
 }  // namespace rcme

@@ -11,8 +11,8 @@ namespace rcme {
 namespace {
 
 // The point in image 2 is that of another repetition: the scene point shifted by a whole number of steps
-// along each direction in which the scene repeats itself, uniform among the shifts of at most
-// max_repeat_steps each that are not zero and whose point image 2 shows. The match's noise stays.
+// along each direction of repetition. The shift is uniform among those of at most max_repeat_steps each that
+// are not zero and whose point image 2 shows. The match keeps its noise.
 class RepeatedTexture : public OutlierLaw {
  public:
   std::vector<Parameter> Parameters() override {

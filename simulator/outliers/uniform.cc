@@ -3,7 +3,7 @@
 namespace rcme {
 namespace {
 
-// The point in image 1 stays, that in image 2 is anywhere.
+// The point in image 1 stays; the one in image 2 is uniform over the image.
 class UniformOutliers : public OutlierLaw {
  public:
   void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,

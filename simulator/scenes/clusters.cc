@@ -43,7 +43,7 @@ class ClustersWorld : public World {
   std::vector<Eigen::Vector3d> centres_in_cam1_;
 };
 
-// Clusters in space: objects with much texture before a background with some.
+// Clusters in space: highly textured objects in front of a less textured background.
 class Clusters : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -72,7 +72,7 @@ class Clusters : public SceneModel {
   }
 
  private:
-  // Background, largest cluster, the others.
+  // Shares of the background, the largest cluster, the other clusters.
   std::vector<double> PartShares() const {
     const double equal = 1.0 / num_clusters_;
     const double largest = std::isnan(largest_share_) ? equal : largest_share_;

@@ -8,7 +8,7 @@
 namespace rcme {
 namespace {
 
-// Part 0: both walls, 1: floor, 2: ceiling. A corridor is convex: nothing hides anything.
+// Part 0: both walls, 1: floor, 2: ceiling. A corridor is convex, so there is no occlusion.
 class CorridorWorld : public PointwiseWorld {
  public:
   CorridorWorld(const UprightCamera& camera1, std::vector<std::vector<Rectangle>> parts,
@@ -27,10 +27,10 @@ class CorridorWorld : public PointwiseWorld {
   std::vector<double> shares_;
 };
 
-// A straight corridor, seen along it; its end is out of sight. On each part the first images are uniform over
-// what image 1 shows of it.
+// A straight corridor, seen along it; its end is out of sight. Points of each part are uniform in image 1
+// over what it shows of that part.
 //
-// Building frame: the origin at camera 1's height in the middle between the walls, z along the corridor.
+// Building frame: the origin is at camera 1's height in the middle between the walls, z along the corridor.
 class Corridor : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {

@@ -7,10 +7,10 @@
 namespace rcme {
 namespace {
 
-// The farthest of the far points, times far_depth_m.
+// Depth of the farthest far points over far_depth_m.
 constexpr double kFarSpan = 10.0;
 
-// Part 0: a uniform volume near by. Part 1: the same far away.
+// Part 0: a near uniform volume. Part 1: a far one.
 class FarPointsWorld : public World {
  public:
   FarPointsWorld(const SceneCamera& camera1, const DepthRange& near, const DepthRange& far, double far_share)
@@ -28,8 +28,8 @@ class FarPointsWorld : public World {
   double far_share_;
 };
 
-// Points so far away that their parallax is below the noise: they determine the rotation, but not the
-// translation.
+// A near volume and points so far away that their parallax is below the noise: these determine the rotation,
+// but not the translation.
 class FarPoints : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {

@@ -20,12 +20,13 @@ Eigen::Vector2d DrawOffset(ClusterShape shape, RandomStream& rng) {
     const double x = rng.Normal();
     return {x, rng.Normal()};
   }
-  const double radius = std::sqrt(rng.Uniform());  // the area inside it is uniform
+  const double radius = std::sqrt(rng.Uniform());  // the area within the radius is uniform
   const CosSin angle = PortableCosSinOfTurn(rng.Uniform());
   return {radius * angle.cos, radius * angle.sin};
 }
 
-// Part 0: the background, a uniform volume. Part 1: offspring, each of a parent drawn with equal chances.
+// Part 0: the background, a uniform volume. Part 1: points around parents, each parent with equal
+// probability.
 class ImageClustersWorld : public World {
  public:
   ImageClustersWorld(const SceneCamera& camera1, const DepthRange& depths, ClusterShape shape,
@@ -56,9 +57,9 @@ class ImageClustersWorld : public World {
   std::vector<Eigen::Vector2d> parents_px_;
 };
 
-// Matches crowd in image 1 as detections do, while depths stay those of a uniform volume: one knob,
-// clustered_share, from even to clustered. A cluster process given its numbers of parents and points: Thomas
-// (Gaussian) or Matern (disc). Without clustered points the scene is that of uniform_volume, to the bit.
+// Matches cluster in image 1 as detections do, while depths stay those of a uniform volume; clustered_share
+// runs from even to fully clustered. A cluster process with fixed numbers of parents and points: Thomas
+// (Gaussian) or Matern (disc). With clustered_share 0 the scene is exactly that of uniform_volume.
 class ImageClusters : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -88,7 +89,7 @@ class ImageClusters : public SceneModel {
   }
 
  private:
-  // Uniform over the part of image 1 whose points at the middle depth image 2 shows.
+  // Uniform over the part of image 1 whose points at the middle depth are visible in image 2.
   Eigen::Vector2d DrawParent(const ViewPair& view, RandomStream& rng) const {
     for (int tries = 0; tries < kMaxTriesPerParent; ++tries) {
       const Eigen::Vector3d parent_in_cam1 = depths_.Middle() * DrawRay(view.camera1, rng);

@@ -12,7 +12,7 @@ namespace {
 
 enum class Region { kHalf, kCorner, kBand, kFull };
 
-// A rectangle of image 1; its sides are fractions of the image's, from the left and the upper border.
+// A rectangle of image 1, in fractions of the image's sides from the left and the upper border.
 struct ImagePart {
   double left = 0.0, width = 1.0, top = 0.0, height = 1.0;
 };

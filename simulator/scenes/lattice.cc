@@ -18,7 +18,7 @@ struct LatticeShape {
   double NumSites() const { return static_cast<double>(num_columns) * num_rows * num_motif_points; }
 };
 
-// Sites in random order, each a candidate once; after the last there is nothing.
+// The sites in random order, each a candidate once; then UnseenPoint().
 class LatticeWorld : public World {
  public:
   LatticeWorld(std::vector<Eigen::Vector3d> sites_in_cam1, std::vector<Eigen::Vector3d> repeat_steps_m)
@@ -36,10 +36,10 @@ class LatticeWorld : public World {
   std::vector<Eigen::Vector3d> sites_in_cam1_, repeat_steps_m_;
 };
 
-// A facade that faces the camera and repeats itself: the same random motif in every cell of a lattice, in all
-// three coordinates, so that a step of the lattice carries it onto itself. The points are drawn from the
-// sites (cell, point of the motif) that both images show, without repetition, each set equally likely; a
-// study that asks for more matches than there are such sites gets an InputError.
+// A facade that faces the camera and repeats itself: the same random motif, in all three coordinates, in
+// every cell of a lattice. A step of the lattice maps the facade onto itself. Points are drawn from the sites
+// (cell, point of the motif) that both images show, without repetition, each set equally likely. A study that
+// asks for more matches than such sites gets an InputError.
 class Lattice : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -87,7 +87,7 @@ class Lattice : public SceneModel {
     }
   }
 
-  // The motif in the first cell (camera 1's frame). The lattice stands anywhere within half a cell around the
+  // The motif in the first cell (camera 1's frame). The middle of the lattice is within half a cell of the
   // optical axis.
   std::vector<Eigen::Vector3d> DrawMotif(RandomStream& rng) const {
     const double step_m = shape_.step_m;

@@ -7,7 +7,8 @@
 namespace rcme {
 namespace {
 
-// A plane {X : normal' X = distance_m} in camera 1's frame; the normal is a unit vector away from the camera.
+// A plane {X : normal' X = distance_m} in camera 1's frame; the normal is a unit vector pointing away from
+// the camera.
 struct Plane {
   Eigen::Vector3d normal;
   double distance_m;
@@ -22,7 +23,8 @@ class PlaneWorld : public PointwiseWorld {
   std::vector<double> PartShares() const override { return {1.0 - off_plane_share_, off_plane_share_}; }
 
  private:
-  // Where the ray of a pixel uniform over image 1 meets the plane; a ray beyond the plane's horizon does not.
+  // The point where the ray of a pixel uniform over image 1 meets the plane; UnseenPoint() beyond the plane's
+  // horizon.
   Eigen::Vector3d DrawCandidate(size_t part, RandomStream& rng) const override {
     const Eigen::Vector3d ray = DrawRay(camera_, rng);
     const double offset_m = part == 0 ? 0.0 : rng.Uniform(-off_plane_m_, off_plane_m_);
@@ -36,8 +38,8 @@ class PlaneWorld : public PointwiseWorld {
   double off_plane_share_, off_plane_m_;
 };
 
-// A plane, tilted about any axis in the image, and points beside it: with few of them the motion is hard to
-// distinguish from another one of the same homography (Type B).
+// A plane, tilted about any axis in the image, and points off it. With few points off it the motion is hard
+// to distinguish from the second motion of the same homography (Type B).
 class PlaneScene : public SceneModel {
  public:
   explicit PlaneScene(double off_plane_share) : off_plane_share_(off_plane_share) {}

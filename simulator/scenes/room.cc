@@ -13,7 +13,7 @@ namespace {
 constexpr int kMaxTriesPerBox = 1000;
 constexpr double kLeastBoxSide = 0.25;  // of max_box_size_m
 
-// The faces of a box between two corners; those of y can be left out (y runs downwards: low is the top).
+// The faces of a box between two corners; top and bottom are optional (y points down: low is the top).
 void AddFaces(const Eigen::Vector3d& low, const Eigen::Vector3d& high, bool has_top, bool has_bottom,
               std::vector<Rectangle>* faces) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -40,11 +40,11 @@ class RoomWorld : public PointwiseWorld {
   std::vector<Rectangle> faces_;
 };
 
-// A room with boxes on its floor, along its walls' directions; boxes may run into one another. The first
-// images are uniform over image 1, each point is the first surface on its ray. What boxes hide from camera 2
-// alone is kept: between two near views that is little, and the matches are as true.
+// A room with boxes on its floor, parallel to its walls; boxes may intersect. Points are uniform over image
+// 1, each the first surface on its ray. Points that boxes hide from camera 2 alone are kept: between near
+// views they are few, and their matches are true.
 //
-// Building frame: the origin on the floor in the middle of the room, z along room_length_m.
+// Building frame: the origin is on the floor in the middle of the room, z along room_length_m.
 class Room : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
@@ -88,7 +88,7 @@ class Room : public SceneModel {
     }
   }
 
-  // A box wholly in the room, of those that leave the camera free (`camera_xz`, on the floor).
+  // A box wholly inside the room that keeps free_radius_m from the camera (`camera_xz`, on the floor).
   void AddBox(const Eigen::Vector2d& camera_xz, RandomStream& rng, std::vector<Rectangle>* faces) const {
     for (int tries = 0; tries < kMaxTriesPerBox; ++tries) {
       const double size_x = DrawSide(rng), size_y = std::min(DrawSide(rng), height_m_),

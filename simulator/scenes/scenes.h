@@ -8,15 +8,15 @@
 namespace rcme {
 
 std::unique_ptr<SceneModel> MakeUniformVolume();
-// Gaussian clusters in space before a uniform volume.
+// Gaussian clusters in space, and a uniform volume as background.
 std::unique_ptr<SceneModel> MakeClusters();
-// A cluster process on image 1, at depths of a uniform volume.
+// A cluster process on image 1, with the depths of a uniform volume.
 std::unique_ptr<SceneModel> MakeImageClusters();
 // A uniform volume behind one rectangle of image 1.
 std::unique_ptr<SceneModel> MakeImageRegion();
 // One plane (Type B).
 std::unique_ptr<SceneModel> MakePlane();
-// The same with some points off the plane.
+// A plane and some points off it.
 std::unique_ptr<SceneModel> MakePlaneAndParallax();
 // Two planes that meet in a vertical edge.
 std::unique_ptr<SceneModel> MakeTwoPlanes();

@@ -9,8 +9,8 @@ struct NamedShare {
   double share;
 };
 
-// What two shares leave of 1. Throws InputError that names both keys if they sum to more (give or take
-// rounding: 0.9 and 0.1 leave nothing).
+// 1 minus the two shares. Throws InputError that names both keys if they sum to more than 1 (up to rounding:
+// 0.9 and 0.1 leave 0).
 double RestOfShares(const NamedShare& first, const NamedShare& second);
 
 }  // namespace rcme

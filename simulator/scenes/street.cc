@@ -6,7 +6,7 @@
 namespace rcme {
 namespace {
 
-// The farthest of the points beyond the street, times street_length_m.
+// Depth of the farthest points beyond the street, over street_length_m.
 constexpr double kStreetFarSpan = 5.0;
 
 struct StreetSize {
@@ -14,7 +14,7 @@ struct StreetSize {
   double facade_distance_m = 8.0, facade_height_m = 10.0, street_length_m = 60.0;
 };
 
-// Part 0: the road, 1: the facades, 2: what is far away. The street is convex: nothing hides anything.
+// Part 0: the road, 1: the facades, 2: far points. The street is convex, so there is no occlusion.
 class StreetWorld : public PointwiseWorld {
  public:
   StreetWorld(const SceneCamera& camera1, double turn, const StreetSize& size, std::vector<double> shares)
@@ -51,9 +51,9 @@ class StreetWorld : public PointwiseWorld {
 };
 
 // A street seen from a car in its middle: road, facades on both sides, and trees and houses beyond its end.
-// On road and facades the first images are uniform over what image 1 shows of them.
+// Points on road and facades are uniform in image 1 over what it shows of them.
 //
-// Building frame: the origin at camera 1, z along the street.
+// Building frame: the origin is at camera 1, z along the street.
 class Street : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {

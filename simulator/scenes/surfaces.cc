@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-// The multiple of `direction` at which the line from `start` meets the rectangle.
+// The multiple of `direction` at which the ray from `start` meets the rectangle; infinite if it does not.
 double MultipleAt(const Rectangle& rectangle, const Eigen::Vector3d& start,
                   const Eigen::Vector3d& direction) {
   const int n = rectangle.normal_axis;
@@ -40,7 +40,7 @@ Eigen::Vector3d UprightCamera::InBuildingAxes(const Eigen::Vector3d& ray) const 
   return {cos_turn_ * ray.x() + sin_turn_ * ray.z(), ray.y(), cos_turn_ * ray.z() - sin_turn_ * ray.x()};
 }
 
-// The ray's third component is 1: its multiple is the depth.
+// The ray's third component is 1, so its multiple is the depth.
 double UprightCamera::FirstDepth(const Eigen::Vector3d& ray, std::span<const Rectangle> rectangles) const {
   const Eigen::Vector3d direction = InBuildingAxes(ray);
   double first = kNone;

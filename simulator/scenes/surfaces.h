@@ -1,7 +1,6 @@
-// What a camera sees inside a building or a street: rectangles parallel to the axes, met by viewing rays.
+// Surfaces inside a building or a street: rectangles parallel to the axes, hit by viewing rays.
 //
-// Building frame (m): y down along gravity, x and z level along the walls; each scene says where its origin
-// is.
+// Building frame (m): y down along gravity, x and z level along the walls. Each scene defines its origin.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,25 +12,25 @@
 
 namespace rcme {
 
-// All points with low <= point <= high in the building frame; low and high agree in the axis of the normal.
+// All points with low <= point <= high in the building frame; low and high are equal along the normal's axis.
 struct Rectangle {
   int normal_axis;  // 0, 1, 2: x, y, z
   Eigen::Vector3d low, high;
 };
 
-// A camera that stands upright in the building, turned to the right by a part of a turn: at 0 its axes are
-// those of the building.
+// An upright camera in the building, turned to the right by `turn` full turns; at 0 its axes are those of the
+// building.
 class UprightCamera {
  public:
   UprightCamera(const SceneCamera& camera, const Eigen::Vector3d& centre_in_building, double turn);
 
   // A viewing ray, given in camera axes, in the axes of the building.
   Eigen::Vector3d InBuildingAxes(const Eigen::Vector3d& ray) const;
-  // The depth (third coordinate in the camera, m) of the first rectangle on the ray; infinite if the ray
-  // meets no rectangle.
+  // The depth (third coordinate in the camera, m) of the first rectangle on the ray; infinite if there is
+  // none.
   double FirstDepth(const Eigen::Vector3d& ray, std::span<const Rectangle> rectangles) const;
-  // The point (camera frame) of the first rectangle on the ray of a pixel uniform over the image; where it
-  // meets no rectangle, UnseenPoint().
+  // The first point (camera frame) on the ray of a pixel uniform over the image; UnseenPoint() if the ray
+  // hits no rectangle.
   Eigen::Vector3d DrawPoint(std::span<const Rectangle> rectangles, RandomStream& rng) const;
 
  private:

@@ -12,8 +12,8 @@
 namespace rcme {
 namespace {
 
-// Part 0: the plane left of the edge. Part 1: the one right of it. The edge is vertical and crosses the
-// optical axis of camera 1; angles[part] lies between its plane and the line from the edge back to the
+// Part 0: the plane left of the edge. Part 1: the plane right of it. The edge is vertical and crosses the
+// optical axis of camera 1. angles[part] is the angle between the plane and the line from the edge to the
 // camera.
 class TwoPlanesWorld : public PointwiseWorld {
  public:
@@ -27,8 +27,9 @@ class TwoPlanesWorld : public PointwiseWorld {
   std::vector<double> PartShares() const override { return {first_plane_share_, 1.0 - first_plane_share_}; }
 
  private:
-  // Where the ray of a pixel uniform over image 1 meets the plane. The plane's points s metres from the edge
-  // are edge_depth_m - s cos deep and s sin to their side; both ratio = |x / z| of the ray.
+  // The point where the ray of a pixel uniform over image 1 meets the plane. Points of the plane at s metres
+  // from the edge have depth edge_depth_m - s cos and lie s sin to the side; their ratio must equal |x / z|
+  // of the ray.
   Eigen::Vector3d DrawCandidate(size_t part, RandomStream& rng) const override {
     const Eigen::Vector3d ray = DrawRay(camera_, rng);
     const double ratio = part == 0 ? -ray.x() : ray.x();

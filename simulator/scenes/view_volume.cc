@@ -48,14 +48,14 @@ void DrawBehindLens(const SceneCamera& camera1, const DepthRange& depths, Random
 
 }  // namespace
 
-// Three uniforms a point: its y in image 1, x in image 1, depth. A plain loop over arrays, which the compiler
-// turns into vectors.
+// Three uniforms per point: its y in image 1, x in image 1, depth. The plain loop over arrays is vectorised
+// by the compiler.
 void DrawInViewVolume(const SceneCamera& camera1, const DepthRange& depths, RandomStream& rng,
                       PointBlock* block) {
   if (camera1.HasLens()) return DrawBehindLens(camera1, depths, rng, block);
   std::array<double, 3 * PointBlock::kSize> uniforms;
   rng.FillUniform(uniforms);
-  const Camera camera = camera1;  // a copy: the block is no alias of it
+  const Camera camera = camera1;  // a copy, so that the block cannot alias it
   const double width_px = camera.width, height_px = camera.height;
   const double min_depth_m = depths.min_depth_m, depth_span_m = depths.max_depth_m - depths.min_depth_m;
   for (size_t i = 0; i < PointBlock::kSize; ++i) {

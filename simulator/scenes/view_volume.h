@@ -1,4 +1,4 @@
-// The part of space that image 1 shows between two depths: where scenes place points that belong to nothing.
+// The part of space that image 1 shows between two depths, for points that lie on no surface.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,14 +22,14 @@ struct DepthRange {
 };
 std::vector<Parameter> Parameters(DepthRange& depths);
 
-// The viewing ray (third component 1) of a pixel uniform over the image; two uniforms, y first. Behind a lens
-// uniform over the pixels that a ray reaches; throws InputError if these are less than about one in a
-// thousand.
+// The viewing ray (third component 1) of a pixel uniform over the image; draws two uniforms, y first. With a
+// lens: uniform over the pixels that a ray reaches; throws InputError if these are less than about 0.1 % of
+// the image.
 Eigen::Vector3d DrawRay(const SceneCamera& camera, RandomStream& rng);
 Eigen::Vector3d DrawRay(const Camera& without_its_lens, RandomStream& rng) = delete;
 
-// Points whose first image is uniform over image 1 and whose depth is uniform in the range; UnseenPoint() at
-// a pixel that no ray reaches.
+// Points uniform over image 1 and uniform in depth within the range; UnseenPoint() at a pixel that no ray
+// reaches.
 void DrawInViewVolume(const SceneCamera& camera1, const DepthRange& depths, RandomStream& rng,
                       PointBlock* block);
 void DrawInViewVolume(const Camera& without_its_lens, const DepthRange& depths, RandomStream& rng,

@@ -28,7 +28,7 @@ std::vector<ImagedPoint> ImageSome(const ViewPair& view, std::span<const Eigen::
   return imaged;
 }
 
-// The plane m' X = 1 carries ray1 to R ray1 + baseline t (m' ray1) in camera 2.
+// The plane m' X = 1 maps ray1 to R ray1 + baseline t (m' ray1) in camera 2.
 double ShareOnPlane(const ViewPair& view, const std::vector<ImagedPoint>& points, const Eigen::Vector3d& m,
                     double max_distance_px) {
   const RelativePose& pose = view.cam2_from_cam1_true;
@@ -51,7 +51,7 @@ double HomographyShare(const ViewPair& view, std::span<const Eigen::Vector3d> po
   double best = ShareOnPlane(view, imaged, Eigen::Vector3d::Zero(), max_distance_px);
   const auto n = static_cast<std::uint32_t>(points_in_cam1.size());
   for (int plane = 0; plane < kNumPlanes && best < 1.0 && n >= 3; ++plane) {
-    Eigen::Matrix3d three;  // one point a row: three m = 1
+    Eigen::Matrix3d three;  // one point per row: three * m = 1
     for (int row = 0; row < 3; ++row) three.row(row) = points_in_cam1[rng.IntegerBelow(n)].transpose();
     const Eigen::Vector3d m = three.inverse() * Eigen::Vector3d::Ones();
     if (m.allFinite()) best = std::max(best, ShareOnPlane(view, imaged, m, max_distance_px));

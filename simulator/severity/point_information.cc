@@ -35,8 +35,8 @@ PointConstraint ComputePointConstraint(const ViewPair& view, const Eigen::Vector
   const RelativePose& pose = view.cam2_from_cam1_true;
   const Eigen::Matrix<double, 2, 3> P2 = ProjectionJacobian(view.camera2, view.InCamera2(X));
   PointConstraint constraint;
-  // Along the ray of x1, that is along X, the first image does not change and the second moves on a line;
-  // across that line it cannot move unless x1 does.
+  // If the point moves along the ray of x1, that is along X, the first image does not change and the second
+  // moves on a line. The second image moves across that line only if x1 moves.
   constraint.line_direction = P2 * (pose.R * X);
   const Eigen::Vector2d n2(-constraint.line_direction.y(), constraint.line_direction.x());
   const Eigen::Vector3d g = (n2.transpose() * P2 * pose.R).transpose();
@@ -50,7 +50,7 @@ PointConstraint ComputePointConstraint(const ViewPair& view, const Eigen::Vector
 Eigen::Matrix3d ComputeRotationInformation(const ViewPair& view, const Eigen::Vector3d& X, double sigma_px) {
   const Eigen::Matrix3d& R = view.cam2_from_cam1_true.R;
   const Eigen::Matrix<double, 2, 3> P2 = ProjectionJacobian(view.camera2, R * X);
-  Eigen::Matrix<double, 2, 4> gradients_px;  // of two numbers: d x2 less what d x1 explains
+  Eigen::Matrix<double, 2, 4> gradients_px;  // of two numbers: d x2 minus the part due to d x1
   for (int k = 0; k < 2; ++k) {
     gradients_px.row(k) << CancelInImage1(view.camera1, X, (P2.row(k) * R).transpose()).transpose(),
         Eigen::RowVector2d::Unit(k);

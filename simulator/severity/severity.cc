@@ -54,12 +54,12 @@ double Planarity(const Points& points) {
   return std::sqrt(std::max(0.0, eigenvalues(0)) / eigenvalues.sum());
 }
 
-// Share of image 2 that lies within 1.96 standard deviations of a point's epipolar line; behind a lens, of
-// the tangent of its curve.
+// Share of image 2 within 1.96 standard deviations of a point's epipolar line; with a lens, of the tangent of
+// its curve.
 double ShareNearLine(const Camera& camera2, const PointConstraint& constraint, const Eigen::Vector2d& x2_px,
                      double sigma_px) {
   const Eigen::Vector2d d = constraint.line_direction.normalized();
-  // The line x2 + s d inside the image: the greatest lower and the least upper bound of s.
+  // The bounds of s for which x2 + s d is inside the image.
   double lower = -std::numeric_limits<double>::infinity(), upper = -lower;
   const Eigen::Vector2d first(-0.5, -0.5), last(camera2.width - 0.5, camera2.height - 0.5);
   for (int k = 0; k < 2; ++k) {
@@ -91,7 +91,7 @@ void MeasureMotionInformation(const Scene& scene, const Points& points, double s
   severity->chance_inlier_share = chance.mean();
   const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(information);
   const double least = eigen.eigenvalues()(0), greatest = eigen.eigenvalues()(4);
-  // Below the rounding error of the sum nothing is known of that direction.
+  // Below the rounding error of the sum the direction is undetermined.
   if (!(least > 1e-15 * greatest)) {
     severity->log10_condition = severity->crb_rotation_deg = severity->crb_direction_deg =
         std::numeric_limits<double>::infinity();
@@ -132,7 +132,7 @@ Severity MeasureSeverity(const Scene& scene, const Observation& observation, dou
   MeasureImages(scene, observation, &severity);
   MeasureParallax(scene, points, &severity);
   severity.planarity = Planarity(points);
-  // The 95 % radius of two noisy points' difference.
+  // The 95 % radius of the difference of two noisy points.
   severity.homography_share = HomographyShare(scene, points, std::sqrt(2.0) * 2.448 * sigma_px, rng);
   const auto measure = scene.IsDirectionDefined() ? MeasureMotionInformation : MeasureRotationInformation;
   measure(scene, points, sigma_px, &severity);

@@ -1,5 +1,5 @@
-// How hard a problem is, measured on the truth itself, so that an avoidable failure can be distinguished
-// from an impossible problem.
+// The difficulty of a problem, measured on the ground truth. It separates avoidable failures from impossible
+// problems.
 #pragma once
 
 #include <limits>
@@ -10,8 +10,8 @@
 
 namespace rcme {
 
-// Of the true inliers unless said otherwise; experiments/trial/severity_columns.h says what each number is. Unknown (NaN): not
-// measured, or not defined (too few points, no translation).
+// Computed from the true inliers unless experiments/trial/severity_columns.h, which defines each number, says
+// otherwise. NaN: not measured, or not defined (too few points, no translation).
 struct Severity {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -30,7 +30,8 @@ struct Severity {
   double undetectable_share = kUnknown;
 };
 
-// Noise of `sigma_px` per coordinate, normal: what the bounds are for. `rng` draws candidate homographies.
+// `sigma_px`: normal noise per coordinate, on which the Cramer-Rao bounds are based. `rng` draws candidate
+// homographies.
 Severity MeasureSeverity(const Scene& scene, const Observation& observation, double sigma_px,
                          RandomStream& rng);
 
