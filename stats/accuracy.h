@@ -14,9 +14,9 @@ struct Measured {
   double value = 0.0, standard_error = 0.0;
 };
 
-// A stream of errors in constant memory. NaN where there are not enough of them (one for a value, two for a
-// standard error); a NaN or infinite error spoils every measure, as it should: an estimator's refusals are
-// counted elsewhere, not here.
+// A stream of errors in constant memory. NaN if there are not enough of them (one for a value, two for a
+// standard error). A NaN or infinite error makes every measure NaN or infinite, on purpose: do not add
+// refusals here, count them separately.
 class Accuracy {
  public:
   void Add(double error) { errors_.Add(error), squares_.Add(error * error); }
@@ -29,16 +29,17 @@ class Accuracy {
   Measured empirical_standard_error() const;
   // Mean squared error; standard deviation of the squares / sqrt(n).
   Measured mean_squared_error() const;
-  // Its root, not in the table: by the delta method the MSE's standard error / (2 RMSE). 0 of 0 is 0.
+  // The root of the mean squared error. It is not in the table; by the delta method its standard error is
+  // that of the MSE / (2 RMSE). 0 of 0 is 0.
   Measured root_mean_squared_error() const;
 
  private:
   Moments errors_, squares_;
 };
 
-// Which of n values in rising order, counted from 1, enclose the p-quantile of their law with at least
-// `confidence`, each end missed with at most half of the rest, whatever the law. `lower` is 0 and `upper`
-// n + 1 where no value is far enough out.
+// The ranks, counted from 1, of two of n ascending values that enclose the p-quantile of their law with at
+// least `confidence`. Each end is missed with at most half of the remaining probability, whatever the law.
+// `lower` is 0 and `upper` n + 1 if no value is far enough out.
 struct RankInterval {
   std::int64_t lower = 0, upper = 0;
 };
@@ -48,11 +49,12 @@ RankInterval QuantileRanks(std::int64_t n, double p, double confidence = 0.95);
 // of the empirical distribution function).
 struct MeasuredQuantile {
   double value = 0.0;
-  // Half the distance between the order statistics n p +- sqrt(n p (1 - p)), rounded outwards and kept
-  // to 1..n: no density is estimated and no normality assumed.
+  // Half the distance between the order statistics n p +- sqrt(n p (1 - p)), rounded outwards and kept to
+  // 1..n. No density is estimated and no normality assumed.
   double standard_error = 0.0;
-  // Between two order statistics, distribution-free: holds the quantile with at least `confidence`, each end
-  // missed with at most half of the rest. An end is infinite if no order statistic is far enough out.
+  // Between two order statistics and distribution-free: contains the quantile with at least `confidence`,
+  // each end missed with at most half of the remaining probability. An end is infinite if no order statistic
+  // is far enough out.
   Interval interval;
 };
 // Throws std::invalid_argument if there are no values, one is NaN, or p or confidence is not in (0, 1).

@@ -8,7 +8,7 @@
 namespace rcme {
 namespace {
 
-// Of one kind, in one cluster: how many scores, and the sum of their placements.
+// The scores of one kind in one cluster: their number and the sum of their placements.
 struct Placements {
   double count = 0.0, sum = 0.0;
 };
@@ -45,8 +45,8 @@ Placements ComputePlacements(const std::vector<double>& scores, const std::vecto
   return placements;
 }
 
-// Mean placement of one kind over all clusters and its variance, with `added` clusters of mean size at
-// placement 0 and as many at placement 1.
+// Mean placement of one kind over all clusters and its variance, after adding `added` clusters of mean size
+// with placement 0 and as many with placement 1.
 struct ClusterMean {
   double num_clusters = 0.0, count = 0.0, mean = 0.0, variance = 0.0;
 
@@ -63,7 +63,7 @@ struct ClusterMean {
   }
 };
 
-// What both kinds of a cluster have in common: S11.
+// S11 of the header: the covariance of both kinds within clusters.
 double ComputePlacementCovariance(const std::vector<Placements>& positives,
                                   const std::vector<Placements>& negatives, const ClusterMean& positive_mean,
                                   const ClusterMean& negative_mean) {

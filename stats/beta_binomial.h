@@ -1,8 +1,8 @@
-// How many of m new observations a split-conformal bound holds, whatever their law.
+// The number of m new observations that a split-conformal bound covers, whatever their law.
 //
-// The k-th smallest of n exchangeable scores is at least the share P of new scores, P ~ Beta(k, n + 1 - k)
-// where no two are equal (Vovk 2012): its mean is k / (n + 1), and one calibration has more or less. Given P
-// the m new ones are Binomial(m, P), so the number held is beta-binomial.
+// Let P be the share of new scores up to the k-th smallest of n exchangeable scores. If no two scores are
+// equal, P ~ Beta(k, n + 1 - k) (Vovk 2012), with mean k / (n + 1). Given P, the number of m new scores that
+// are covered is Binomial(m, P), so it is beta-binomial.
 #pragma once
 
 #include <cstdint>

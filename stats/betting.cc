@@ -42,7 +42,7 @@ namespace {
 
 constexpr size_t kMostStakes = 16;
 
-// Of every stake. Padded with stakes of 0, which leave the capital as it was.
+// log K of every stake, padded with stakes of 0, which leave the capital unchanged.
 struct LogCapitals {
   std::array<double, kMostStakes> values;
   std::span<const double> of_stakes;

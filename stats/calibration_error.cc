@@ -34,10 +34,10 @@ std::vector<size_t> BinNumbers(std::span<const Forecast> forecasts, Binning binn
 }
 
 struct Bin {
-  double sum = 0.0, num_happened = 0.0;  // of the probabilities; events
+  double sum = 0.0, num_happened = 0.0;  // sum of the probabilities; number of events
 };
 
-// Of bins that are filled but for the events.
+// The calibration error of bins with probabilities and events.
 double ComputeBinnedError(const std::vector<Bin>& bins, double n) {
   double error = 0.0;
   for (const Bin& bin : bins) error += std::abs(bin.sum - bin.num_happened) / n;

@@ -1,5 +1,5 @@
-// The expected calibration error: forecasts in bins by their probability, in each the distance between the
-// mean probability and the share that happened.
+// The expected calibration error: forecasts are binned by their probability; in each bin the mean probability
+// is compared with the share of events that happened.
 #pragma once
 
 #include <cstdint>
@@ -23,25 +23,25 @@ enum class Binning {
   kEqualMass    // n / K forecasts each, the least first; equal probabilities stay in one bin
 };
 
-// The bins that are not empty, rising. Throws std::invalid_argument below one bin, and as CheckForecasts
-// does.
+// The non-empty bins, ascending. Throws std::invalid_argument for fewer than one bin, and like
+// CheckForecasts.
 std::vector<CalibrationBin> BinForecasts(std::span<const Forecast> forecasts, Binning binning, int num_bins);
 
 // sum over the bins of n_b / n |mean probability - share|.
 double ExpectedCalibrationError(std::span<const CalibrationBin> bins);
 
-// The error is above 0 for right probabilities too: chance alone moves every share. So it comes with what
-// right probabilities would give in the same bins, by drawn outcomes (DrawOutcomes).
+// Chance makes the error positive even for correct probabilities. It is therefore reported with its
+// distribution in the same bins under correct probabilities, by drawn outcomes (DrawOutcomes).
 struct MeasuredCalibrationError {
   double value = 0.0;
   double mean_if_calibrated = 0.0, upper_if_calibrated = 0.0;  // mean, and the 95 % quantile
-  double p_value = 1.0;  // the share of drawn samples with as great an error, as in reliability.h
+  double p_value = 1.0;  // share of drawn samples with at least this error, as in reliability.h
 };
 MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forecasts, Binning binning,
                                                  int num_bins, int num_samples, RandomStream& rng);
 
-// The error in the population that the forecasts' clusters are a random sample of (conditions), with its
-// interval by a bootstrap over clusters; the bins are those of all forecasts. Measured coverage:
+// The error in the population of which the forecasts' clusters (conditions) are a random sample, with its
+// interval by a bootstrap over clusters. The bins are those of all forecasts. Measured coverage:
 // results/population/README.md.
 BootstrapEstimate MeasurePopulationCalibrationError(std::span<const Forecast> forecasts, Binning binning,
                                                     int num_bins, const BootstrapOptions& options,

@@ -39,7 +39,7 @@ struct Likelihood {
   }
 };
 
-// Newton's steps, halved until the likelihood, which is concave, does not fall.
+// Newton's method; steps are halved until the likelihood, which is concave, does not fall.
 std::optional<Line> MostLikelyLine(const std::vector<double>& log_odds, std::span<const Forecast> forecasts) {
   Line line = {0.0, 1.0};
   Likelihood now(log_odds, forecasts, line);
@@ -57,7 +57,7 @@ std::optional<Line> MostLikelyLine(const std::vector<double>& log_odds, std::spa
       step.intercept *= 0.5, step.slope *= 0.5;
     }
   }
-  return std::nullopt;  // events wholly apart: the slope grows for ever
+  return std::nullopt;  // perfect separation: the slope grows without bound
 }
 
 }  // namespace

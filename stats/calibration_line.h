@@ -1,7 +1,7 @@
 // Calibration slope and intercept (Cox 1958): logistic regression of the event on the stated log odds,
 //   logit P(happens) = intercept + slope logit p.
-// Right probabilities have slope 1 and intercept 0. A slope below 1: too sure either way; above 1: not sure
-// enough. An intercept below 0 at slope 1: probabilities too great.
+// Correct probabilities have slope 1 and intercept 0. A slope below 1 means overconfidence, above 1
+// underconfidence. An intercept below 0 at slope 1 means that probabilities are too large.
 #pragma once
 
 #include <span>
@@ -10,9 +10,10 @@
 
 namespace rcme {
 
-// By maximum likelihood; probabilities clipped (kProbabilityClip), so that a forecast of 0 has log odds -9.2.
-// Standard errors by clusters, from the influences H^-1 (y - mu) (1, logit p). All NaN (intervals unbounded)
-// where no finite optimum exists: only one kind of outcome, probabilities all equal, or events wholly apart.
+// Maximum likelihood; probabilities are clipped (kProbabilityClip), so a forecast of 0 has log odds -9.2.
+// Standard errors are clustered, from the influences H^-1 (y - mu) (1, logit p). All NaN (intervals
+// unbounded) if there is no finite optimum: only one kind of outcome, all probabilities equal, or perfect
+// separation.
 struct CalibrationLine {
   ClusteredEstimate intercept, slope;
   bool has_optimum = false;

@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-// In rising order of the clusters.
+// In ascending order of the clusters.
 std::vector<double> SumsByCluster(std::span<const double> numbers, std::span<const std::int64_t> clusters) {
   std::vector<size_t> order(numbers.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -62,7 +62,7 @@ ClusteredEstimate MeasureBoundedClusteredMean(std::span<const double> numbers, d
   mean.interval = {0.0, greatest};
   if (sums.empty()) return mean;
   const double largest = greatest * *std::ranges::max_element(sizes);
-  ScoreMean shares;  // of the greatest possible sum
+  ScoreMean shares;  // sums over the greatest possible sum
   for (const double sum : sums) shares.Add(std::min(1.0, sum / largest));
   const Interval interval = shares.Sequence(confidence);
   const double scale = largest * static_cast<double>(sums.size()) / static_cast<double>(numbers.size());

@@ -7,7 +7,7 @@
 namespace rcme {
 namespace {
 
-// Boost's, because the C library's lgamma writes a global variable.
+// Boost's lgamma, because the C library's writes a global variable.
 double LogBeta(double a, double b) {
   return boost::math::lgamma(a) + boost::math::lgamma(b) - boost::math::lgamma(a + b);
 }
@@ -20,7 +20,7 @@ double LogLikelihood(double s, double f, double p) {
   return LogPower(s, std::log(p)) + LogPower(f, std::log1p(-p));
 }
 
-// log of its mean over p ~ Beta(a, b).
+// Log of the mean of p^s (1 - p)^f over p ~ Beta(a, b).
 double LogMixtureLikelihood(double s, double f, const BetaPrior& prior) {
   if (s < 0.0 || f < 0.0) throw std::invalid_argument("confidence sequence: successes outside 0..n");
   if (!(prior.a > 0.0 && prior.b > 0.0))
@@ -36,7 +36,7 @@ double Border(double inside, double outside, const Predicate& is_inside) {
     if (middle == inside || middle == outside) break;
     (is_inside(middle) ? inside : outside) = middle;
   }
-  return outside;  // wider by one bit rather than narrower
+  return outside;  // errs by one bit towards wider
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ double LogMixtureLikelihoodRatio(std::int64_t successes, std::int64_t n, double 
 Interval ConfidenceSequence(std::int64_t successes, std::int64_t n, double confidence,
                             const BetaPrior& prior) {
   if (n <= 0) return {0.0, 1.0};
-  // log M is convex in p with its least value, at most 0, at s / n: one border on either side.
+  // log M is convex in p, and its minimum at s / n is at most 0: there is one border on each side.
   const double s = static_cast<double>(successes), f = static_cast<double>(n - successes);
   const double least_log_likelihood = LogMixtureLikelihood(s, f, prior) + std::log1p(-confidence);
   const auto is_inside = [&](double p) { return LogLikelihood(s, f, p) > least_log_likelihood; };

@@ -22,11 +22,11 @@ double ConformalBound(std::span<const double> scores, std::span<const double> sh
     total += shares[i];
   }
   std::ranges::sort(falling, std::greater<>());
-  // Sums that are whole numbers must not be missed by rounding.
+  // Rounding must not lose sums that are integers.
   constexpr double kRounding = 1e-9;
   const double may_exceed = (1.0 - level) * total - level + kRounding;
   if (may_exceed < 0.0) return kInfinity;
-  double beyond = 0.0;  // shares of the scores that a lower bound would leave out; never all of them
+  double beyond = 0.0;  // shares of the scores above the bound; never all of them
   size_t i = 0;
   while (beyond + falling[i].second <= may_exceed) beyond += falling[i++].second;
   return falling[i].first;

@@ -9,8 +9,8 @@
 namespace rcme {
 
 // Normalised estimation error squared e' Sigma^-1 e (NEES): chi-square with as many degrees of freedom as e
-// has coordinates, if e ~ N(0, Sigma). Infinite if Sigma is not positive definite: such a covariance claims
-// to know a direction exactly.
+// has coordinates if e ~ N(0, Sigma). Infinite if Sigma is not positive definite, as it then claims exact
+// knowledge of a direction.
 template <typename Vector, typename Matrix>
 double NormalizedErrorSquared(const Vector& error, const Matrix& covariance) {
   const Eigen::LLT<Matrix> llt(covariance);
@@ -18,13 +18,13 @@ double NormalizedErrorSquared(const Vector& error, const Matrix& covariance) {
   return error.dot(llt.solve(error));
 }
 
-// The acceptance bounds of the mean of n NEES values of `degrees_of_freedom` each: their sum is chi-square
-// with n dof, so that the mean lies in [chi2_(n dof)(alpha / 2), chi2_(n dof)(1 - alpha / 2)] / n
-// (Bar-Shalom, Li & Kirubarajan 2001, section 5.4).
+// The acceptance bounds of the mean of n NEES values with `degrees_of_freedom` each. Their sum is chi-square
+// with n dof degrees of freedom, so the mean lies in [chi2_(n dof)(alpha / 2), chi2_(n dof)(1 - alpha / 2)] /
+// n (Bar-Shalom, Li & Kirubarajan 2001, section 5.4).
 Interval AneesBounds(std::int64_t n, int degrees_of_freedom, double confidence = 0.95);
 
 // Average NEES of a stream of trials. Above its bounds the covariances are too small (optimistic), below them
-// too large. One infinite NEES makes the mean infinite and one NaN makes it NaN: neither is consistent.
+// too large. An infinite NEES makes the mean infinite and a NaN makes it NaN; both count as inconsistent.
 class Anees {
  public:
   explicit Anees(int degrees_of_freedom) : degrees_of_freedom_(degrees_of_freedom) {}

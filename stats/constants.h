@@ -1,4 +1,4 @@
-// Numbers that every room needs.
+// Constants for all rooms.
 #pragma once
 
 #include <limits>
@@ -11,7 +11,7 @@ inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 inline constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-// In this order of operations, whose last bit committed results depend on: kRadPerDeg * deg may differ in it.
+// Committed results depend on this order of operations in the last bit; kRadPerDeg * deg may differ in it.
 constexpr double RadFromDeg(double deg) { return deg * std::numbers::pi / 180.0; }
 
 }  // namespace rcme

@@ -1,6 +1,6 @@
-// Is a measured covariance the predicted one? The likelihood-ratio test of normal samples (Anderson 2003,
-// section 10.8; in photogrammetry Foerstner & Moonen 1999 compare covariance matrices by the same
-// eigenvalues).
+// The likelihood-ratio test whether a measured covariance of normal samples equals the predicted one
+// (Anderson 2003, section 10.8; in photogrammetry Foerstner & Moonen 1999 compare covariance matrices by the
+// same eigenvalues).
 #pragma once
 
 #include <Eigen/Core>
@@ -10,14 +10,14 @@ namespace rcme {
 
 struct CovarianceTest {
   // rho n [ln det S0 - ln det S + tr(S0^-1 S) - k] ~ chi2_(k (k + 1) / 2) for n degrees of freedom of S, with
-  // Bartlett's correction rho = 1 - (2 k^2 + 3 k - 1) / (6 n (k + 1)). Its size is right to a few per cent
+  // Bartlett's correction rho = 1 - (2 k^2 + 3 k - 1) / (6 n (k + 1)). The size is correct to a few per cent
   // from n = 10 k on.
   double statistic = 0.0;
   int degrees_of_freedom = 0;
   double p_value = 1.0;
-  // Generalised eigenvalues of (S, S0), rising: measured over predicted variance, 1 if they are equal.
+  // Generalised eigenvalues of (S, S0), ascending: measured over predicted variance, 1 if they are equal.
   Eigen::VectorXd variance_ratios;
-  // Column i, v with v' S0 v = 1 and v' S v = variance_ratios(i): the combination v'e of the errors'
+  // Column i is v with v' S0 v = 1 and v' S v = variance_ratios(i): the combination v'e of the error's
   // coordinates whose variance is off by that ratio.
   Eigen::MatrixXd combinations;
   // Column i = S0 v: the direction in the space of the errors in which they are too long or too short.
@@ -30,15 +30,15 @@ struct CovarianceTest {
 CovarianceTest TestCovariance(const Eigen::MatrixXd& measured, std::int64_t n,
                               const Eigen::MatrixXd& predicted);
 
-// The same for errors that each have a predicted covariance of their own: w = L^-1 e with Sigma = L L' should
-// be N(0, I), so that the second moment of w is tested against the identity. Coordinate i of w is the part of
-// e_i that e_1..e_(i-1) do not predict, over its standard deviation; a bias shows as a ratio above 1.
-// Streaming.
+// The same for errors that each have a predicted covariance: w = L^-1 e with Sigma = L L' should be N(0, I),
+// so the second moment of w is tested against the identity. Coordinate i of w is the part of e_i that
+// e_1..e_(i-1) do not predict, over its standard deviation. A bias shows as a ratio above 1. Works on a
+// stream.
 class WhitenedErrors {
  public:
   explicit WhitenedErrors(int dimension);
 
-  // An error that is not finite or whose covariance is not positive definite cannot be whitened: it is
+  // An error that is not finite, or whose covariance is not positive definite, cannot be whitened. It is
   // counted, and Test() then rejects.
   void Add(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
   void Merge(const WhitenedErrors& other);

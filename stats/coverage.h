@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// How often a statistic that should be chi-square distributed stays below the law's quantiles: the coverage
-// of the confidence regions at several levels, counted from a stream of trials in constant memory.
+// The coverage of confidence regions at several levels: how often a statistic that should be chi-square
+// distributed stays below the quantiles of that law. Counts a stream of trials in constant memory.
 class Coverage {
  public:
   static constexpr std::array<double, 5> kSignificanceLevels = {0.5, 0.2, 0.1, 0.05, 0.01};  // alpha
@@ -23,15 +23,14 @@ class Coverage {
 
   explicit Coverage(int degrees_of_freedom);
 
-  // A NaN, an infinite or a negative value is covered at no level: it is no value of a chi-square law.
+  // A NaN, infinite or negative value counts as not covered at every level.
   void Add(double statistic);
-  // As if the other's statistics had been added here. Throws std::invalid_argument at other degrees of
-  // freedom.
+  // Adds the other's statistics. Throws std::invalid_argument for different degrees of freedom.
   void Merge(const Coverage& other);
 
   std::int64_t n() const { return n_; }
   int degrees_of_freedom() const { return degrees_of_freedom_; }
-  // One row per significance level, in their order; `confidence` is of each interval by itself.
+  // One entry per significance level, in their order. `confidence` applies to each interval separately.
   std::array<Level, kSignificanceLevels.size()> Levels(double confidence = 0.95) const;
 
  private:

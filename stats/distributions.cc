@@ -12,14 +12,14 @@
 namespace rcme {
 namespace {
 
-// Double precision throughout: long double would take five times as long for digits that nobody sees.
+// Double precision: long double would take five times as long for digits beyond those printed.
 using DoublePrecision = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
 }  // namespace
 
 double ChiSquareQuantile(int degrees_of_freedom, double probability) {
-  // The square of a normal, and an exponential: a tenth of the general case's time, and every estimate asks
-  // for them.
+  // Closed forms (squared normal, exponential) take a tenth of the general case's time, and every estimate
+  // needs these quantiles.
   if (degrees_of_freedom == 1) return std::pow(NormalQuantile(0.5 * (1.0 - probability)), 2.0);
   if (degrees_of_freedom == 2) return -2.0 * std::log1p(-probability);
   return boost::math::quantile(

@@ -2,18 +2,19 @@
 
 #include <Eigen/Dense>
 
-// Eigen's solvers of the sizes that many sources use are compiled once, in eigen_solvers.cc: a source that
-// asks for the eigenvalues of a 5x5 matrix takes the compiler eight seconds less. The rooms and tests have
-// this header among their precompiled ones, so that no source includes it; without it a source compiles its
-// own and computes the same.
+// Eigen's solvers of sizes used by many sources are compiled once, in eigen_solvers.cc: each source that
+// needs the eigenvalues of a 5x5 matrix compiles eight seconds faster. Rooms and tests have this header among
+// their precompiled ones, so no source includes it. Without it a source compiles its own copy and computes
+// the same.
 //
-// Here is what several sources take, or one whose room is compiled with a heavy optimisation; what only one
-// test or one source of the experiments takes is compiled there, so that a build without it is spared.
+// The list has the solvers that several sources use, or one source whose room is compiled with costly
+// optimisation. A solver that only one test or one source of the experiments uses is compiled there, so that
+// builds without it save the time.
 //
-// A decomposition of an expression is still compiled where it stands:
+// A decomposition of an expression is still compiled in place: write
 // SelfAdjointEigenSolver<Matrix5d>(Matrix5d(A * B)), not (A * B).
 //
-// WHERE: `extern` declares them, nothing compiles them.
+// WHERE: `extern` declares the instantiations, an empty argument compiles them.
 #define RCME_EIGENVALUES(WHERE, MATRIX)                                                   \
   WHERE template SelfAdjointEigenSolver<MATRIX>& SelfAdjointEigenSolver<MATRIX>::compute( \
       const EigenBase<MATRIX>&, int);

@@ -66,7 +66,7 @@ void ExactSum::Add(double x) {
   auto mantissa = static_cast<std::int64_t>(std::ldexp(std::frexp(x, &exponent), 53));
   exponent -= 53;
   if (exponent < kUnit) {
-    mantissa /= std::int64_t{1} << (kUnit - exponent);  // exact: those bits are zero
+    mantissa /= std::int64_t{1} << (kUnit - exponent);  // exact: the dropped bits are zero
     exponent = kUnit;
   }
   const auto at = static_cast<size_t>(exponent - kUnit);
@@ -144,7 +144,7 @@ void ExactMoments::Add(double x) {
   sum_.Add(x);
   const double square = x * x;
   sum_squares_.Add(square);
-  sum_squares_.Add(std::fma(x, x, -square));  // what was rounded away
+  sum_squares_.Add(std::fma(x, x, -square));  // the rounding error of the square
 }
 
 void ExactMoments::Merge(const ExactMoments& other) {
@@ -161,7 +161,7 @@ double ExactMoments::mean() const {
   return Ratio(WholeNumber(sum_), n_, kUnit);
 }
 
-// (n sum x^2 - (sum x)^2) / (n (n - 1)): the difference, in which all is lost in floating point, is exact.
+// (n sum x^2 - (sum x)^2) / (n (n - 1)): the difference, which cancels in floating point, is exact here.
 double ExactMoments::variance() const {
   if (n_ < 2 || has_plus_infinity_ || has_minus_infinity_) return kNaN;
   const cpp_int sum = WholeNumber(sum_);

@@ -1,5 +1,5 @@
-// Mean and variance of numbers without a rounding error in the sums: the same bits in whatever order, and in
-// whatever groups, the numbers were added. Memory is constant.
+// Mean and variance of numbers without rounding error in the sums: bit-identical for any order and grouping
+// of the numbers. Constant memory.
 #pragma once
 
 #include <cstdint>
@@ -8,20 +8,20 @@
 
 namespace rcme {
 
-// A sum of doubles, exactly: a whole number of units of 2^-1074, the smallest double, in base 2^32 (the long
+// An exact sum of doubles: an integer multiple of 2^-1074, the smallest double, in base 2^32 (the long
 // accumulator of Kulisch).
 class ExactSum {
  public:
-  // Throws std::invalid_argument for what is not finite.
+  // Throws std::invalid_argument for a number that is not finite.
   void Add(double x);
   void Merge(const ExactSum& other);
 
-  // The sum as a hexadecimal whole number and a power of two: "0", "-1a3p-20".
+  // The sum as a hexadecimal integer and a power of two: "0", "-1a3p-20".
   std::string Text() const;
   // Throws std::invalid_argument for any other text.
   static ExactSum FromText(const std::string& text);
 
-  // The digits, each in [0, 2^32) but the last, which has the sign; the unit is 2^-1074. Empty: 0.
+  // The digits, each in [0, 2^32) except the last, which carries the sign; the unit is 2^-1074. Empty: 0.
   const std::vector<std::int64_t>& digits() const;
 
  private:
@@ -31,7 +31,7 @@ class ExactSum {
   mutable int num_added_ = 0;  // since the last carry: a digit holds 2^30 of them
 };
 
-// As Moments (stats/moments.h). The squares of numbers beyond 1e150 are infinite, as numbers that are.
+// Like Moments (stats/moments.h). Numbers beyond 1e150 count as infinite in the squares.
 class ExactMoments {
  public:
   // Throws std::invalid_argument for NaN.
@@ -39,13 +39,13 @@ class ExactMoments {
   void Merge(const ExactMoments& other);
 
   std::int64_t n() const { return n_; }
-  double mean() const;      // NaN where there are not enough numbers, as the next two
-  double variance() const;  // also NaN where a number is infinite
+  double mean() const;      // these three are NaN if there are not enough numbers
+  double variance() const;  // also NaN if a number is infinite
   double standard_error() const;
 
-  // n, sum, sum of squares; the sum "inf", "-inf" or "nan" where it is not finite.
+  // n, sum, sum of squares; a sum that is not finite is "inf", "-inf" or "nan".
   std::vector<std::string> Texts() const;
-  // Throws std::invalid_argument for texts that it does not give.
+  // Throws std::invalid_argument for texts that Texts() cannot have written.
   static ExactMoments FromTexts(const std::vector<std::string>& texts);
 
  private:

@@ -9,9 +9,9 @@
 
 namespace rcme {
 
-// Scores in [0, 1] for ScoreMean, collected so that neither order nor groups matter: the parts in which a
-// score is divided between two points of the grid are whole numbers of 2^-26. That moves a score by at most
-// 2^-27 / 100, less than the search for the bounds of its mean resolves.
+// Scores in [0, 1] for ScoreMean, collected independently of order and grouping: the parts into which a score
+// is split between two points of the grid are multiples of 2^-26. This moves a score by at most 2^-27 / 100,
+// less than the resolution of the search for the bounds of the mean.
 class ExactScores {
  public:
   // Throws std::invalid_argument outside of [0, 1].
@@ -21,9 +21,9 @@ class ExactScores {
   const ExactMoments& moments() const { return moments_; }
   ScoreMean Scores() const;
 
-  // Those of the moments, then the parts at the points of the grid, separated by spaces.
+  // The texts of the moments, then the parts at the points of the grid, separated by spaces.
   std::vector<std::string> Texts() const;
-  // Throws std::invalid_argument for texts that it does not give.
+  // Throws std::invalid_argument for texts that Texts() cannot have written.
   static ExactScores FromTexts(const std::vector<std::string>& texts);
 
  private:

@@ -24,7 +24,7 @@ Eigen::Vector3d SortEigenvalues(const Eigen::Vector3d& eigenvalues) {
   return sorted;
 }
 
-// The mean over p in [0, pi/2] of `f`, whose continuation is even at both ends, by the trapezoidal rule.
+// The mean of `f` over p in [0, pi/2] by the trapezoidal rule; f must continue evenly at both ends.
 template <typename Function>
 double MeanOverQuarterTurn(const Function& f) {
   double sum = 0.5 * (f(0.0) + f(0.5 * std::numbers::pi));
@@ -47,7 +47,7 @@ double GaussianShare(double r, double l3, double v) {
   return std::erf(scale * std::sqrt(v)) / std::sqrt(v);
 }
 
-// `l` falls, its first is 1.
+// `l` is descending, and its first entry is 1.
 double NormTail(const Eigen::Vector3d& l, double r) {
   if (r == 0.0) return 1.0;
   const double outside = l(2) > 0.0 ? std::erfc(r / std::sqrt(2.0 * l(2))) : 0.0;

@@ -1,29 +1,28 @@
-// The length |e| of a normal vector e of mean 0 whose covariance has the eigenvalues l1 >= l2 >= l3 >= 0 (two
-// of them: l3 = 0). |e|^2 = l1 z1^2 + l2 z2^2 + l3 z3^2 with independent standard normal z.
+// The length |e| of a normal vector e of mean 0 whose covariance has the eigenvalues l1 >= l2 >= l3 >= 0 (in
+// two dimensions l3 = 0). |e|^2 = l1 z1^2 + l2 z2^2 + l3 z3^2 with independent standard normal z.
 //
-// Write (z1, z2) in polar coordinates: l1 z1^2 + l2 z2^2 = s(p) w, with s(p) = l1 cos^2 p + l2 sin^2 p, p
-// uniform and w independent of it, chi-square with 2 degrees of freedom, so that P(w > x) = exp(-x / 2).
-// Given p,
+// Write (z1, z2) in polar coordinates: l1 z1^2 + l2 z2^2 = s(p) w with s(p) = l1 cos^2 p + l2 sin^2 p, p
+// uniform, and w independent of p and chi-square with 2 degrees of freedom, so P(w > x) = exp(-x / 2). Given
+// p,
 //   P(s w + l3 z3^2 > r^2) = P(l3 z3^2 > r^2) + E[exp(-(r^2 - l3 z3^2) / (2 s)); l3 z3^2 <= r^2]
 //                          = erfc(r / sqrt(2 l3)) + exp(-r^2 / (2 s)) erf(r sqrt(v / (2 l3))) / sqrt(v),
-// v = 1 - l3 / s >= 0, and of two eigenvalues exp(-r^2 / (2 s)) alone. What is left is the mean over p:
+// v = 1 - l3 / s >= 0; for two eigenvalues it is exp(-r^2 / (2 s)) alone. Averaging over p gives
 //   P(|e| > r) = erfc(r / sqrt(2 l3)) + (2 / pi) int_0^(pi/2) exp(-r^2 / (2 s)) erf(...) / sqrt(v) dp.
-// With l2 = l3 = 0 it is Craig's (1991) form of the normal tail. Nothing cancels, so that small probabilities
-// keep their digits; the integrand is smooth and periodic, for which the trapezoidal rule converges faster
-// than any power (Trefethen & Weideman 2014). Points are doubled until two sums agree to 1e-13 of their
-// value.
+// With l2 = l3 = 0 it is Craig's (1991) form of the normal tail. Nothing cancels, so small probabilities keep
+// their digits. The integrand is smooth and periodic, so the trapezoidal rule converges faster than any power
+// (Trefethen & Weideman 2014). The number of points is doubled until two sums agree to 1e-13, relative.
 //
-// Accuracy: of the probability 1e-11 of its value, of the quantile 1e-12 of its value, for probabilities from
-// 1e-12 to .999 and any ratio of the eigenvalues; tested against closed forms (normal, Rayleigh, Maxwell),
-// against Imhof's (1961) integral and by simulation.
+// Relative accuracy: 1e-11 of the probability and 1e-12 of the quantile, for probabilities from 1e-12 to .999
+// and any ratio of the eigenvalues. Tested against closed forms (normal, Rayleigh, Maxwell), against Imhof's
+// (1961) integral and by simulation.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace rcme {
 
-// P(|e| > r). Throws std::invalid_argument that names what is not allowed: eigenvalues that are not finite or
-// negative, r that is NaN or negative.
+// P(|e| > r). Throws std::invalid_argument with the reason if an eigenvalue is not finite or negative, or r
+// is NaN or negative.
 double GaussianNormTail(const Eigen::Vector3d& eigenvalues, double r);
 
 // The r with P(|e| > r) = tail; 0 if e is 0. Throws std::invalid_argument as above, and for a tail outside of

@@ -15,7 +15,8 @@ struct Interval {
 // at n = 0. Covers at least `confidence` for every true probability.
 Interval ExactBinomialInterval(std::int64_t successes, std::int64_t n, double confidence = 0.95);
 
-// Of the mean of independent normal numbers: mean +- t_(n-1) s / sqrt(n). Unbounded below two numbers.
+// The interval of the mean of independent normal numbers: mean +- t_(n-1) s / sqrt(n). Unbounded below two
+// numbers.
 Interval StudentInterval(const Moments& moments, double confidence = 0.95);
 
 }  // namespace rcme

@@ -8,7 +8,7 @@
 namespace rcme {
 namespace {
 
-// Neighbours that share a value.
+// Neighbouring points with a common fitted value.
 struct Block {
   double sum = 0.0, weight = 0.0;
   size_t count = 0;

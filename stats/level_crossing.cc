@@ -11,10 +11,10 @@
 namespace rcme {
 namespace {
 
-// Of the logistic curves: change of the log-odds over all levels.
+// Steepness of the logistic curves: change of the log-odds over all levels.
 constexpr std::array kSteepness = {2.0, 5.0, 12.0, 30.0, 80.0};
 
-// Of the levels first, ..., end - 1.
+// Sum over the levels first, ..., end - 1.
 EventsAtLevel SumOver(std::span<const EventsAtLevel> events, size_t first, size_t end) {
   EventsAtLevel sum;
   for (const EventsAtLevel& one : events.subspan(first, end - first)) {
@@ -39,7 +39,7 @@ bool IsRejected(std::span<const EventsAtLevel> events, size_t c, double rate,
 // log(1 + exp(z)).
 double LogOnePlusExp(double z) { return std::max(z, 0.0) + std::log1p(std::exp(-std::abs(z))); }
 
-// Where a function of one maximum is greatest: golden-section search.
+// The position of the maximum of a unimodal function: golden-section search.
 double FindMaximum(const std::function<double(double)>& function, double low, double high) {
   constexpr double kGolden = 0.6180339887498949;
   double inner_low = high - kGolden * (high - low), inner_high = low + kGolden * (high - low);
@@ -58,8 +58,8 @@ double FindMaximum(const std::function<double(double)>& function, double low, do
   return 0.5 * (low + high);
 }
 
-// The greatest log-likelihood of a logistic curve through `rate` at `crossing` that does not fall, over its
-// steepness, in which it is concave.
+// The profile log-likelihood of a non-decreasing logistic curve through `rate` at `crossing`, maximised over
+// the steepness, in which it is concave.
 double ProfileLogLikelihood(std::span<const EventsAtLevel> events, double rate, double crossing) {
   constexpr double kMostSteepness = 1000.0;
   const double log_odds = std::log(rate / (1.0 - rate));
@@ -78,15 +78,15 @@ constexpr size_t kNumLevels = 1024;           // of the search, over [0, 1]
 constexpr std::int64_t kNumSearchSteps = 40;  // of the search
 constexpr std::int64_t kNumFreshLevels = 16;  // of the second part
 
-// The part of number `i` of a total that is divided into `num_parts`, even to within one.
+// Part `i` of a total divided into `num_parts`, equal to within one.
 std::int64_t EvenPart(std::int64_t total, std::int64_t i, std::int64_t num_parts) {
   return total * (i + 1) / num_parts - total * i / num_parts;
 }
 
 double PlaceOfLevel(size_t level) { return (static_cast<double>(level) + 0.5) / kNumLevels; }
 
-// The levels of the second part, ascending: evenly over the posterior's central 99 %, widened by half its
-// width on both sides.
+// The levels of the second part, ascending: evenly spaced over the central 99 % of the posterior, widened on
+// both sides by its width.
 std::vector<size_t> ChooseFreshLevels(const CrossingSearch& search) {
   const double low = search.Quantile(0.005), high = search.Quantile(0.995), margin = high - low + 1.0;
   std::vector<size_t> levels;
@@ -144,7 +144,7 @@ double CrossingSearch::Quantile(double probability) const {
 size_t CrossingSearch::NextLevel(size_t step) const {
   constexpr std::array kQuantiles = {0.5, 0.15, 0.85, 0.3, 0.7};
   const auto crossing = static_cast<size_t>(Quantile(kQuantiles[step % kQuantiles.size()]));
-  // The level below the crossing and that above it in turn.
+  // Alternates between the levels above and below the crossing.
   const size_t level = step % 2 == 0 ? crossing : crossing - std::min<size_t>(crossing, 1);
   return std::min(level, num_levels_ - 1);
 }
@@ -163,14 +163,14 @@ Interval FindCrossingInterval(std::span<const EventsAtLevel> events, double rate
   return interval.lower < interval.upper ? interval : Interval{-kInfinity, kInfinity};
 }
 
-// Of a set {a + b x} of lines that is convex, the places where they cross a value are an interval: so the
-// profile likelihood rises to its maximum and then falls.
+// For a convex set {a + b x} of lines, the places where they cross a value form an interval. The profile
+// likelihood therefore rises to its maximum and then falls.
 Interval FindLogisticInterval(std::span<const EventsAtLevel> events, double rate, double confidence) {
   const auto profile = [&](double crossing) { return ProfileLogLikelihood(events, rate, crossing); };
   const double best = FindMaximum(profile, 0.0, 1.0);
   const double greatest = std::max({profile(best), profile(0.0), profile(1.0)});
   const double least = greatest - 0.5 * ChiSquareQuantile(1, confidence);
-  // The last accepted place on the way from the best to the end.
+  // The last accepted place between the best and the end.
   const auto find_end = [&](double end, double beyond) {
     if (profile(end) >= least) return beyond;
     double accepted = best, rejected = end;

@@ -1,18 +1,19 @@
-// Where a rate that rises with a level crosses a value, x* = sup {x : rate(x) <= r}: the outlier ratio, say,
-// at which an estimator begins to fail more often than once in a hundred calls.
+// The level at which a non-decreasing rate crosses a value, x* = sup {x : rate(x) <= r}: for example the
+// outlier ratio at which an estimator begins to fail in more than one of a hundred calls.
 //
-// Two parts, on separate trials. A search (CrossingSearch) spends a first share of the trials where they tell
-// most about x*: it keeps posterior weights over the place of the crossing and the steepness of a logistic
-// curve, and asks at their quantiles in turn (probabilistic bisection: Waeber, Frazier & Henderson 2013, with
-// the response curve unknown). It may be as wrong as it likes: it only chooses the levels x_0 < ... < x_(m-1)
-// of the second part, on whose fresh trials, as many as were fixed beforehand, the interval rests.
+// It takes two parts on separate trials. A search (CrossingSearch) spends a first share of the trials where
+// they are most informative about x*. It keeps posterior weights over the place of the crossing and the
+// steepness of a logistic curve, and asks at their quantiles in turn (probabilistic bisection: Waeber,
+// Frazier & Henderson 2013, with unknown response curve). Its assumptions need not hold, as it only chooses
+// the levels x_0 < ... < x_(m-1) of the second part. The interval rests on the fresh trials of that part,
+// whose number is fixed beforehand.
 //
-// The interval (FindCrossingInterval) supposes that the rate does not fall, and nothing else. If x* lies
-// between x_(c-1) and x_c, then every level below c has a rate of at most r, and the number of events at any
-// set of them is at most binomial of rate r; every level from c on has at least r. So c is rejected if the w
-// levels just below c have too many events for rate r, or the w from c on too few, by an exact binomial test
-// at alpha / (2 K) for each of K widths w = 1, 2, 4, ..., m. The true c is rejected with probability alpha at
-// most, whatever the curve; the interval is the hull of what is not rejected.
+// The interval (FindCrossingInterval) assumes only that the rate does not fall. If x* lies between x_(c-1)
+// and x_c, every level below c has a rate of at most r, so the number of events at any set of them is at most
+// binomial of rate r; every level from c on has at least r. So c is rejected if the w levels just below c
+// have too many events for rate r, or the w levels from c on too few, by an exact binomial test at alpha / (2
+// K) for each of K widths w = 1, 2, 4, ..., m. The true c is rejected with probability at most alpha,
+// whatever the curve. The interval is the hull of the places that are not rejected.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@
 
 namespace rcme {
 
-// Levels are numbered 0, ..., num_levels - 1 and evenly spaced. A crossing is a place in [0, num_levels]:
-// between level c - 1 and level c it is c.
+// Levels are numbered 0, ..., num_levels - 1 and evenly spaced. A crossing is a place in [0, num_levels]; c
+// means between level c - 1 and level c.
 class CrossingSearch {
  public:
   // `rate` in (0, 1).
@@ -33,10 +34,10 @@ class CrossingSearch {
 
   void Add(size_t level, std::int64_t num_events, std::int64_t num_trials);
 
-  // Where to ask next; `step` counts from 0.
+  // The level to ask next; `step` counts from 0.
   size_t NextLevel(size_t step) const;
 
-  // Of the posterior of the crossing, `probability` in [0, 1].
+  // Quantile of the posterior of the crossing; `probability` in [0, 1].
   double Quantile(double probability) const;
 
  private:
@@ -50,29 +51,29 @@ struct EventsAtLevel {
   std::int64_t num_events = 0, num_trials = 0;
 };
 
-// Of x*, in the units of the levels, which ascend; an end is infinite where the crossing may lie beyond the
-// first or the last level, and both are if the numbers contradict a rate that does not fall. Covers with
-// probability `confidence` or more.
+// The interval of x* in the units of the levels, which must ascend. An end is infinite if the crossing may
+// lie beyond the first or the last level; both are if the numbers contradict a non-decreasing rate. Covers
+// with at least `confidence`.
 Interval FindCrossingInterval(std::span<const EventsAtLevel> events, double rate, double confidence = 0.95);
 
-// The same if the log-odds of the rate are linear over the levels, which lie in [0, 1]: likelihood-ratio
-// interval of the crossing, over the steepness. Several times narrower; it covers about `confidence` where
-// the curve is nearly logistic over these levels.
+// The same if the log-odds of the rate are linear over the levels, which lie in [0, 1]: the likelihood-ratio
+// interval of the crossing, profiled over the steepness. Several times narrower. It covers about `confidence`
+// if the curve is nearly logistic over these levels.
 Interval FindLogisticInterval(std::span<const EventsAtLevel> events, double rate, double confidence = 0.95);
 
 struct Crossing {
-  double estimate = 0.0;                       // the posterior's median, of all trials
-  Interval interval;                           // FindCrossingInterval of the second part
-  Interval logistic_interval;                  // FindLogisticInterval of the second part
+  double estimate = 0.0;                       // posterior median from all trials
+  Interval interval;                           // FindCrossingInterval of the fresh trials
+  Interval logistic_interval;                  // FindLogisticInterval of the fresh trials
   std::vector<EventsAtLevel> searched, fresh;  // by step, and by level
 };
 
-// The events in so many new trials at a level in [0, 1]; trials that tell nothing are not among those of the
-// answer.
+// Runs `num_trials` new trials at a level in [0, 1] and returns their events. Trials without information are
+// left out of the returned num_trials.
 using AskLevel = std::function<EventsAtLevel(double level, std::int64_t num_trials)>;
 
-// The crossing in [0, 1], from `num_trials` trials, at least 100: a third of them for the search. The
-// estimate is NaN if no trial tells anything.
+// The crossing in [0, 1] from `num_trials` trials, at least 100, a third of them for the search. The estimate
+// is NaN if no trial is informative.
 Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials, double confidence = 0.95);
 
 }  // namespace rcme

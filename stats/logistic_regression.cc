@@ -8,7 +8,7 @@
 namespace rcme {
 namespace {
 
-// Observations with an intercept of 1 before their features, and how often each counts.
+// The observations, with 1 for the intercept before their features, and their weights.
 struct WeightedEvents {
   Eigen::MatrixXd X;  // (n + 2) x (m + 1)
   Eigen::VectorXd y, count;

@@ -12,10 +12,10 @@ struct LogisticFit {
 };
 
 // Minimises -log likelihood + penalty / 2 * |weights - prior|^2 by Newton's method. `features` holds the
-// observations one after the other, each with as many as `prior`. Two further observations of weight 1/2, one
-// with the event and one without, at the mean of the features, keep the intercept finite where there are only
-// events or none. Throws std::invalid_argument for sizes that do not agree, no observation, a penalty not
-// above 0 and numbers that are not finite.
+// observations one after the other, each with as many as `prior`. Two added observations of weight 1/2 at the
+// mean of the features, one with the event and one without, keep the intercept finite if all outcomes are
+// equal. Throws std::invalid_argument for sizes that do not agree, no observation, a penalty not above 0 or
+// numbers that are not finite.
 LogisticFit FitLogistic(std::span<const double> features, const std::vector<bool>& happened,
                         std::span<const double> prior, double penalty);
 

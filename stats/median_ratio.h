@@ -8,26 +8,26 @@
 
 namespace rcme {
 
-// One number that two lists of numbers are compared by, with its interval.
+// The ratio of the medians of two lists, with its interval.
 struct ComparedMedians {
   double value = 0.0;  // NaN: a list is empty
   Interval interval;
 };
 
-// The values of independent units (image pairs), each of which may give several: those that are observed, and
-// those that a null hypothesis gives for the same unit.
+// The values of one independent unit (image pair), of which there may be several: the observed ones, and
+// those under a null hypothesis.
 struct UnitValues {
   std::vector<double> observed, null;
 };
 
-// Median of all observed values over the median of all null values. Where the values are quadratic forms, it
-// is by what a variance is too small, whatever a few gross ones are. Percentile bootstrap over units (Efron
-// 1979), since the values of one are not independent; of fewer than five units with values the interval is
-// [0, infinity].
+// Median of all observed values over the median of all null values. For quadratic forms it is the factor by
+// which a variance is too small, robust to a few gross errors. Percentile bootstrap over units (Efron 1979),
+// since the values of one unit are dependent. With fewer than five units that have observed values the
+// interval is [0, infinity].
 ComparedMedians RatioOfMedians(std::span<const UnitValues> units, double confidence, int num_resamples,
                                RandomStream& rng);
 
-// The middle of a list, NaN of an empty one.
+// The median of a list; NaN if empty.
 double ComputeMedian(std::vector<double> values);
 
 }  // namespace rcme

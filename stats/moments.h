@@ -11,7 +11,7 @@ namespace rcme {
 class Moments {
  public:
   Moments() = default;
-  // Those of `n` numbers with this mean and variance.
+  // The moments of `n` numbers with this mean and variance.
   static Moments FromStatistics(std::int64_t n, double mean, double variance) {
     Moments moments;
     moments.n_ = n;
@@ -27,7 +27,7 @@ class Moments {
     sum_squares_ += step * (x - mean_);
   }
 
-  // As if the other's numbers had been added here (Chan, Golub & LeVeque 1983); equal up to rounding.
+  // Adds the other's numbers (Chan, Golub & LeVeque 1983); equal up to rounding.
   void Merge(const Moments& other) {
     if (other.n_ == 0) return;
     const double n = static_cast<double>(n_), m = static_cast<double>(other.n_);
@@ -38,7 +38,7 @@ class Moments {
   }
 
   std::int64_t n() const { return n_; }
-  // NaN where there are not enough numbers.
+  // NaN if there are not enough numbers.
   double mean() const { return n_ > 0 ? mean_ : kNaN; }
   double variance() const { return n_ > 1 ? sum_squares_ / static_cast<double>(n_ - 1) : kNaN; }
   // Monte-Carlo standard error of the mean: s / sqrt(n).
@@ -47,7 +47,7 @@ class Moments {
  private:
   static constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-  // By a step towards `x`, which is NaN or infinite where one of the two is infinite.
+  // Moves the mean by a step towards `x`; the step is NaN or infinite if one of the two is infinite.
   void MoveMean(double x, double step) { mean_ += std::isinf(x) || std::isinf(mean_) ? x : step; }
 
   std::int64_t n_ = 0;

@@ -33,7 +33,7 @@ class MultivariateMoments {
   }
 
   std::int64_t n() const { return n_; }
-  // NaN where there are not enough vectors.
+  // NaN if there are not enough vectors.
   Eigen::VectorXd mean() const { return n_ > 0 ? mean_ : Eigen::VectorXd::Constant(mean_.size(), kNaN); }
   Eigen::MatrixXd covariance() const {
     if (n_ < 2) return Eigen::MatrixXd::Constant(mean_.size(), mean_.size(), kNaN);

@@ -11,7 +11,7 @@
 namespace rcme {
 namespace {
 
-// The rule's points: u = -14, -13.5, ... up to where the integrand is less than kNegligibleShare of the sum.
+// The points of the rule: u = -14, -13.5, ... until the integrand is below kNegligibleShare of the sum.
 constexpr double kLogStep = 0.5, kFirstLog = -14.0;
 constexpr int kNumStepsToPeak = 28, kMaxNumSteps = 120;
 constexpr double kNegligibleShare = 1e-10;
@@ -20,7 +20,7 @@ constexpr double kNegligibleShare = 1e-10;
 
 double MeanDistance(const Eigen::VectorXd& variances, const Eigen::VectorXd& e) {
   static const double ratio = PortableExp(kLogStep), first = PortableExp(kFirstLog);
-  // Below the first point the integrand falls by this factor a step: it is E Q sqrt(t) there.
+  // Below the first point the integrand is E Q sqrt(t), which falls by this factor per step.
   static const double below = 1.0 / (PortableExp(0.5 * kLogStep) - 1.0);
   const Eigen::Index dimension = variances.size();
   const double mean_square = variances.sum() + e.squaredNorm();

@@ -1,4 +1,4 @@
-// Quantiles of a list, without sorting all of it.
+// Quantiles of a list without sorting it.
 #pragma once
 
 #include <cstddef>
@@ -6,8 +6,8 @@
 
 namespace rcme {
 
-// The value that has `rank` values before it in rising order, rank < number of values. The values are
-// reordered: it stands at its place, smaller ones before it.
+// The value at index `rank` in ascending order, rank < number of values. Reorders the values: this one is at
+// its index, smaller ones before it.
 double ValueOfRank(std::size_t rank, std::vector<double>* values);
 
 // The value of rank floor(probability (n - 1)) of n. NaN if there are no values.

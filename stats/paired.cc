@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-// z(d), falling in d.
+// z(d), decreasing in d.
 double TangoScore(double first_only, double second_only, double n, double d) {
   // q is the larger root of A q^2 + B q + C.
   const double A = 2.0 * n;

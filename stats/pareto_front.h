@@ -1,4 +1,4 @@
-// The points of a plane that none beats, where less is better in both coordinates.
+// The Pareto front of points in the plane; smaller is better in both coordinates.
 #pragma once
 
 #include <cstddef>
@@ -6,12 +6,13 @@
 
 namespace rcme {
 
-// Of points with the same first coordinate: stay, whatever their second one is, as long as no point with a
-// lower first coordinate has as low a second one (the weak front); or only those with the least second one.
+// Points with equal first coordinates: kStay keeps each point unless a point with a smaller first coordinate
+// has a second one at most as large (the weak front); kLeastSecondStays keeps only those with the least
+// second coordinate.
 enum class TiesOfFirst { kStay, kLeastSecondStays };
 
-// Indices of the points on the front, by rising first coordinate. Points that are equal are all on it or
-// none. Throws std::invalid_argument: as many of both are needed, and none may be NaN.
+// Indices of the points on the front, by ascending first coordinate. Equal points are all on it or none.
+// Throws std::invalid_argument for lists of different length or a NaN.
 std::vector<size_t> ParetoFront(const std::vector<double>& first, const std::vector<double>& second,
                                 TiesOfFirst ties);
 

@@ -14,12 +14,12 @@
 namespace rcme {
 namespace {
 
-// Of information in units in which every parameter alone has one: below it a combination is not determined.
+// Least information, in units in which every parameter alone has 1; below it a combination is not determined.
 constexpr double kLeastInformation = 1e-9;
 constexpr double kCommonDegreesOfFreedom = 10.0;  // nu_0, at most
 constexpr PooledParameter kUndetermined = {kNaN, kNaN, {-kInfinity, kInfinity}, 0.0};
 
-// Symmetric matrices in units in which all units' information has a diagonal of ones.
+// Scales symmetric matrices such that the total information has a unit diagonal.
 struct Scaling {
   Eigen::VectorXd scale;
   explicit Scaling(const Eigen::MatrixXd& all) : scale(all.diagonal().cwiseSqrt().cwiseInverse()) {}
@@ -28,7 +28,7 @@ struct Scaling {
   }
 };
 
-// Nothing of a singular matrix.
+// nullopt for a singular matrix.
 std::optional<Eigen::MatrixXd> Invert(const Eigen::MatrixXd& information, const Scaling& scaling) {
   const Eigen::MatrixXd scaled = scaling.Of(information);
   if (!scaled.allFinite()) return std::nullopt;
@@ -38,7 +38,7 @@ std::optional<Eigen::MatrixXd> Invert(const Eigen::MatrixXd& information, const 
                     eigen.eigenvectors().transpose());
 }
 
-// How far one parameter moves where a part of the units is left out: sum of squares about the mean.
+// The sum of squares, about their mean, of the moves of one parameter when parts of the units are left out.
 double SumSquares(const std::vector<double>& moves) {
   const double mean = std::accumulate(moves.begin(), moves.end(), 0.0) / static_cast<double>(moves.size());
   double squares = 0.0;
@@ -46,7 +46,7 @@ double SumSquares(const std::vector<double>& moves) {
   return squares;
 }
 
-// The units that have a member.
+// Sums over the units that have a member.
 struct MemberSum {
   Eigen::VectorXd rest;         // sum s_u - A_u theta
   Eigen::MatrixXd information;  // sum A_u
@@ -62,15 +62,15 @@ void AddToMember(std::int64_t member, const Eigen::VectorXd& rest, const Eigen::
   sum.information += information;
 }
 
-// How units, and the units of a member, differ from what all say together.
+// The scatter of units, and of the units of each member, about the pooled estimate.
 struct Scatter {
   std::vector<std::vector<double>> of_units, of_members;  // d_u and d_i of each parameter
-  std::vector<bool> has_two_members;                      // a unit
+  std::vector<bool> has_two_members;                      // per unit
   double squares = 0.0, squared_shares = 0.0;             // sum e_u' A^-1 e_u; S
   Eigen::VectorXd squared_shares_of_each;                 // sum h_u^2
 };
 
-// Adds (A - left_out)^-1 rest; false where what is left does not tell a parameter.
+// Adds (A - left_out)^-1 rest; false if the rest does not determine a parameter.
 bool AddMove(const Eigen::MatrixXd& A, const Eigen::MatrixXd& left_out, const Eigen::VectorXd& rest,
              const Scaling& scaling, std::vector<std::vector<double>>* moves) {
   const std::optional<Eigen::MatrixXd> others = Invert(A - left_out, scaling);
@@ -80,7 +80,7 @@ bool AddMove(const Eigen::MatrixXd& A, const Eigen::MatrixXd& left_out, const Ei
   return true;
 }
 
-// Nothing where a unit or a member alone tells a parameter.
+// nullopt if a unit or a member alone determines a parameter.
 std::optional<Scatter> ComputeScatter(std::span<const UnitScore> units, const Eigen::MatrixXd& A,
                                       const Eigen::MatrixXd& inverse, const Eigen::VectorXd& theta,
                                       const Scaling& scaling) {
@@ -107,13 +107,13 @@ std::optional<Scatter> ComputeScatter(std::span<const UnitScore> units, const Ei
   return scatter;
 }
 
-// What the scatter says of one parameter.
+// The jackknife estimates of one parameter's variance.
 struct Jackknife {
   double variance = 0.0, variance_if_apart = 0.0;
 };
 Jackknife ComputeJackknife(const Scatter& scatter, size_t j) {
   const std::vector<double>&of_units = scatter.of_units[j], &of_members = scatter.of_members[j];
-  std::vector<double> twice;  // of the units that are in two sums of members
+  std::vector<double> twice;  // of the units that occur in two members' sums
   for (size_t u = 0; u < of_units.size(); ++u)
     if (scatter.has_two_members[u]) twice.push_back(of_units[u]);
   const auto n = static_cast<double>(of_units.size()), num_members = static_cast<double>(of_members.size());
@@ -124,7 +124,7 @@ Jackknife ComputeJackknife(const Scatter& scatter, size_t j) {
 
 double RatioOrOne(double x, double y) { return y > 0.0 ? x / y : 1.0; }
 
-// Of degrees of freedom that are whole but for rounding.
+// Rounds degrees of freedom that are integers up to rounding error.
 int Whole(double x) { return static_cast<int>(std::max(1.0, x + 1e-6)); }
 
 }  // namespace

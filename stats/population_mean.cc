@@ -28,7 +28,7 @@ std::vector<WeightedCondition> WithWeights(std::span<const Moments> conditions, 
   return weighted;
 }
 
-// value +- t sqrt(variance); unbounded where that is not a number.
+// value +- t sqrt(variance); unbounded if the variance or degrees of freedom are not valid.
 Interval StudentAround(double value, double variance, double degrees_of_freedom, double confidence) {
   if (!std::isfinite(variance) || !(degrees_of_freedom > 0.0)) return {-kInfinity, kInfinity};
   const double half =

@@ -1,8 +1,8 @@
-// The median of all numbers of the draws of a population, with the population's interval.
+// The median of all numbers of the draws of a population, with the interval for the population.
 //
-// Woodruff's (1952): where [l, u] is the interval of the population's share of numbers up to the median
-// (stats/population_rate.h, weights by trials), which is p of all numbers, it is from their quantile 1/2 - (p
-// - l) to their quantile 1/2 + (u - p).
+// By Woodruff (1952): let p be the share of all numbers up to the median, and [l, u] the interval of the
+// population's share (stats/population_rate.h, weights by trials). The interval of the median is from the
+// quantile 1/2 - (p - l) to the quantile 1/2 + (u - p) of the numbers.
 #pragma once
 
 #include <span>
@@ -12,10 +12,10 @@
 namespace rcme {
 
 struct PopulationMedian {
-  double value = 0.0;            // NaN without numbers, as the rest
+  double value = 0.0;            // NaN without numbers, like the rest
   Interval interval;             // 95 %
-  Interval of_these_conditions;  // of all numbers as independent ones
-  double effective_n = 0.0;      // of the share up to the median
+  Interval of_these_conditions;  // treats all numbers as independent
+  double effective_n = 0.0;      // for the share of numbers up to the median
 };
 
 PopulationMedian MeasurePopulationMedian(std::span<const StreamMedian* const> draws);

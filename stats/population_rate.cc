@@ -20,7 +20,7 @@ constexpr double kManyEvents = 10.0;
 
 double Square(double x) { return x * x; }
 
-// Of the conditions that have trials.
+// Shares of the conditions that have trials.
 struct WeightedShares {
   std::vector<double> weights, shares, num_trials;  // a_i, q_i, n_i
   double effective = 0.0;                           // M
@@ -47,12 +47,12 @@ WeightedShares ComputeShares(std::span<const ConditionCount> conditions, Conditi
   return of;
 }
 
-// What the upper end depends on; names as in the header.
+// The inputs of the upper end; names as in the header.
 struct Spread {
   double p = 0.0, V = 0.0;
   double num_events = 0.0;    // E
   double num_deciding = 0.0;  // c
-  double greatest = 0.0;      // r, not kept to its range
+  double greatest = 0.0;      // r, before clamping
 };
 
 Spread ComputeSpread(const WeightedShares& of) {
@@ -72,7 +72,7 @@ Spread ComputeSpread(const WeightedShares& of) {
   return spread;
 }
 
-// h: whether conditions may have rates of their own.
+// h: near 1 if conditions may have different rates.
 double Heterogeneity(const WeightedShares& of, const Spread& spread) {
   const int degrees_of_freedom = static_cast<int>(of.size()) - 1;
   const double B = spread.p * (1.0 - spread.p) * of.binomial;
@@ -80,7 +80,7 @@ double Heterogeneity(const WeightedShares& of, const Spread& spread) {
   return std::max(Square(Square(G)), 1.0 / (1.0 + Square(spread.num_events / kManyEvents)));
 }
 
-// w: of one condition more.
+// w: the share of events in the added condition.
 double OneMore(const WeightedShares& of, const Spread& spread) {
   const double c = spread.num_deciding;
   const double r = std::clamp(spread.greatest, of.effective * of.binomial, 1.0);
@@ -108,8 +108,8 @@ WeightedShares OfNonEvents(WeightedShares of) {
   return of;
 }
 
-// Analysis of variance of one factor (Donner 1986), where conditions differ in size with the mean size
-// (N - sum n_i^2 / N) / (m - 1).
+// One-way analysis of variance (Donner 1986); conditions may differ in size, with mean size (N - sum n_i^2 /
+// N) / (m - 1).
 double IntraclassCorrelation(const WeightedShares& of) {
   const double m = static_cast<double>(of.size());
   double N = 0.0, squares = 0.0, events = 0.0, within = 0.0;
@@ -125,7 +125,7 @@ double IntraclassCorrelation(const WeightedShares& of) {
   return total > 0.0 ? (between - within) / total : kNaN;
 }
 
-// Exact of a number of trials that need not be whole.
+// The exact interval for a number of trials that need not be an integer.
 Interval ExactInterval(double p, double n, double tail) {
   const double k = p * n;
   return {p <= 0.0 ? 0.0 : boost::math::ibeta_inv(k, n - k + 1.0, tail),
@@ -141,7 +141,7 @@ double Correlation(const WeightedShares& a, const WeightedShares& b, double mean
   return aa > 0.0 && bb > 0.0 ? ab / std::sqrt(aa * bb) : 0.0;
 }
 
-// Zou & Donner's distance of an end from the difference.
+// Zou & Donner's distance between an end and the difference.
 double Distance(double d1, double d2, double r) {
   return std::sqrt(std::max(0.0, d1 * d1 + d2 * d2 - 2.0 * r * d1 * d2));
 }

@@ -1,6 +1,6 @@
 // PortableLog and PortableCosSinOfTurn on all lanes of a Highway vector; the scalar functions of
-// stats/portable_math.h are these with one lane. IEEE +, -, *, / in a fixed order and no fused multiply-add:
-// every instruction set gives the same bits.
+// stats/portable_math.h are these with one lane. They use IEEE +, -, *, / in a fixed order without fused
+// multiply-add, so the results are bit-identical on every instruction set.
 #if defined(RCME_STATS_PORTABLE_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RCME_STATS_PORTABLE_MATH_INL_H_
 #undef RCME_STATS_PORTABLE_MATH_INL_H_
@@ -16,7 +16,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// c[0] + c[1] x + c[2] x^2 + ..., by Horner.
+// c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule.
 template <class D, size_t kSize>
 HWY_INLINE hn::Vec<D> Polynomial(D d, const double (&c)[kSize], hn::Vec<D> x) {
   hn::Vec<D> sum = hn::Set(d, c[kSize - 1]);
@@ -33,7 +33,8 @@ HWY_INLINE hn::Vec<D> ComputeLog(D d, hn::Vec<D> x) {
   const hn::RebindToUnsigned<D> du;
   const auto bits = hn::BitCast(du, x);
   const auto one = hn::Set(d, 1.0);
-  // An integer below 2^52, put under the bits of 2^52, reads 2^52 + integer; the exponent has a bias of 1023.
+  // An integer below 2^52 placed in the low bits of 2^52 reads as 2^52 + integer; the exponent has a bias of
+  // 1023.
   const auto biased = hn::Or(hn::ShiftRight<52>(bits), hn::Set(du, 0x4330000000000000ULL));
   auto exponent = hn::Sub(hn::BitCast(d, biased), hn::Set(d, 0x1p52 + 1023.0));
   const auto fraction = hn::And(bits, hn::Set(du, 0x000fffffffffffffULL));
@@ -51,8 +52,8 @@ template <class D>
 struct CosSinOf {
   hn::Vec<D> cos, sin;
 
-  // The nearest quarter turn q, and the angle left over, |a| <= pi / 4; cos a and sin a by Taylor to a^16 and
-  // a^17, whose next terms are below 3e-18. Turned by q quarters: (c, s), (-s, c), (-c, -s), (s, -c).
+  // The nearest quarter turn q and the remaining angle a, |a| <= pi / 4; cos a and sin a by Taylor to a^16
+  // and a^17, with next terms below 3e-18. Turned by q quarters: (c, s), (-s, c), (-c, -s), (s, -c).
   HWY_INLINE CosSinOf(D d, hn::Vec<D> u) {
     static constexpr double kCos[] = {1.0,
                                       -1.0 / 2,

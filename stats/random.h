@@ -1,8 +1,9 @@
 // Counter-based random streams: Philox4x32-10 (Salmon et al. 2011, from Random123).
 //
-// A stream is named, never seeded by time, thread or order of creation. Different names give streams that
-// share no block: the name fills the 64-bit key and three of the four counter words, the fourth counts
-// blocks. A stream holds 2^32 blocks of four words. The same name gives the same numbers on every machine.
+// A stream is named, never seeded by time, thread or order of creation. Different names give streams without
+// a common block: the name fills the 64-bit key and three of the four counter words, and the fourth word
+// counts blocks. A stream has 2^32 blocks of four words. The same name gives the same numbers on every
+// machine.
 #pragma once
 
 #include <array>
@@ -24,7 +25,7 @@ struct StreamName {
 
 class RandomStream {
  public:
-  // Throws std::out_of_range: a condition or purpose that is too large.
+  // Throws std::out_of_range if a condition or purpose is too large.
   explicit RandomStream(const StreamName& name);
 
   std::uint32_t Next32() {
@@ -44,7 +45,7 @@ class RandomStream {
   // Standard normal, Box-Muller; the second of each pair is kept for the next call.
   double Normal();
 
-  // The numbers that as many calls of Uniform() or Normal() would give, to the bit, but several times faster.
+  // Bit-identical to as many calls of Uniform() or Normal(), but several times faster.
   void FillUniform(std::span<double> uniforms);
   void FillNormal(std::span<double> normals);
 
@@ -73,8 +74,8 @@ class RandomStream {
 
   void Refill();
 
-  PhiloxInput next_;                            // of the first block after the buffer
-  std::array<std::uint64_t, kNumPairs> pairs_;  // of words, the first one low; filled by the first draw
+  PhiloxInput next_;                            // input of the first block after the buffer
+  std::array<std::uint64_t, kNumPairs> pairs_;  // pairs of words, the first one low; filled by the first draw
   std::size_t num_used_ = 2 * kNumPairs;        // words
   bool has_spare_normal_ = false;
   double spare_normal_ = 0.0;

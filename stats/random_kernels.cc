@@ -15,7 +15,7 @@ using Reals = hn::CappedTag<double, kBlocksAtOnce>;
 using Pairs = hn::CappedTag<std::uint64_t, kBlocksAtOnce>;
 using PairsVec = hn::Vec<Pairs>;
 
-// The word in the lower half of each lane times a constant, all 64 bits.
+// The word in the lower half of each lane times a constant: the full 64-bit product.
 HWY_INLINE PairsVec TimesWord(PairsVec x, std::uint32_t factor) {
 #if HWY_TARGET == HWY_SCALAR  // has no vectors of two words
   return hn::Set(Pairs(), (hn::GetLane(x) & 0xffffffffu) * factor);
@@ -25,8 +25,8 @@ HWY_INLINE PairsVec TimesWord(PairsVec x, std::uint32_t factor) {
 #endif
 }
 
-// One block per lane. A word lives in the lower half of its lane; the upper half holds leftovers, which the
-// products do not read, so that the lower word of a product needs no masking.
+// One block per lane. A word is in the lower half of its lane. The upper half is not cleared, as products do
+// not read it.
 struct PhiloxPairs {
   PairsVec first, second;
 
@@ -53,7 +53,7 @@ struct PhiloxPairs {
   }
 };
 
-// Exact, as an integer below 2^53 is.
+// Exact, since the integer is below 2^53.
 HWY_INLINE hn::Vec<Reals> ConvertToUniform(PairsVec pair) {
   const hn::RebindToSigned<Pairs> di;
   const auto integer = hn::BitCast(di, hn::ShiftRight<11>(pair));

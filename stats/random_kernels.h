@@ -1,5 +1,5 @@
-// The arithmetic of stats/random.h on whole vectors, for the instruction set found at run time. All sets give
-// the same bits.
+// The arithmetic of stats/random.h on whole vectors, for the instruction set found at run time. Results are
+// bit-identical for all instruction sets.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@ struct PhiloxInput {
   std::array<std::uint32_t, 2> key;
 };
 
-// Counts of the functions below are multiples of these.
+// The counts passed to the functions below must be multiples of these.
 inline constexpr std::size_t kBlocksAtOnce = 8;
 inline constexpr std::size_t kUniformsAtOnce = 2 * kBlocksAtOnce;
 
-// The words of the blocks counter[0], counter[0] + 1, ...: two pairs a block, the first word of a pair low.
+// The words of the blocks counter[0], counter[0] + 1, ...: two pairs per block, the first word of a pair low.
 void PhiloxWordPairs(const PhiloxInput& first, std::size_t num_pairs, std::uint64_t* pairs);
 
 // The same pairs as uniforms: the upper 53 bits of a pair times 2^-53.

@@ -8,7 +8,7 @@
 namespace rcme {
 namespace {
 
-// The places of the scores, greatest first.
+// The indices of the scores, greatest score first.
 std::vector<size_t> GreatestFirst(std::span<const double> scores, std::span<const double> losses) {
   if (scores.empty()) throw std::invalid_argument("ranked losses: there are none");
   if (scores.size() != losses.size())
@@ -61,8 +61,8 @@ RankedLoss MeasureRankedLoss(std::span<const double> scores, std::span<const dou
   double later = 0.0;  // the integral of r(u) / u from the end of the tie to 1
   for (auto tie = ties.rbegin(); tie != ties.rend(); ++tie) {
     const double count = static_cast<double>(tie->last - tie->first), risk = tie->loss / count;
-    // Within the tie r is constant, and a trial's own place in it any: the mean over the places of the sum of
-    // 1 / rank from the place on.
+    // Within a tie r is constant and a trial's own rank is random: take the mean over the ranks of the sum of
+    // 1 / rank from that rank on.
     double inner = 0.0, mean_inner = 0.0;
     for (size_t rank = tie->last; rank > tie->first; --rank) {
       inner += risk / static_cast<double>(rank);

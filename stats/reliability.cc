@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-// The forecasts by their different probabilities, rising; outcomes come and go.
+// The forecasts grouped by distinct probability, ascending, with replaceable outcomes.
 class Groups {
  public:
   explicit Groups(std::span<const Forecast> forecasts) : group_(forecasts.size()) {
@@ -71,7 +71,7 @@ Groups GroupsWithOutcomes(std::span<const Forecast> forecasts) {
   return groups;
 }
 
-// Of samples in any order: the values that leave out less than the tail at either end.
+// The central range of the samples (in any order): each end leaves out less than the tail.
 ConsistencyPoint ComputeConsistencyPoint(double probability, std::vector<double> samples, double confidence) {
   std::sort(samples.begin(), samples.end());
   const auto num_outside =

@@ -1,5 +1,5 @@
-// Results of a function of few small arguments that is asked for the same again and again, as the intervals
-// of thousands of conditions with equally many trials are.
+// A cache of a function with few small arguments that is often called with the same ones, such as the
+// intervals of thousands of conditions with equal numbers of trials.
 #pragma once
 
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace rcme {
 
-// The last result of each of 1,024 places that arguments fall into: memory does not grow. One thread's own.
+// Keeps the last result of each of 1,024 slots, so memory is constant. Not thread-safe: use one per thread.
 template <typename Arguments, typename Result>
 class Remembered {
  public:
-  template <typename Compute>  // Result(): called where the arguments are not those of the place
+  template <typename Compute>  // Result(): called if the slot has other arguments
   const Result& Get(const Arguments& arguments, std::uint64_t place, Compute compute) {
     std::optional<std::pair<Arguments, Result>>& known = places_[place % places_.size()];
     if (!known || known->first != arguments) known.emplace(arguments, compute());

@@ -44,14 +44,14 @@ std::int64_t TrialsToCertify(double rate, double at_most, double delta, double p
     const std::int64_t k = LargestCertifyingCount(n, at_most, delta);
     return k >= 0 && ExcessPValue({k, n}, rate) >= power;
   };
-  constexpr std::int64_t kBeyondReach = std::int64_t{1} << 50;  // a rate that hardly differs from the limit
+  constexpr std::int64_t kBeyondReach = std::int64_t{1} << 50;  // the rate hardly differs from the limit
   std::int64_t few = 0, enough = FewestCertifyingTrials(at_most, delta);
   while (!has_power(enough)) {
     if (enough > kBeyondReach) return enough;
     few = enough;
     enough *= 2;
   }
-  while (enough - few > 1) {  // power is a sawtooth in n: the answer is within a tooth of the fewest
+  while (enough - few > 1) {  // power is a sawtooth in n: the result is within one tooth of the smallest
     const std::int64_t middle = few + (enough - few) / 2;
     (has_power(middle) ? enough : few) = middle;
   }

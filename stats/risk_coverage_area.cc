@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-// On the logarithm; no end is below 0.
+// Student's interval on the logarithm; no end is below 0.
 Interval LogInterval(const ClusteredEstimate& area, double confidence) {
   if (area.num_clusters < 2) return {0.0, 1.0};
   if (area.value == 0.0) {

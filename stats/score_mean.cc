@@ -9,13 +9,13 @@
 namespace rcme {
 namespace {
 
-// Stakes, as shares of what is lost at the least score if the mean is staked on. For n scores of mean m and
-// standard deviation s the best is about 3 m / (s sqrt(n)); where the scores are mostly near the top, the
-// bound below them hangs on the great ones, so these stand closer.
+// Stakes, as shares of the loss at the least score. For n scores of mean m and standard deviation s the best
+// stake is about 3 m / (s sqrt(n)). If most scores are near the top, the lower bound depends on the great
+// stakes, so these are denser.
 constexpr std::array<double, 14> kShares = {0.95, 0.85, 0.7,  0.55, 0.4,   0.28,   0.2,
                                             0.14, 0.1,  0.07, 0.05, 0.025, 0.0125, 0.00625};
 
-// log K_n(m); infinite at 0, the mean of no scores but zeros.
+// log K_n(m); infinite at 0, which is the mean only of scores that are all zero.
 double LogCapitalAbove(const std::vector<CountedNumber>& numbers, double m) {
   return m > 0.0 ? LogCapital(numbers, m, kShares, 1.0 / m) : std::numeric_limits<double>::infinity();
 }

@@ -14,10 +14,10 @@
 namespace rcme {
 namespace {
 
-constexpr std::int64_t kLeastEvents = 5;  // to see a design effect
+constexpr std::int64_t kLeastEvents = 5;  // for an estimate of the design effect
 
-// sum of u_i u_j over all ordered pairs (i, j) that share a member: the squared sums of every member, less
-// those of the pairs whose two members are the same two, which count twice. The values are the u_i.
+// Sum of u_i u_j over all ordered pairs (i, j) that share a member: the squared sums of every member, minus
+// those of the pairs that share both members, which would count twice. The values are the u_i.
 double SharedProducts(std::span<const PairValue> deviations) {
   std::map<std::int64_t, double> of_member;
   std::map<std::pair<std::int64_t, std::int64_t>, double> of_both;
@@ -33,7 +33,7 @@ double SharedProducts(std::span<const PairValue> deviations) {
   return sum;
 }
 
-// Clopper & Pearson's interval of `successes` of n, neither of them whole.
+// Clopper & Pearson's interval for `successes` of n, neither necessarily an integer.
 Interval BetaInterval(double successes, double n, double confidence) {
   using Beta = boost::math::beta_distribution<>;
   const double tail = 0.5 * (1.0 - confidence);
@@ -41,7 +41,7 @@ Interval BetaInterval(double successes, double n, double confidence) {
           successes >= n ? 1.0 : quantile(Beta(successes + 1.0, n - successes), 1.0 - tail)};
 }
 
-// The mean, and how many groups are apart; no interval yet.
+// The mean and num_apart, without interval.
 SharedGroupMean AverageGroups(std::span<const GroupValue> groups) {
   SharedGroupMean mean{std::ssize(groups), 0, 0.0, {}};
   std::set<std::int64_t> taken;
@@ -51,7 +51,7 @@ SharedGroupMean AverageGroups(std::span<const GroupValue> groups) {
     taken.insert(members.begin(), members.end());
     ++mean.num_apart;
   }
-  mean.value /= static_cast<double>(groups.size());  // NaN without groups; 1 to the bit of ones
+  mean.value /= static_cast<double>(groups.size());  // NaN without groups; exactly 1 for ones
   return mean;
 }
 

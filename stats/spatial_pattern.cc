@@ -40,7 +40,7 @@ double ConvexHullArea(std::vector<Eigen::Vector2d> points) {
   return 0.5 * twice_area;
 }
 
-// From left to right; the nearest point cannot lie farther to a side than the nearest found so far.
+// Sweeps from left to right: the nearest point cannot lie farther to a side than the nearest found so far.
 double MeanNearestNeighborDistance(std::vector<Eigen::Vector2d> points) {
   if (points.size() < 2) return kNaN;
   std::ranges::sort(points, IsLeftOf);

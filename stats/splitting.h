@@ -1,22 +1,22 @@
-// Multilevel splitting: the probability of an event far rarer than what can be counted (Kahn & Harris 1951;
-// for static systems subset simulation, Au & Beck 2001).
+// Multilevel splitting: estimates the probability of an event that is too rare to count directly (Kahn &
+// Harris 1951; for static systems subset simulation, Au & Beck 2001).
 //
-// A state x is drawn from its law; a value says how near it is to the event, which is "value > 1". Between
+// A state x is drawn from its law. A value measures how near it is to the event, which is "value > 1". With
 // levels l_1 < ... < l_m = 1,
 //   P(value > 1) = P(value > l_1) P(value > l_2 | value > l_1) ... P(value > 1 | value > l_(m-1)),
-// none of which is small. N particles are drawn; at each level the share of them beyond it is counted, the
-// others are replaced by copies of those, and all are moved by a Markov chain that leaves the law of x given
-// value > level as it is.
+// none of which is small. N particles are drawn. At each level the share of particles above it is recorded,
+// the others are replaced by copies of these, and all are moved by a Markov chain that leaves the law of x
+// given value > level invariant.
 //
-// Levels and step sizes come from a pilot and are fixed from then on. The product of the counted shares of
-// one replicate is then unbiased whatever they are, however badly the chain mixes and however small N is (Del
-// Moral 2004, ch. 9): each survivor has the same expected number of copies, and the chain leaves the law
-// alone. Levels found on the particles themselves would bias it by O(1/N). What bad mixing costs is spread:
-// replicates are independent, and their spread is the error (stats/splitting_rate.h).
+// Levels and step sizes come from a pilot run and are then fixed. The product of the shares of one replicate
+// is therefore unbiased, whatever the levels, however badly the chain mixes and however small N is (Del Moral
+// 2004, ch. 9): each survivor has the same expected number of copies, and the chain keeps the law. Levels
+// found on the particles themselves would cause a bias of O(1/N). Bad mixing only increases the spread;
+// replicates are independent, and their spread gives the error (stats/splitting_rate.h).
 //
-// What splitting cannot do: reach events to which no level leads. Where failures have a value far beyond 1 at
-// once, with nothing in between (a wrong mode), particles creep towards the edge of the ordinary ones, and
-// only chance finds the event.
+// Splitting cannot reach events to which no level leads. If failures jump to values far above 1 with nothing
+// in between (a wrong mode), particles move to the edge of the ordinary ones, and only chance finds the
+// event.
 #pragma once
 
 #include <algorithm>
@@ -31,51 +31,50 @@
 
 namespace rcme {
 
-// What there is to know about a system. Const, so that threads may share it.
+// The interface of a system. It is const, so that threads may share it.
 template <typename System>
 concept SplittingSystem = requires(const System& system, const typename System::State& state,
                                    RandomStream& rng, bool& is_local) {
   // A state from its law.
   { system.Draw(rng) } -> std::same_as<typename System::State>;
-  // A move that leaves that law as it is and is reversible. A local one goes a distance `step` in (0, 1],
-  // at 1 to a state that is (nearly) independent; others renew a part of the state and know no step.
+  // A reversible move under which the law is invariant. A local move has the length `step` in (0, 1], at 1 to
+  // a (nearly) independent state; other moves redraw a part of the state and ignore the step.
   { system.Propose(state, 0.5, rng, is_local) } -> std::same_as<typename System::State>;
-  // How near the event is: beyond 1 it happened. May be infinite, not NaN.
+  // How near the state is to the event, which is a value > 1. May be infinite, not NaN.
   { system.Value(state) } -> std::same_as<double>;
 };
 
 struct SplittingEffort {
   int num_particles = 200;  // at least 2
-  int num_moves = 10;       // of each particle at each level, at least 1
-  double kept_share = 0.2;  // of the particles, beyond each level of the pilot
+  int num_moves = 10;       // moves of each particle at each level, at least 1
+  double kept_share = 0.2;  // share of the particles above each level of the pilot
 };
 
 struct SplittingLevels {
-  std::vector<double> levels;  // rising, below 1; after them comes 1 itself
-  std::vector<double> steps;   // of the local moves above each of them
+  std::vector<double> levels;  // ascending, below 1; the last level, 1, is implied
+  std::vector<double> steps;   // steps of the local moves above each level
 };
 
 enum class PilotEnd {
   kReached,
-  kStuck,    // no particle lies beyond the last level: the values have a top below the event, or one value
-             // holds all
-  kTooRare,  // rarer than kLeastSplittingRate
+  kStuck,    // no particle lies above the last level: values are bounded below the event, or all equal
+  kTooRare,  // the rate is below kLeastSplittingRate
 };
 inline constexpr double kLeastSplittingRate = 1e-15;
 
 struct SplittingPilot {
   PilotEnd end = PilotEnd::kReached;
   SplittingLevels levels;
-  double last_level = 0.0;      // how far it came
-  std::int64_t num_values = 0;  // computed
+  double last_level = 0.0;      // the last level reached
+  std::int64_t num_values = 0;  // number of values computed
 };
 
 struct SplittingReplicate {
   double estimate = 1.0;
-  std::vector<double> shares;      // beyond each level and 1, of the particles above the level before
-  std::vector<double> acceptance;  // of the local moves above each level
-  std::int64_t num_drawn = 0, num_drawn_events = 0;  // brute force, as it were: the first particles
-  int num_ancestors = 0;  // of the particles in the event: how many of the first particles they come from
+  std::vector<double> shares;      // shares of the particles above each level and 1, given the previous level
+  std::vector<double> acceptance;  // share of accepted local moves above each level
+  std::int64_t num_drawn = 0, num_drawn_events = 0;  // plain Monte Carlo: the initial particles
+  int num_ancestors = 0;  // number of initial particles that those in the event descend from
   std::int64_t num_values = 0;
 };
 
@@ -116,8 +115,8 @@ class SplittingPopulation {
     return static_cast<int>(std::unique(ancestors.begin(), ancestors.end()) - ancestors.begin());
   }
 
-  // Puts copies of the particles above the level, of which there are some, in the place of the others: each
-  // as often as the others, but for one copy that goes to some of them at random.
+  // Replaces the particles at or below the level by copies of those above it, of which there must be some.
+  // Each is copied equally often, except that the remaining copies go to random ones.
   void KeepAbove(double level) {
     const auto end = std::partition(particles_.begin(), particles_.end(),
                                     [&](const Particle& p) { return p.value > level; });
@@ -126,8 +125,8 @@ class SplittingPopulation {
     for (size_t i = num_kept; i < particles_.size(); ++i) particles_[i] = particles_[i % num_kept];
   }
 
-  // Moves every particle once; a move that would leave the region above the level is not made. The share of
-  // the local moves that were.
+  // Moves every particle once; moves that leave the region above the level are rejected. Returns the share of
+  // accepted local moves.
   double MoveAbove(double level, double step) {
     int num_local = 0, num_made = 0;
     for (Particle& p : particles_) {
@@ -147,7 +146,7 @@ class SplittingPopulation {
   struct Particle {
     typename System::State state;
     double value;
-    int ancestor;  // number of the first particle it comes from
+    int ancestor;  // index of the initial particle it descends from
   };
 
   double EvaluateState(const typename System::State& state) {
@@ -161,10 +160,10 @@ class SplittingPopulation {
   std::int64_t num_values_ = 0;
 };
 
-// Local moves are made longer or shorter until so many are accepted; near 1/4 to 1/2 it hardly matters.
+// Target acceptance of local moves, by adapting their length; the choice hardly matters between 1/4 and 1/2.
 inline constexpr double kWantedAcceptance = 0.35;
 
-// Chooses levels, each such that the share `kept_share` of the particles lies beyond it, and step sizes.
+// Chooses levels, each with the share `kept_share` of the particles above it, and step sizes.
 template <SplittingSystem System>
 SplittingPilot FindLevels(const System& system, const SplittingEffort& effort, RandomStream& rng) {
   SplittingPilot pilot;

@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-// The mean of each level's acceptance over the replicates that came there, the least of them.
+// The least over the levels of the acceptance averaged over the replicates that reached the level.
 double LeastAcceptance(const std::vector<SplittingReplicate>& replicates) {
   std::vector<Moments> levels;
   for (const SplittingReplicate& replicate : replicates) {

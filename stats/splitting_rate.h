@@ -10,33 +10,33 @@
 
 namespace rcme {
 
-// Why an interval may not be believed.
+// Reasons to distrust an interval.
 enum class SplittingDoubt {
   kNoLevels,            // the pilot did not reach the event: there is no estimate
   kReplicateLost,       // a replicate lost all its particles on the way
-  kReplicatesDisagree,  // their relative standard deviation is beyond kMaxRelativeSpread: a few hold most of
+  kReplicatesDisagree,  // relative standard deviation above kMaxRelativeSpread: few replicates have most of
                         // the rate
-  kDrawsDisagree,  // the first particles, brute force as it were, hold more or fewer events than the interval
-                   // allows
-  kMovesStuck,     // at some level fewer than kMinAcceptance of the local moves were accepted
+  kDrawsDisagree,       // the number of events among the initial particles (plain Monte Carlo) contradicts
+                        // the interval
+  kMovesStuck,          // at some level fewer than kMinAcceptance of the local moves were accepted
 };
 std::string Name(SplittingDoubt doubt);  // "no_levels", ...
 
-// Beyond it the law of the replicates has a tail that so few of them do not show.
+// Above it the law of the replicates has a tail that so few replicates do not show.
 inline constexpr double kMaxRelativeSpread = 1.0;
 inline constexpr double kMinAcceptance = 0.05;
-// Two-sided, of the test behind kDrawsDisagree.
+// Two-sided significance level of the test for kDrawsDisagree.
 inline constexpr double kDrawsSignificanceLevel = 1e-3;
 
 struct SplittingRate {
   double estimate = 0.0;  // mean of the replicates: unbiased; NaN without levels
   double standard_error = 0.0;
-  double relative_spread = 0.0;  // standard deviation of a replicate over the mean
-  Interval interval;             // stats/lognormal_mean.h; [0, 1] where there is none
-  // What the first particles alone allow, by the exact interval: failures of a kind to which no level leads
-  // may have any rate up to here and be missed, for none was drawn.
+  double relative_spread = 0.0;  // standard deviation of the replicates over their mean
+  Interval interval;             // stats/lognormal_mean.h; [0, 1] if undefined
+  // The upper end of the exact interval from the initial particles alone. Failures of a kind to which no
+  // level leads may have any rate up to this and be missed, since none was drawn.
   double unseen_up_to = 1.0;
-  std::int64_t num_values = 0;  // computed, those of the pilot among them
+  std::int64_t num_values = 0;  // values computed, including the pilot's
   double least_acceptance = 1.0;
   double num_ancestors = 0.0;  // median over the replicates
   std::vector<SplittingDoubt> doubts;
@@ -44,7 +44,7 @@ struct SplittingRate {
   bool IsTrusted() const { return doubts.empty(); }
 };
 
-// Of at least two replicates, none if the pilot found no levels.
+// Takes at least two replicates; none if the pilot found no levels.
 SplittingRate EstimateSplittingRate(const SplittingPilot& pilot,
                                     const std::vector<SplittingReplicate>& replicates,
                                     double confidence = 0.95);

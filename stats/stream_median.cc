@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-// Towards zero, to the first eight of the 52 binary digits after the leading one.
+// Truncated towards zero to the first eight of the 52 binary digits after the leading one.
 double CutOff(double x) {
   constexpr std::uint64_t kDroppedBits = (std::uint64_t{1} << (52 - 8)) - 1;
   return std::bit_cast<double>(std::bit_cast<std::uint64_t>(x) & ~kDroppedBits);

@@ -1,4 +1,4 @@
-// Student's t as a mixture of normal laws: some of its draws are precise, some are not.
+// Student's t as a mixture of normal laws of different scales.
 #pragma once
 
 #include <vector>
@@ -7,15 +7,15 @@
 
 namespace rcme {
 
-// Student's t with m degrees of freedom is a normal number times the root of m / chi-square_m. Here that root
-// takes 32 values of equal probability, its quantiles at (k + 1/2) / 32, over their root mean square: tails
-// as long as any data of thousands show, and a variance (1) even where m <= 2. Rounded to six digits, so that
-// libraries agree.
+// Student's t with m degrees of freedom is a normal number times sqrt(m / chi-square_m). Here this factor
+// takes 32 values of equal probability, its quantiles at (k + 1/2) / 32, divided by their root mean square.
+// The tails are as long as data of thousands can show, and the variance is 1 even if m <= 2. Values are
+// rounded to six digits, so that all libraries agree.
 class StudentScales {
  public:
   // 0 degrees of freedom: normal, every scale is 1.
   explicit StudentScales(double degrees_of_freedom);
-  const std::vector<double>& scales() const { return scales_; }  // falling
+  const std::vector<double>& scales() const { return scales_; }  // descending
   double Draw(RandomStream& rng) const;
 
  private:

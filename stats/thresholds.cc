@@ -16,7 +16,7 @@ void CheckScores(const std::vector<double>& scores) {
   }
 }
 
-// For each threshold the share of the scores that are not below it.
+// For each threshold the share of scores that are at least as large.
 std::vector<double> SharesAtLeast(std::vector<double> scores, const std::vector<double>& thresholds) {
   std::sort(scores.begin(), scores.end());
   std::vector<double> shares;

@@ -1,26 +1,24 @@
-// How well a score separates two kinds, threshold by threshold (the area under the curve:
-// area_under_curve.h).
+// How well a score separates two classes, threshold by threshold (area under the curve: area_under_curve.h).
 #pragma once
 
 #include <vector>
 
 namespace rcme {
 
-// One threshold of the receiver operating characteristic: what scores at least `threshold` is called
-// positive.
+// One threshold of the receiver operating characteristic: scores of at least `threshold` are called positive.
 struct RocPoint {
   double threshold = 0.0;
   double false_positive_rate = 0.0, true_positive_rate = 0.0;
 };
 
-// From (0, 0), where nothing is called positive (written as threshold +infinity), to (1, 1), one point per
-// different score: equal scores, infinite ones too, are one step, whatever their kinds. Throws
-// std::invalid_argument if a sample is empty or holds a NaN.
+// From (0, 0), where nothing is called positive (threshold +infinity), to (1, 1), one point per distinct
+// score; equal scores, also infinite ones, are one step. Throws std::invalid_argument if a sample is empty or
+// contains a NaN.
 std::vector<RocPoint> RocCurve(const std::vector<double>& negatives, const std::vector<double>& positives);
 
-// What is risked by answering only where one is sure: of the `coverage` share of the trials with the highest
-// confidence scores, the share `risk` that failed. One point per different score, most confident first; a
-// refusal has the score -infinity and comes last.
+// A point of the risk-coverage curve: of the `coverage` share of the trials with the highest confidence, the
+// share `risk` failed. One point per distinct score, most confident first; a refusal has the score -infinity
+// and comes last.
 struct RiskCoveragePoint {
   double threshold = 0.0;  // answered if the score is at least this
   double coverage = 0.0, risk = 0.0;

@@ -10,16 +10,16 @@ namespace {
 // k log(to / from), with 0 log 0 = 0.
 double LogPower(int k, double from, double to) {
   if (k == 0) return 0.0;
-  return k * std::log1p((to - from) / from);  // more digits than log(to / from) where the two are close
+  return k * std::log1p((to - from) / from);  // more accurate than log(to / from) if the two are close
 }
 
-// log(Binom(k; n, to) / Binom(k; n, from)); `from` gives k a probability above 0.
+// log(Binom(k; n, to) / Binom(k; n, from)); k must be possible under `from`.
 double LogLikelihoodRatio(int k, int n, double from, double to) {
   return LogPower(k, from, to) + LogPower(n - k, 1.0 - from, 1.0 - to);
 }
 
-// Where between `peak` and `end` the likelihood has fallen to exp(-45) = 3e-20 of its value at the peak, or
-// the end if that is nearer.
+// The point between `peak` and `end` where the likelihood has fallen to exp(-45) = 3e-20 of its value at the
+// peak, or `end` if that is nearer.
 double EndOfSupport(int k, int n, double peak, double end) {
   constexpr double kNegligible = -45.0;
   if (LogLikelihoodRatio(k, n, peak, end) >= kNegligible) return end;
@@ -31,8 +31,9 @@ double EndOfSupport(int k, int n, double peak, double end) {
   return outside;
 }
 
-// int Binom(k; n, u) / Binom(k; n, peak) du from the peak to one side. Falling and smooth, from a bell (down
-// to exp(-45) in 9.5 standard deviations) to an exponential: eight panels of 15 nodes are exact to rounding.
+// int Binom(k; n, u) / Binom(k; n, peak) du from the peak to one side. The integrand falls smoothly, its
+// shape between a bell (exp(-45) at 9.5 standard deviations) and an exponential: eight panels of 15 nodes are
+// exact to rounding.
 double IntegralBeside(int k, int n, double peak, double end) {
   constexpr int kPanels = 8;
   const double reach = EndOfSupport(k, n, peak, end) - peak, panel = reach / kPanels;
@@ -46,9 +47,9 @@ double IntegralBeside(int k, int n, double peak, double end) {
 
 }  // namespace
 
-// The closed form loses all digits where p is close to q (a difference of equals) and where k is far from
-// both (of zeros). So the likelihood relative to its peak between p and q is integrated: a number near 1 at
-// most, which neither cancels nor underflows.
+// The closed form loses all digits if p is close to q (cancellation) or if k is far from both (underflow).
+// Instead the likelihood relative to its peak between p and q is integrated, which is at most 1 and neither
+// cancels nor underflows.
 double TiltedBinomialWeight(int k, int n, double p, double q) {
   if (p == q) return 1.0;
   if ((p == 0.0 && k > 0) || (p == 1.0 && k < n)) return 0.0;

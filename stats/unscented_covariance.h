@@ -6,12 +6,12 @@
 namespace rcme {
 
 // Second moment of `deviation`(x), a function R^n -> R^k that is zero at `mean`, for x ~ N(mean,
-// standard_deviation^2 I), by the unscented transform (Julier, Uhlmann & Durrant-Whyte 2000): 2 n points at
-// mean +- sqrt(3) standard_deviation along each axis, of weight 1/6 each, which matches the Gaussian's
-// moments up to the fourth along every axis. The weight 1 - n/3 of the centre is negative for n > 3, so the
-// spread is taken about the centre's image, their form that stays positive semi-definite. Needs no
-// derivative. Exact for linear functions and for quadratics of one coordinate; blind to mixed second
-// derivatives.
+// standard_deviation^2 I), by the unscented transform (Julier, Uhlmann & Durrant-Whyte 2000). It uses 2 n
+// points at mean +- sqrt(3) standard_deviation along each axis, of weight 1/6 each, which match the
+// Gaussian's moments up to the fourth along every axis. The weight 1 - n/3 of the centre is negative for n >
+// 3, so the spread is taken about the image of the centre, their form that stays positive semi-definite.
+// Needs no derivative. Exact for linear functions and for quadratics of one coordinate; it ignores mixed
+// second derivatives.
 template <typename Function>
 Eigen::MatrixXd UnscentedCovariance(const Function& deviation, const Eigen::VectorXd& mean,
                                     double standard_deviation) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::int64_t kFewMixedScenes = 25, kFewScenesOfAKind = 10;
 
-// Scenes in whose repeats the event happened in the share q.
+// A number of scenes with the same share q of events.
 struct EqualScenes {
   double q = 0.0, count = 0.0;
 };
@@ -42,7 +42,7 @@ Components ComputeComponents(const std::vector<EqualScenes>& scenes, int num_rep
   return c;
 }
 
-// Of log(w / v): the influence of a scene is (w_i - w) / w - (1 - 2 qbar) (q_i - qbar) / v.
+// Standard error of log(w / v). The influence of a scene is (w_i - w) / w - (1 - 2 qbar) (q_i - qbar) / v.
 double StandardErrorOfLogShare(const std::vector<EqualScenes>& scenes, int num_repeats, const Components& c) {
   double squares = 0.0;
   for (const EqualScenes& each : scenes) {

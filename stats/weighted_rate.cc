@@ -14,7 +14,7 @@ double GammaQuantile(double mean, double variance, double probability) {
   return variance / mean * boost::math::gamma_p_inv(mean * mean / variance, probability);
 }
 
-// The ends of the interval of the sum: of the events as they are, and after one more of weight m.
+// The ends of the interval of the sum; the upper one after one more event of weight m.
 double LowerEnd(const WeightedEvents& events, double tail) {
   if (events.sum_weights == 0.0) return 0.0;
   return GammaQuantile(events.sum_weights, events.sum_squared_weights, tail);
