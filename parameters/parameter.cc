@@ -32,7 +32,7 @@ std::string DescribeRange(const std::string& kind, const Parameter::Range& range
   return fmt::format("{} in [{}, {}]", kind, range.min, range.max);
 }
 
-// The words of what is allowed: "one of: a, b", "a number in [0, 1] or auto".
+// The words in a text such as "one of: a, b" or "a number in [0, 1] or auto".
 std::vector<std::string> WordsIn(const std::string& allowed) {
   constexpr std::string_view kList = "one of: ", kComma = ", ", kOr = " or ";
   const bool is_list = allowed.starts_with(kList);
@@ -54,7 +54,7 @@ std::vector<std::string> WordsIn(const std::string& allowed) {
 bool ParseReal(const std::string& text, double* value) {
   double parsed = 0.0;
   if (!ParseWhole(text, &parsed) || !std::isfinite(parsed)) return false;
-  *value = parsed + 0.0;  // no -0: equal numbers are equal texts
+  *value = parsed + 0.0;  // no -0: equal numbers have equal texts
   return true;
 }
 

@@ -1,12 +1,12 @@
 // A named, documented, range-checked view of one field of an options struct.
 //
-// An options struct stays a plain struct with defaults; beside it stands a function that lists its fields:
+// An options struct stays a plain struct with defaults; a function beside it lists its fields:
 //
 //   std::vector<Parameter> Parameters(NoiseModel& noise) {
 //     return {Parameter::Real("sigma_px", &noise.sigma_px, {1e-9, 100.0}, "px", "noise standard deviation")};
 //   }
 //
-// Study files, `--set key=value`, `rcme list` and the error messages all read this one list.
+// Study files, `--set key=value`, `rcme list` and the error messages all use this list.
 #pragma once
 
 #include <functional>
@@ -27,10 +27,10 @@ class Parameter {
   };
 
   static Parameter Real(std::string name, double* target, Range range, std::string unit, std::string doc);
-  // Like Real, but the word `automatic` (stored as NaN) is allowed too.
+  // Like Real, but also allows the word `automatic` (stored as NaN).
   static Parameter RealOrWord(std::string name, double* target, Range range, std::string automatic,
                               std::string unit, std::string doc);
-  // Like Real, but words are allowed too, each for a number (NaN, or the one it stands for).
+  // Like Real, but also allows words, each stored as its number (may be NaN).
   static Parameter RealOrWords(std::string name, double* target, Range range,
                                std::vector<std::pair<std::string, double>> words, std::string unit,
                                std::string doc);
@@ -41,19 +41,19 @@ class Parameter {
   static Parameter Choice(std::string name, Enum* target, std::vector<std::pair<std::string, Enum>> choices,
                           std::string doc);
 
-  // One parameter for fields of several models that have a name in common: sets them all, reads the first.
-  // They are of one kind and allow the same.
+  // One parameter for fields of several models with a common name: sets all, reads the first. They must be of
+  // the same kind and allow the same values.
   static Parameter Together(const std::vector<Parameter>& same);
 
   const std::string& name() const { return name_; }
   const std::string& unit() const { return unit_; }
   const std::string& doc() const { return doc_; }
-  // What is allowed, in words: "a number in [0, 1]", "one of: as_printed, rank_aware".
+  // The allowed values: "a number in [0, 1]", "one of: as_printed, rank_aware".
   const std::string& allowed() const { return allowed_; }
 
   // Writes the field; throws InputError that names key, value and what is allowed.
   void SetFromText(const std::string& text) const;
-  // The field's present value, such that SetFromText(Value()) changes nothing.
+  // The current value of the field; SetFromText(Value()) changes nothing.
   std::string Value() const { return get_(); }
 
  private:
@@ -67,10 +67,10 @@ class Parameter {
 // The parameter called `name`; throws InputError that lists the known names.
 const Parameter& FindParameter(const std::vector<Parameter>& parameters, const std::string& name);
 
-// Every parameter with its present value.
+// All parameters with their current values.
 Settings ListValues(const std::vector<Parameter>& parameters);
 
-// The whole of `text` as a finite number; false otherwise.
+// Parses the whole of `text` as a finite number; false if it is not one.
 bool ParseReal(const std::string& text, double* value);
 bool ParseInteger(const std::string& text, long long* value);
 

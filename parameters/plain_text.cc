@@ -9,9 +9,9 @@ namespace {
 
 constexpr size_t kMaxQuotedBytes = 200;
 
-// C0, DEL and, in two bytes, C1, of which some terminals make commands. In three bytes U+2028 to U+202E (line
-// and paragraph separators, embeddings and overrides of the direction of writing) and U+2066 to U+2069 (its
-// isolates).
+// C0 and DEL (one byte), and C1 (two bytes), which some terminals interpret as commands. Three bytes: U+2028
+// to U+202E (line and paragraph separators, embeddings and overrides of the writing direction) and U+2066 to
+// U+2069 (its isolates).
 bool IsControl(std::string_view character) {
   const auto byte = [&](size_t i) { return static_cast<unsigned char>(character[i]); };
   if (byte(0) < 0x20 || byte(0) == 0x7F) return true;
@@ -21,7 +21,7 @@ bool IsControl(std::string_view character) {
          (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9);
 }
 
-// The first byte of a character that is cut in two begins a character of the part behind.
+// The start of the character that contains the byte `at`, so that a cut there belongs to the second part.
 size_t CharacterStart(std::string_view text, size_t at) {
   while (at > 0 && at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80) --at;
   return at;
@@ -42,7 +42,7 @@ size_t Utf8Length(std::string_view text) {
   if (lead < 0x80) return 1;
   if (lead < 0xC2 || lead > 0xF4) return 0;
   const size_t length = lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
-  // The second byte excludes what has a shorter form, surrogates and what is beyond U+10FFFF.
+  // The second byte excludes overlong forms, surrogates and characters beyond U+10FFFF.
   const unsigned min = lead == 0xE0 ? 0xA0 : lead == 0xF0 ? 0x90 : 0x80;
   const unsigned max = lead == 0xED ? 0x9F : lead == 0xF4 ? 0x8F : 0xBF;
   if (byte(1) < min || byte(1) > max) return 0;

@@ -4,8 +4,8 @@
 
 namespace rcme {
 
-// A stated probability in two digits. What is below a hundred-thousandth was neglected on the way there:
-// "<1e-05".
+// A probability in two digits; "<1e-05" below 1e-5, as smaller contributions were neglected in its
+// computation.
 std::string ProbabilityText(double probability);
 
 }  // namespace rcme

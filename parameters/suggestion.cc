@@ -10,7 +10,7 @@
 namespace rcme {
 namespace {
 
-constexpr size_t kMostLetters = 100;  // longer words are no slips of the pen
+constexpr size_t kMostLetters = 100;  // longer words are not treated as misspellings
 constexpr size_t kLeastPrefix = 3;
 
 std::string Folded(std::string_view word) {
@@ -19,7 +19,7 @@ std::string Folded(std::string_view word) {
   return folded;
 }
 
-// The only name that begins with the word; empty: there are none or several.
+// The only name that begins with the word; empty if there are none or several.
 std::string OnlyContinuation(const std::string& word, const std::vector<std::string>& names) {
   if (word.size() < kLeastPrefix) return {};
   std::string only;

@@ -1,4 +1,4 @@
-// What somebody may have meant: of the names there are, the one nearest to what was written.
+// Suggestions for misspelt names: the known name nearest to the given one.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,12 @@
 
 namespace rcme {
 
-// How many letters have to be put in, left out, replaced or swapped with their neighbour to make one word of
-// the other (Damerau 1964; no letter is touched twice).
+// The number of letters to insert, delete, replace or swap with their neighbour to turn one word into the
+// other (Damerau 1964; no letter is edited twice).
 size_t EditDistance(std::string_view a, std::string_view b);
 
-// " (did you mean 'x'?)" with the nearest of the names, where one is near: at most 1 + a quarter of the
-// letters away, or the only one that begins so. Upper and lower case, - and _ count as the same. Empty: none
-// is near.
+// " (did you mean 'x'?)" with the nearest name, if its distance is at most 1 + a quarter of the letters, or
+// if it is the only name with this prefix. Case, - and _ are ignored. Otherwise empty.
 std::string DidYouMean(std::string_view given, const std::vector<std::string>& names);
 
 }  // namespace rcme

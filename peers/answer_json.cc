@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kProblemFormat = "rcme problem 1";
-constexpr int kMaxDepth = 4;  // of an answer: a matrix is a list of lists in an object
+constexpr int kMaxDepth = 4;  // nesting of an answer: a matrix is a list of lists in an object
 
 [[noreturn]] void Fail(const std::string& what) {
   throw NoOutsideAnswer(MotionStatus::kUnreadableAnswer, what);
@@ -38,7 +38,7 @@ double NumberIn(const Json& value, const std::string& key) {
   return value.get<double>();
 }
 
-// A list of `count` numbers, or the rows of a matrix one after the other.
+// A list of `count` numbers, or a matrix with as many, row by row.
 std::vector<double> NumbersIn(const Json& value, const std::string& key, size_t count) {
   std::vector<double> numbers;
   if (!value.is_array()) Fail(fmt::format("{}: {} is no list", key, Quoted(value.dump())));
@@ -137,8 +137,8 @@ std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed, cons
 }
 
 AnswerLine AnswerFromJson(std::string_view line) {
-  // A depth that is not an answer's is refused before it is built: nothing recurses without end. Of a key
-  // that stands twice nobody knows which value is meant.
+  // Nesting too deep for an answer is refused while parsing, so recursion is bounded. Duplicate keys are
+  // refused, since their value is ambiguous.
   std::set<std::string> keys;
   const auto is_allowed = [&](int depth, Json::parse_event_t event, Json& parsed) {
     if (depth > kMaxDepth) Fail("lists within lists within lists; expected one JSON object");

@@ -1,5 +1,5 @@
-// Problems and answers as lines of JSON, for estimators in any language; docs/estimators_in_any_language.md
-// is the schema.
+// Problems and answers as lines of JSON, for estimators in any language. The schema is in
+// docs/estimators_in_any_language.md.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,25 @@
 
 namespace rcme {
 
-// Names a problem and its seed: 16 hexadecimal digits of all their numbers.
+// The id of a problem and seed: 16 hexadecimal digits, a hash of all their numbers.
 std::string ProblemId(const MotionProblem& problem, std::uint32_t seed);
 
-// {"format", "id", "x1", "x2", "camera1", "camera2", "sigma_px", "seed"}, "noise_scale" where the problem has
-// one, and a line end; numbers such that they are read back bit for bit.
+// {"format", "id", "x1", "x2", "camera1", "camera2", "sigma_px", "seed"}, "noise_scale" if the problem has
+// one, and a line end. Numbers are written such that they are read back bit for bit.
 std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed, const std::string& id);
 std::string ProblemAsJson(const MotionProblem& problem, std::uint32_t seed);  // with its ProblemId
 
-// What stands on one line.
+// One line of answers.
 struct AnswerLine {
-  std::string id;  // empty: none is given
+  std::string id;  // empty: not given
   OutsideAnswer answer;
-  std::string fault;  // not empty: why the answer cannot be read
+  std::string fault;  // reason why the answer cannot be read; empty if it can
 };
 AnswerLine AnswerFromJson(std::string_view line);
 
-// The answer; throws NoOutsideAnswer (unreadable_answer) where it cannot be read.
+// The answer of a line. Throws NoOutsideAnswer (unreadable_answer) if it cannot be read.
 const OutsideAnswer& Readable(const AnswerLine& line);
-// The same for the answer to the question of that id; another's cannot be read either.
+// The same; also throws if the line's id is not `id`.
 const OutsideAnswer& ReadableAnswerTo(const std::string& id, const AnswerLine& line);
 
 }  // namespace rcme

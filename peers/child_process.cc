@@ -22,16 +22,16 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t kMaxAnswerBytes = size_t{1} << 26;
-constexpr std::chrono::milliseconds kTimeToTell{500};   // how it ended
-constexpr std::chrono::milliseconds kTimeToKill{2000};  // all that it has started
-constexpr int kStopLook_ms = 100;                       // how often a wait looks for a request to stop
+constexpr std::chrono::milliseconds kTimeToTell{500};   // to report how it ended
+constexpr std::chrono::milliseconds kTimeToKill{2000};  // to kill it and all that it has started
+constexpr int kStopLook_ms = 100;                       // interval of checks for a stop request
 
 int MillisecondsUntil(Clock::time_point deadline) {
   const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
   return static_cast<int>(std::clamp<std::int64_t>(left, 0, 1'000'000'000));
 }
 
-// Waits until there is something to read, or the end. False: not before the deadline.
+// Waits for input or the end of the stream. False: neither came before the deadline.
 bool WaitToRead(int file, Clock::time_point deadline) {
   pollfd event{file, POLLIN, 0};
   int num_ready = 0;
@@ -48,7 +48,7 @@ std::string DescribeEnd(int status) {
 }  // namespace
 
 ChildProcess::ChildProcess(ProcessKeeper* keeper, const std::string& command) {
-  std::array<int, 2> input{-1, -1}, output{-1, -1};  // our end, its end
+  std::array<int, 2> input{-1, -1}, output{-1, -1};  // our end, the process's end
   const auto make = [](std::array<int, 2>& ends) {
     return socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0;
   };
@@ -60,7 +60,7 @@ ChildProcess::ChildProcess(ProcessKeeper* keeper, const std::string& command) {
   try {
     if (!make(input) || !make(output))
       throw NoOutsideAnswer(MotionStatus::kNoAnswer, fmt::format("socketpair: {}", std::strerror(errno)));
-    shutdown(input[0], SHUT_RD);  // one way each, as pipes
+    shutdown(input[0], SHUT_RD);  // one direction each, like pipes
     shutdown(output[0], SHUT_WR);
     lifeline_ = keeper->Start(command, input[1], output[1]);
   } catch (...) {
@@ -118,11 +118,11 @@ std::string ChildProcess::Ask(const std::string& line, Clock::time_point deadlin
     }
     if (events[1].revents != 0) {
       const bool is_lost = is_sending ? !Send(line, &num_sent) : (events[1].revents & POLLERR) != 0;
-      // What it has written before comes first.
+      // Output that it has written before is read first.
       if (is_lost && !WaitToRead(output_, Clock::now() + kTimeToTell)) ThrowEnded();
-      if (!is_sending) is_input_open = false;  // it has read all: nothing more to wait for there
+      if (!is_sending) is_input_open = false;  // everything is sent: stop polling its input
     }
-    // A flood of bytes keeps poll busy.
+    // Needed here too, as poll never times out while bytes keep coming.
     if (end == std::string::npos && Clock::now() >= deadline)
       throw NoOutsideAnswer(MotionStatus::kTimedOut, "no answer in time");
   }

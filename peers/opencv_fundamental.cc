@@ -1,4 +1,4 @@
-// OpenCV's RANSAC and its least median of squares, both for the fundamental matrix of seven points.
+// OpenCV's RANSAC and least median of squares, both for the fundamental matrix from seven points.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -22,12 +22,13 @@ struct FundamentalOptions {
   double max_depth = kDefaultMaxDepth;
 };
 
-// FM_RANSAC compares with the threshold the larger of the distances of a match's two points from their
+// FM_RANSAC compares the threshold with the larger of the distances between a match's two points and their
 // epipolar lines, |e| / min(|l1|, |l2|), e the constraint and l1, l2 the normals of the lines. The variance
-// of e is sigma^2 (|l1|^2 + |l2|^2). In rays both normals have about one length, in pixels that over the
-// focal length: the standard deviation of the distance is sigma sqrt(1 + r^2), r the larger focal length over
-// the smaller (sqrt(2) sigma for equal ones). FM_LMEDS has no threshold: inliers are the matches within 2.5
-// robust standard deviations, 1.4826 (1 + 5 / (n - 7)) times the median of the distances.
+// of e is sigma^2 (|l1|^2 + |l2|^2). In rays both normals have about the same length, in pixels that length
+// over the focal length. The standard deviation of the distance is therefore sigma sqrt(1 + r^2), r the
+// larger focal length over the smaller (sqrt(2) sigma for equal ones). FM_LMEDS has no threshold: inliers are
+// the matches within 2.5 robust standard deviations, 1.4826 (1 + 5 / (n - 7)) times the median of the
+// distances.
 double ThresholdPx(const FundamentalOptions& options, const MotionProblem& problem) {
   const double focal1 = std::hypot(problem.camera1.fx, problem.camera1.fy);
   const double focal2 = std::hypot(problem.camera2.fx, problem.camera2.fy);
@@ -35,9 +36,10 @@ double ThresholdPx(const FundamentalOptions& options, const MotionProblem& probl
   return std::hypot(1.0, ratio) * options.threshold_sigma * problem.sigma_px;
 }
 
-// F, E = K2' F K1, and the motion of the essential matrix next to it. Both methods draw their samples from a
-// generator that always begins alike: what the stream decides is the order in which OpenCV gets the matches.
-// Of exactly seven matches OpenCV gives up to three F: the first with most points in front is taken.
+// Finds F, then E = K2' F K1, then the motion of the nearest essential matrix. Both methods draw samples from
+// a generator with a fixed seed; the stream determines the order in which OpenCV gets the matches. For
+// exactly seven matches OpenCV returns up to three F: the first with the most points in front of both cameras
+// is used.
 std::optional<PeerAnswer> AskFindFundamentalMat(const MotionProblem& problem,
                                                 const FundamentalOptions& options, RandomStream& rng) {
   std::vector<int> order(problem.matches.size());

@@ -18,8 +18,8 @@ struct UsacOptions {
   double max_depth = kDefaultMaxDepth;
 };
 
-// Size and number of the samples of a local optimisation. UsacParams has one default for all of them; these
-// are what OpenCV's own choices of each use for essential matrices (USAC_DEFAULT, USAC_ACCURATE,
+// Size and number of the samples of a local optimisation. UsacParams has one default for all methods; these
+// are the values that OpenCV's own presets of each use for essential matrices (USAC_DEFAULT, USAC_ACCURATE,
 // USAC_MAGSAC).
 void SetLocalSamples(cv::UsacParams* params) {
   const bool is_cut = params->loMethod == cv::LOCAL_OPTIM_GC;
@@ -28,9 +28,9 @@ void SetLocalSamples(cv::UsacParams* params) {
   params->loIterations = is_cut ? 25 : is_sigma ? 10 : 15;
 }
 
-// USAC compares with the squared threshold the symmetric epipolar distance e^2 (1 / |l1|^2 + 1 / |l2|^2), e
+// USAC compares the squared threshold with the symmetric epipolar distance e^2 (1 / |l1|^2 + 1 / |l2|^2), e
 // the constraint and l1, l2 the normals of the two epipolar lines. The variance of e is sigma^2 (|l1|^2 +
-// |l2|^2), so that where both have one length the distance has the standard deviation 2 sigma. USAC takes
+// |l2|^2), so if both normals have the same length the distance has standard deviation 2 sigma. USAC takes
 // the threshold in pixels and divides it by the mean of the four focal lengths.
 double ThresholdPx(const UsacOptions& options, double sigma_px) {
   return 2.0 * options.threshold_sigma * sigma_px;
@@ -54,7 +54,8 @@ class OpenCvUsac : public MotionEstimator {
     params.confidence = options_.confidence;
     params.maxIterations = options_.max_iterations;
     params.isParallel = false;
-    params.randomGeneratorState = static_cast<int>(rng.Next32() >> 2);  // its parts add small numbers to it
+    params.randomGeneratorState =
+        static_cast<int>(rng.Next32() >> 2);  // room for the small numbers that USAC's parts add
     SetLocalSamples(&params);
     const CvPoints points = ListPixels(problem);
     cv::Mat mask;

@@ -23,9 +23,9 @@ struct OpenGvOptions {
   int max_iterations = 1000;
 };
 
-// The squared angle of a pixel (rad^2), mean of both axes and over the image. At the ray r = (x, y, 1) a
-// pixel moves it by (1 / fx, 0, 0) or (0, 1 / fy, 0), and of that the part normal to the ray, over |r|, is
-// the angle: (1 + y^2) / (fx^2 |r|^4) and (1 + x^2) / (fy^2 |r|^4), squared.
+// The squared angle of a pixel (rad^2), the mean over both axes and the image. A step of one pixel moves the
+// ray r = (x, y, 1) by (1 / fx, 0, 0) or (0, 1 / fy, 0). The angle is the part normal to the ray over |r|;
+// its square is (1 + y^2) / (fx^2 |r|^4) or (1 + x^2) / (fy^2 |r|^4).
 double SquaredAngleOfPixel(const Camera& camera) {
   constexpr int kCells = 8;
   double sum = 0.0;
@@ -41,19 +41,20 @@ double SquaredAngleOfPixel(const Camera& camera) {
   return sum / (kCells * kCells);
 }
 
-// OpenGV compares with the threshold (1 - cos a1) + (1 - cos a2) = (a1^2 + a2^2) / 2 for small angles, a1 and
-// a2 those between the rays of a match and of its triangulated point. The least a1^2 + a2^2 is that of moving
-// both rays along the normals of their epipolar planes, e^2 / (|n1|^2 + |n2|^2) in unit rays, e the
-// constraint, n1 and n2 its gradients. Noise of sigma px turns ray k by s_k rad, so that the variance of e is
-// s_1^2 |n1|^2
-// + s_2^2 |n2|^2; where both gradients have one length, the least angle sqrt(a1^2 + a2^2) has the standard
-// deviation s with s^2 = (s_1^2 + s_2^2) / 2, and k of them are at (k s)^2 / 2.
+// OpenGV compares the threshold with (1 - cos a1) + (1 - cos a2), for small angles (a1^2 + a2^2) / 2, a1 and
+// a2 the angles between the rays of a match and of its triangulated point. The least a1^2 + a2^2 moves both
+// rays along the normals of their epipolar planes: e^2 / (|n1|^2 + |n2|^2) in unit rays, e the constraint, n1
+// and n2 its gradients. Noise of sigma px turns ray k by s_k rad, so the variance of e is s_1^2 |n1|^2 +
+// s_2^2 |n2|^2. If both gradients have the same length, the least angle sqrt(a1^2 + a2^2) has standard
+// deviation s with s^2 = (s_1^2 + s_2^2) / 2, and k standard deviations correspond to the threshold (k s)^2 /
+// 2.
 double Threshold(const OpenGvOptions& options, const MotionProblem& problem) {
   const double in_px = options.threshold_sigma * problem.sigma_px;
   return 0.25 * in_px * in_px * (SquaredAngleOfPixel(problem.camera1) + SquaredAngleOfPixel(problem.camera2));
 }
 
-// Its samples from our stream: OpenGV seeds its own generator with the clock or always alike.
+// Draws OpenGV's samples from our random stream, since OpenGV seeds its own generator by the clock or with a
+// constant.
 class StreamSacProblem : public SacProblem {
  public:
   StreamSacProblem(adapter_t& adapter, Algorithm algorithm, RandomStream& rng)
@@ -71,12 +72,12 @@ class StreamSacProblem : public SacProblem {
   RandomStream& rng_;
 };
 
-// Matches that a sample needs: those of the solver, and OpenGV's two or three to tell its models apart.
+// Size of a sample: the solver's matches, and two or three more with which OpenGV selects among its models.
 int SampleSize(SacProblem::Algorithm algorithm) {
   return algorithm == SacProblem::NISTER || algorithm == SacProblem::STEWENIUS ? 8 : 9;
 }
 
-// OpenGV's motion is camera 2 as seen from camera 1: X1 = R12 X2 + t12, |t12| as it comes.
+// OpenGV's motion is the pose of camera 2 in camera 1: X1 = R12 X2 + t12, with arbitrary |t12|.
 RelativePose PoseFrom(const opengv::transformation_t& cam1_from_cam2) {
   const Eigen::Matrix3d R = cam1_from_cam2.leftCols<3>().transpose();
   return {R, (-R * cam1_from_cam2.col(3)).normalized()};

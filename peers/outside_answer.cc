@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-constexpr int kMinMatches = 5;  // that determine a motion
+constexpr int kMinMatches = 5;  // least number that determines a motion
 
 bool IsOfTheJudge(MotionStatus status) {
   return status == MotionStatus::kInvalidMotion || status == MotionStatus::kInvalidCovariance ||
@@ -27,14 +27,15 @@ MotionEstimate Refusal(MotionStatus status, const std::string& message) {
   return estimate;
 }
 
-// Of matches, each once.
+// Whether these are valid indices of matches, each at most once.
 bool AreInliers(std::vector<int> inliers, size_t num_matches) {
   std::ranges::sort(inliers);
   return std::ranges::adjacent_find(inliers) == inliers.end() &&
          (inliers.empty() || (inliers.front() >= 0 && static_cast<size_t>(inliers.back()) < num_matches));
 }
 
-// A motion as it is given, with what is missing beside it. What is not valid stays so, for the judge.
+// The given motion, with missing parts computed. Invalid parts stay invalid, for the later check of the
+// answer.
 MotionEstimate MotionFrom(const MotionProblem& problem, const OutsideAnswer& answer) {
   MotionEstimate estimate;
   estimate.status = MotionStatus::kOk;
@@ -56,14 +57,14 @@ MotionEstimate MotionFrom(const MotionProblem& problem, const OutsideAnswer& ans
   if (answer.pose_cov) {
     estimate.pose_cov = TangentCovariance(*answer.pose_cov, answer.t);
   } else if (AreInliers(estimate.inliers, problem.matches.size())) {
-    // Inliers that determine no motion give none: an answer without a covariance is not valid.
+    // NaN if the inliers do not determine a motion: without a covariance the answer is not valid.
     estimate.pose_cov =
         CovarianceOfInliers(problem, pose, estimate.inliers).value_or(Matrix5d::Constant(kNaN));
   }
   return estimate;
 }
 
-// Of direction_not_observable a rotation and its covariance, where they are given.
+// A refusal; with direction_not_observable it keeps the rotation and its covariance if given.
 MotionEstimate RefusalFrom(const OutsideAnswer& answer) {
   MotionEstimate estimate = Refusal(answer.status, answer.message);
   estimate.failure_probability = answer.failure_probability;

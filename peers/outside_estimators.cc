@@ -1,5 +1,5 @@
 // Estimators outside the program that a study can name: a process that answers lines of JSON, and a file of
-// answers that were made elsewhere.
+// answers made elsewhere.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,11 +29,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kNone = "none";
 
-// A process and what it was asked last.
+// A process and the last problem it was asked.
 struct AskedProcess {
   AskedProcess(ProcessKeeper* keeper, const std::string& command) : process(keeper, command) {}
 
-  // What the answer has to carry: the id of the problem, and where that is asked again, which time it is.
+  // The id that the answer must have: that of the problem, with a number appended if the same problem is
+  // asked again.
   std::string NextId(const std::string& problem) {
     num_times = problem == last_problem ? num_times + 1 : 1;
     last_problem = problem;
@@ -45,8 +46,8 @@ struct AskedProcess {
   int num_times = 0;
 };
 
-// One process per thread that asks; each answers one problem after the other, and a new one takes the place
-// of one that gave no answer to the problem it was asked.
+// One process per calling thread, each answering one problem after the other. A process that gave no answer
+// is replaced by a new one.
 class ProcessEstimator : public MotionEstimator {
  public:
   ProcessEstimator(std::string command, double timeout_s)
@@ -78,7 +79,7 @@ class ProcessEstimator : public MotionEstimator {
   }
 
  private:
-  static constexpr std::chrono::milliseconds kTimeToEnd{500};  // once their input has ended
+  static constexpr std::chrono::milliseconds kTimeToEnd{500};  // after their input is closed
 
   std::unique_ptr<AskedProcess> Take() const {
     {
@@ -99,7 +100,7 @@ class ProcessEstimator : public MotionEstimator {
   std::string command_;
   double timeout_s_;
   mutable ProcessKeeper keeper_;  // outlives the processes
-  mutable std::mutex mutex_;      // of idle_
+  mutable std::mutex mutex_;      // guards idle_
   mutable std::vector<std::unique_ptr<AskedProcess>> idle_;
 };
 
@@ -120,7 +121,7 @@ class ProcessModel : public EstimatorModel {
   double timeout_s_ = 10.0;
 };
 
-// Of noise-free matches, the second camera a tenth of the greatest depth to the right.
+// A problem of noise-free matches; the second camera is a tenth of the greatest depth to the right.
 MotionProblem MakeFirstProblem() {
   const Camera camera{500.0, 500.0, 319.5, 239.5, 640, 480};
   MotionProblem problem;
@@ -134,7 +135,7 @@ MotionProblem MakeFirstProblem() {
   return problem;
 }
 
-// Of a file of answers; `rcme export` writes no more problems.
+// Limits of a file of answers; `rcme export` writes at most this many problems.
 constexpr size_t kMaxFileBytes = size_t{1} << 31, kMaxLineBytes = size_t{16} << 20, kMaxAnswers = 1'000'000;
 
 struct AnswersFile {
@@ -142,14 +143,14 @@ struct AnswersFile {
   std::string digest;
 };
 
-// The next bytes; a read that fails is no end of the file.
+// Reads the next bytes; throws if a read fails, which is not the end of the file.
 size_t BytesFrom(std::ifstream* file, const std::string& path, char* buffer, size_t size) {
   file->read(buffer, static_cast<std::streamsize>(size));
   if (file->bad()) throw InputError(fmt::format("answers: {} cannot be read", Quoted(path)));
   return static_cast<size_t>(file->gcount());
 }
 
-// Throws InputError that names the line: no answer, no id, an id that stands twice.
+// Throws InputError that names the line without a valid answer, without an id, or with a duplicate id.
 std::shared_ptr<const AnswersFile> ReadAnswers(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
@@ -221,7 +222,7 @@ class AnswersModel : public EstimatorModel {
 std::string DigestOfAnswers(const std::string& path) { return ReadAnswers(path)->digest; }
 
 void RequireCommandAnswers(const std::string& command, double timeout_s) {
-  constexpr double kLongStart_s = 10.0;  // who has not ended by then has started
+  constexpr double kLongStart_s = 10.0;  // a process that has not ended by then counts as started
   constexpr int kNumTries = 2;
   std::string end;
   for (int i = 0; i < kNumTries; ++i) {

@@ -16,7 +16,7 @@
 namespace rcme {
 namespace {
 
-// As in the family of `standard` by default.
+// The default of the RANSAC family.
 constexpr double kSignificanceLevel = 0.05;
 
 MotionEstimate RefuseBecause(MotionStatus status, std::string message) {

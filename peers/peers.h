@@ -1,8 +1,8 @@
 // The estimators that AddPeers adds, one file each, with their options.
 //
-// A threshold is given in standard deviations of what is compared with it, `threshold_sigma`: of the match's
-// distance from the motion's epipolar lines in the measure of the library, for noise of sigma in every
-// coordinate, to first order. So 2 keeps 95 % of the true matches whatever the library calls a distance.
+// `threshold_sigma` gives a threshold in standard deviations of the quantity that the library compares with
+// it: the library's measure of a match's distance from the epipolar lines, for noise of sigma in every
+// coordinate, to first order. A value of 2 thus keeps 95 % of the true matches for every library.
 #pragma once
 
 #include <memory>

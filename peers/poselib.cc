@@ -1,5 +1,5 @@
-// PoseLib's relative pose: LO-RANSAC over five-point samples, then refinement over the inliers. Not a Debian
-// package: built where CMake finds it.
+// PoseLib's relative pose: LO-RANSAC over five-point samples, then refinement over the inliers. PoseLib is
+// not a Debian package; this is built if CMake finds it.
 #include <PoseLib/poselib.h>
 
 #include "peers/peer_call.h"
@@ -20,14 +20,14 @@ poselib::Camera MakePoseLibCamera(const Camera& camera) {
   return {"PINHOLE", {camera.fx, camera.fy, camera.cx, camera.cy}, camera.width, camera.height};
 }
 
-// The type of the options of estimate_relative_pose: RansacOptions (and BundleOptions after it) up to 2.0.5,
-// later RelativePoseOptions, which hold both.
+// The type of the options of estimate_relative_pose: RansacOptions (followed by BundleOptions) up to 2.0.5,
+// later RelativePoseOptions, which contain both.
 template <typename Points, typename PoseLibCamera, typename Options, typename... Rest>
 Options DeduceOptions(poselib::RansacStats (*)(const Points&, const Points&, const PoseLibCamera&,
                                                const PoseLibCamera&, const Options&, Rest...));
 using CallOptions = decltype(DeduceOptions(&poselib::estimate_relative_pose));
 
-// PoseLib compares with the threshold the Sampson distance in pixels of the mean focal length, whose standard
+// PoseLib compares the threshold with the Sampson distance in pixels of the mean focal length, whose standard
 // deviation is sigma.
 template <typename Options>
 Options OptionsFor(const PoseLibOptions& options, double sigma_px, std::uint32_t seed) {

@@ -21,8 +21,8 @@
 namespace rcme {
 namespace {
 
-constexpr size_t kMaxCommandBytes = size_t{1} << 17;  // longer ones Linux does not take (MAX_ARG_STRLEN)
-constexpr int kRequests = 3;                          // the keeper's end
+constexpr size_t kMaxCommandBytes = size_t{1} << 17;  // Linux accepts no longer ones (MAX_ARG_STRLEN)
+constexpr int kRequests = 3;                          // file descriptor of the keeper's end
 constexpr std::chrono::seconds kKeeperTimeToKill{2};
 
 [[noreturn]] void ThrowNoProcess(const char* what) {
@@ -32,7 +32,7 @@ constexpr std::chrono::seconds kKeeperTimeToKill{2};
 
 using Files = std::array<int, 3>;  // input and output of the shell, its supervisor's end of the lifeline
 
-// A message with the three of them.
+// A message that carries the three files.
 struct Request {
   explicit Request(void* bytes, size_t size) : text{bytes, size} {
     header.msg_iov = &text;
@@ -45,12 +45,12 @@ struct Request {
   msghdr header{};
 };
 
-// What follows, down to Keep, runs in forks of a program that may have threads: system calls only, no memory
-// is allocated.
+// The functions down to Keep run in forks of a program that may have threads: they use system calls only and
+// allocate no memory.
 
 [[noreturn]] void RunShell(const char* command, const Files& files) {
   setpgid(0, 0);
-  prctl(PR_SET_PDEATHSIG, SIGKILL);  // of the supervisor
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // when the supervisor ends
   dup2(files[0], STDIN_FILENO);
   dup2(files[1], STDOUT_FILENO);
   for (const int number : {SIGPIPE, SIGXFSZ, SIGINT, SIGTERM}) signal(number, SIG_DFL);
@@ -61,11 +61,11 @@ struct Request {
   _exit(127);
 }
 
-// Sends SIGKILL to every child. False: the system does not tell which there are.
+// Sends SIGKILL to every child. False if the system does not list the children.
 bool KillChildren() {
   const int file = open("/proc/thread-self/children", O_RDONLY | O_CLOEXEC);
   if (file < 0) return false;
-  std::array<char, 4096> digits;  // the rest is listed once these are gone
+  std::array<char, 4096> digits;  // the others are listed once these are gone
   const ssize_t count = read(file, digits.data(), digits.size());
   close(file);
   pid_t child = 0;
@@ -75,13 +75,13 @@ bool KillChildren() {
       child = 10 * child + (digit - '0');
       continue;
     }
-    if (child > 0) kill(child, SIGKILL);  // not reaped yet, so nobody else has the number
+    if (child > 0) kill(child, SIGKILL);  // not reaped yet, so the number is not reused
     child = 0;
   }
   return true;
 }
 
-// Kills the children, then theirs, who are ours as soon as their parents have ended, until none is left.
+// Kills the children until none is left. Grandchildren become children as soon as their parents have ended.
 void EndDescendants(pid_t shell) {
   while (true) {
     if (!KillChildren() && shell > 0) kill(-shell, SIGKILL);
@@ -94,7 +94,7 @@ void EndDescendants(pid_t shell) {
   }
 }
 
-// Reaps who has ended and passes on how the shell did. False: nobody is left.
+// Reaps ended children and passes on the status of the shell. False: no child is left.
 bool ReapEnded(pid_t shell, int lifeline) {
   int status = 0;
   pid_t ended = 0;
@@ -128,15 +128,15 @@ bool ReapEnded(pid_t shell, int lifeline) {
   _exit(0);
 }
 
-// No signal of ours, no terminal, no files but the requests and standard error.
+// Detaches from the program's signals, terminal and files, except for the requests and standard error.
 void LeaveProgram(int requests) {
   setsid();
   sigset_t all;
   sigfillset(&all);
   sigprocmask(SIG_SETMASK, &all, nullptr);
-  signal(SIGCHLD, SIG_IGN);  // supervisors are not waited for
+  signal(SIGCHLD, SIG_IGN);  // supervisors need no waitpid
   prctl(PR_SET_NAME, "process-keeper");
-  prctl(PR_SET_CHILD_SUBREAPER, 1);  // where a supervisor is killed
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // adopts descendants of a killed supervisor
   dup3(requests, kRequests, O_CLOEXEC);
   if (close_range(kRequests + 1, ~0U, 0) != 0) {
     for (int file = kRequests + 1; file < 65536; ++file) close(file);
@@ -183,7 +183,7 @@ int ProcessKeeper::Start(const std::string& command, int input, int output) {
   const std::lock_guard lock(mutex_);
   try {
     if (requests_ < 0) Fork();
-    if (!Send(command, files)) {  // somebody has killed the keeper
+    if (!Send(command, files)) {  // the keeper was killed
       close(requests_);
       waitpid(keeper_, nullptr, WNOHANG);
       Fork();
@@ -216,7 +216,7 @@ void ProcessKeeper::Fork() {
 
 bool ProcessKeeper::Send(const std::string& command, const Files& files) {
   std::string text = command;
-  Request request(text.data(), text.size() + 1);  // with the zero that ends it
+  Request request(text.data(), text.size() + 1);  // with the terminating zero
   cmsghdr* control = CMSG_FIRSTHDR(&request.header);
   control->cmsg_level = SOL_SOCKET;
   control->cmsg_type = SCM_RIGHTS;

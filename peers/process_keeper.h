@@ -1,12 +1,11 @@
-// Starts commands such that nothing of them outlives this program, however it ends.
+// Starts commands such that no process of theirs outlives this program, however it ends.
 //
-//   this program -> keeper -> supervisor -> sh -c command -> whatever it starts
+//   this program -> keeper -> supervisor -> sh -c command -> its descendants
 //
-// The keeper is forked once. It forks a supervisor for each command, so that no copy of a large program is
-// made for every start. A supervisor holds one end of a lifeline, this program the other. Once the lifeline
-// is closed, also by a SIGKILL of this program, the supervisor kills all that its command has started: as
-// subreaper of its descendants (prctl(2)) it is the parent of those whose own parents have ended, in whatever
-// session they are.
+// The keeper is forked once and forks a supervisor for each command, so a large program is not copied for
+// every start. A supervisor holds one end of a lifeline, this program the other. When the lifeline closes,
+// also by a SIGKILL of this program, the supervisor kills all descendants of its command. As subreaper
+// (prctl(2)) it becomes the parent of descendants whose own parents have ended, in whatever session they are.
 #pragma once
 
 #include <sys/types.h>
@@ -19,22 +18,22 @@ namespace rcme {
 
 class ProcessKeeper {
  public:
-  ProcessKeeper() = default;  // forks with the first start: working directory and environment are of then
-  ~ProcessKeeper();           // kills all that is left
+  ProcessKeeper() = default;  // forks at the first Start, with the environment of then
+  ~ProcessKeeper();           // kills all remaining processes
   ProcessKeeper(const ProcessKeeper&) = delete;
   ProcessKeeper& operator=(const ProcessKeeper&) = delete;
 
-  // Starts `sh -c command` with these standard streams, its messages where ours go, in a process group of its
-  // own, signals as a new program expects them. Gives the lifeline, which is to be closed: it sends the
-  // shell's status of waitpid as an int when the shell ends, and ends when nothing is left of all that it
-  // started. Throws NoOutsideAnswer (no_answer) if the system has no process to give.
+  // Starts `sh -c command` with these standard streams, the program's standard error, its own process group
+  // and default signal handling. Returns the lifeline, which the caller must close. It sends the shell's
+  // waitpid status as an int when the shell ends, and closes when all descendants have ended. Throws
+  // NoOutsideAnswer (no_answer) if the system cannot start a process.
   int Start(const std::string& command, int input, int output);
 
  private:
   void Fork();
   bool Send(const std::string& command, const std::array<int, 3>& files);
 
-  std::mutex mutex_;   // of what follows
+  std::mutex mutex_;   // guards the members below
   int requests_ = -1;  // -1: there is no keeper
   pid_t keeper_ = -1;
 };

@@ -23,7 +23,7 @@ cv::Matx33d CvMatrix(const Eigen::Matrix3d& matrix) {
 
 std::optional<PeerAnswer> RecoverPose(const MotionProblem& problem, const cv::Mat& E, const cv::Mat& mask,
                                       double max_depth) {
-  CvPoints rays;  // with two different K, only these are what recoverPose can take
+  CvPoints rays;  // recoverPose takes a single K, so give it rays
   for (const Correspondence& match : problem.matches) {
     const Eigen::Vector3d ray1 = problem.camera1.Ray(match.x1_px), ray2 = problem.camera2.Ray(match.x2_px);
     rays.image1.emplace_back(ray1.x(), ray1.y());

@@ -35,7 +35,7 @@ using namespace py::literals;
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// A motion as Python has it: pose_cov is 6x6, of [w, dt] (peers/outside_answer.h).
+// A motion for Python: pose_cov is 6x6, of [w, dt] (peers/outside_answer.h).
 struct PythonMotion {
   Eigen::Matrix3d R;
   Eigen::Vector3d t;
@@ -46,7 +46,8 @@ PythonMotion MakeMotion(const RelativePose& pose, const Matrix5d& pose_cov) {
   return {pose.R, pose.t, CovarianceWithTranslation(pose_cov, pose.t)};
 }
 
-// Without a direction nothing is known of t, in the covariance either; nothing where there is no motion.
+// The motion of an estimate; nullopt if there is none. If only the direction is missing, t and its
+// covariances are NaN.
 std::optional<PythonMotion> FindMotion(const MotionEstimate& estimate) {
   if (estimate.status == MotionStatus::kOk) return MakeMotion(estimate.cam2_from_cam1, estimate.pose_cov);
   if (estimate.status != MotionStatus::kDirectionNotObservable) return std::nullopt;
@@ -107,7 +108,7 @@ Lens MakeCamera(const std::string& model, const std::vector<double>& parameters,
   return MakeNamedLens(model, parameters, {width, height}, model);
 }
 
-// The first row at a pixel that no ray reaches.
+// The first row whose pixel no ray reaches.
 std::optional<py::ssize_t> FindUnreached(const Lens& camera, const Array& x_px) {
   if (camera.model == LensModel::kPinhole) return std::nullopt;
   for (py::ssize_t i = 0; i < x_px.shape(0); ++i) {
@@ -121,8 +122,8 @@ struct ChosenEstimator {
   std::unique_ptr<MotionEstimator> estimator;
 };
 
-// `file`: empty, or a path in place of the name. `functions`: what a name, or an option of the estimator, may
-// name beside the registered ones.
+// `file`: empty, or a path that replaces the name. `functions`: Python functions that the name, or an option
+// of the estimator, may refer to.
 ChosenEstimator MakeChosen(const std::string& name, const std::string& file, const Settings& options,
                            bool allow_process, const Functions& functions) {
   const FunctionsOfCall of_call(MakeFunctions(functions));
@@ -136,7 +137,7 @@ ChosenEstimator MakeChosen(const std::string& name, const std::string& file, con
   return {specs.front(), Make(specs.front())};
 }
 
-// Undistorted; every row has rays (FindUnreached).
+// The undistorted problem; every row must have rays (FindUnreached).
 MotionProblem MakeProblem(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2,
                           double sigma_px, std::vector<double> noise_scale) {
   MotionProblem problem{{}, {}, {}, sigma_px, std::move(noise_scale)};
@@ -145,8 +146,8 @@ MotionProblem MakeProblem(const Array& x1, const Array& x2, const Lens& camera1,
   return UndistortProblem(camera1, camera2, std::move(problem)).problem;
 }
 
-// Row-major and checked by the package; empty lists: not measured. `rotation`: R, then its covariance, rad^2;
-// `gravity`: in camera 1, in camera 2, standard deviation of both; `direction`: t, standard deviation.
+// Row-major and checked by the package; an empty list means not measured. `rotation`: R, then its covariance,
+// rad^2; `gravity`: in camera 1, in camera 2, standard deviation of both; `direction`: t, standard deviation.
 MotionPrior MakePrior(const std::vector<double>& rotation, const std::vector<double>& gravity,
                       const std::vector<double>& direction) {
   const auto vector = [](const std::vector<double>& numbers, size_t first) {
@@ -196,7 +197,7 @@ py::dict EstimatePair(const Array& x1, const Array& x2, const Lens& camera1, con
   return dict;
 }
 
-// Row i of an array is of pair i; NaN where nothing is known.
+// Arrays with one row per pair; NaN where a value is unknown.
 class AnswerArrays {
  public:
   AnswerArrays(size_t num_pairs, size_t num_bounds)
@@ -269,7 +270,7 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
   const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process, functions);
   const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
   AnswerArrays arrays(pairs.size(), bounds.size());
-  constexpr size_t kNumTogether = 2'000;  // of whose answers everything is held
+  constexpr size_t kNumTogether = 2'000;  // number of pairs whose full answers are in memory at a time
   for (size_t begin = 0; begin < pairs.size(); begin += kNumTogether) {
     const std::span block = std::span(pairs).subspan(begin, std::min(kNumTogether, pairs.size() - begin));
     std::vector<MotionProblem> problems;

@@ -1,4 +1,4 @@
-// One motion from one problem: `Camera` and `estimate`.
+// Binds `Camera` and `estimate`: one motion from one problem.
 #pragma once
 
 #include <pybind11/pybind11.h>

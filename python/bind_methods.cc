@@ -33,7 +33,7 @@ namespace {
 namespace py = pybind11;
 using namespace py::literals;
 
-// Checks have threads of their own: one at a time.
+// One check at a time, since checks start threads of their own.
 Audit AuditInMemory(const std::vector<Claim>& all, const AuditOptions& options) {
   Runner runner = Runner::InMemory(PlanAuditChecks(PlanAudit(all, options)), 1);
   return RunAudit(all, options, &runner);
@@ -49,7 +49,8 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
   if (source.path.empty() && source.text.empty()) {
     options.seed = source.seed < 0 ? 1 : static_cast<std::uint64_t>(source.seed);
     options.conditions = ResolveCaseSettings({});
-    return RunStoppable([&] { return MakeAuditResult(AuditInMemory(AllClaims(EstimatorRegistry()), options)).json; });
+    return RunStoppable(
+        [&] { return MakeAuditResult(AuditInMemory(AllClaims(EstimatorRegistry()), options)).json; });
   }
   const Study study = LoadSourceStudy(AddFunctions(source, functions));
   RequireCases(study);
@@ -61,7 +62,7 @@ std::string AuditJson(const StudySource& source, const Functions& functions,
   return RunStoppable([&] { return MakeAuditResult(AuditInMemory(StudyClaims(plan), options)).json; });
 }
 
-// The report of a calibration as JSON, and the file: empty for a check of the file `check`.
+// The report of a calibration as JSON, and the file; the file is empty when checking the file `check`.
 py::dict Conform(const StudySource& source, const Functions& functions, const std::string& label,
                  const ConformPromise& promise, const std::string& new_problem, const std::string& models,
                  const std::string& check, int threads) {
@@ -97,7 +98,8 @@ py::dict Conform(const StudySource& source, const Functions& functions, const st
   return py::dict("json"_a = ConformAsJson(report), "file"_a = file);
 }
 
-// The tuning as JSON, and the tuned estimator's file: empty where none is certified, with the reason why.
+// The tuning as JSON, and the file of the tuned estimator; the file is empty if no setting is certified, and
+// `why` says why.
 py::dict TuneStudy(const StudySource& source, int threads) {
   const Study study = LoadSourceStudy(source);
   if (!study.tuning) throw InputError(source.Name() + ": has no block 'tune' (estimator, target, options)");

@@ -1,4 +1,4 @@
-// What studies say of estimators beside their runs: `audit_json`, `tune` and `conform`.
+// Binds `audit_json`, `tune` and `conform`.
 #pragma once
 
 #include <pybind11/pybind11.h>

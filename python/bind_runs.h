@@ -1,4 +1,4 @@
-// Runs of studies, and the tables of their results: `run`, `summary_csv`, `comparison_csv`,
+// Binds runs of studies and the tables of their results: `run`, `summary_csv`, `comparison_csv`,
 // `reliability_json`.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The conditions of a study, and the matches of a simulated trial: `conditions` and `simulate`.
+// Binds `conditions`, the conditions of a study, and `simulate`, the matches of a simulated trial.
 #pragma once
 
 #include <pybind11/pybind11.h>

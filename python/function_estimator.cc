@@ -19,7 +19,7 @@ namespace py = pybind11;
 
 constexpr const char* kNone = "none";
 
-// Objects of Python are let go with the interpreter's lock held, whoever holds them last.
+// Deletes Python objects with the interpreter's lock held, whichever thread holds the last reference.
 struct LetGo {
   void operator()(py::function* function) const {
     const py::gil_scoped_acquire lock;
@@ -34,13 +34,13 @@ struct NamedFunction {
 };
 using NamedFunctions = std::map<std::string, NamedFunction>;
 
-// Never destroyed: at the end of a program the interpreter may be gone before.
+// Never destroyed, since the interpreter may end before static objects do.
 NamedFunctions& RunningFunctions() {
   static auto& functions = *new NamedFunctions();
   return functions;
 }
 
-// Of FunctionsOfCall.
+// The functions of FunctionsOfCall.
 NamedFunctions& FunctionsOfThread() {
   thread_local NamedFunctions functions;
   return functions;
@@ -51,7 +51,7 @@ void AddTo(NamedFunctions* named, const std::map<std::string, PythonFunction>& f
     (*named)[name] = {SharedFunction(new py::function(function.call), LetGo()), function.code};
 }
 
-// Null: nobody has given it.
+// Null if there is no such function.
 const NamedFunction* FindFunction(const std::string& name) {
   for (const NamedFunctions* functions : {&FunctionsOfThread(), &RunningFunctions()}) {
     if (const auto found = functions->find(name); found != functions->end()) return &found->second;
@@ -84,7 +84,7 @@ OutsideAnswer AnswerIn(const py::dict& fields) {
   return answer;
 }
 
-// Calls of several threads wait for each other: the interpreter has one lock.
+// Calls of several threads run one after the other, since the interpreter has a single lock.
 class FunctionEstimator : public MotionEstimator {
  public:
   explicit FunctionEstimator(SharedFunction function) : function_(std::move(function)) {}

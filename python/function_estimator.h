@@ -1,5 +1,4 @@
-// Estimators written in Python, beside those of the registry: the entry `python`, whose option names a
-// function.
+// Estimators written in Python: the registry entry `python`, whose option names a function.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,19 +13,19 @@
 
 namespace rcme {
 
-// Adds the entry `python` to the table; once, before anything reads it.
+// Adds the entry `python` to the registry. Call it once, before anything reads the registry.
 void AddPythonEstimator();
 
-// A function as the module's Python half hands it over (python/rcme/_function.py): it takes (x1, x2, camera1,
-// camera2, sigma_px, noise_scale, seed) and returns a dict of the fields of an OutsideAnswer, whatever the
-// user's own function does.
+// A function as python/rcme/_function.py passes it: it takes (x1, x2, camera1, camera2, sigma_px,
+// noise_scale, seed) and returns a dict with the fields of an OutsideAnswer, whatever the user's own function
+// returns.
 struct PythonFunction {
   pybind11::function call;
-  std::string code;  // a hash of its source: a changed function is another estimator
+  std::string code;  // hash of its source: a changed function is another estimator
 };
 
-// While one lives, studies can name these functions. One at a time; made and destroyed with the interpreter's
-// lock held.
+// While an object lives, studies can name these functions. At most one at a time; constructed and destroyed
+// with the interpreter's lock held.
 class FunctionsOfRun {
  public:
   explicit FunctionsOfRun(const std::map<std::string, PythonFunction>& functions);
@@ -35,8 +34,8 @@ class FunctionsOfRun {
   FunctionsOfRun& operator=(const FunctionsOfRun&) = delete;
 };
 
-// While one lives, this thread alone makes estimators of these functions, also in the midst of a run that has
-// others of the same names. Made and destroyed with the interpreter's lock held.
+// While an object lives, its thread alone can make estimators of these functions, even during a run that has
+// others of the same names. Constructed and destroyed with the interpreter's lock held.
 class FunctionsOfCall {
  public:
   explicit FunctionsOfCall(const std::map<std::string, PythonFunction>& functions);
@@ -45,15 +44,15 @@ class FunctionsOfCall {
   FunctionsOfCall& operator=(const FunctionsOfCall&) = delete;
 };
 
-// The estimator of a study that calls the function, labelled by its name.
+// The estimator of a study that calls this function, labelled with the function's name.
 EstimatorSpec SpecOfFunction(const std::string& name, const std::string& code);
 
-// What functions of Python get, and what `simulate` gives: N x 2 arrays (px), and a camera as a dict of
-// PoseLib and pycolmap {model, width, height, params}.
+// The arguments of Python functions and the results of `simulate`: N x 2 arrays (px), and a camera as the
+// dict of PoseLib and pycolmap {model, width, height, params}.
 pybind11::object MakePoints(const std::vector<Correspondence>& matches,
                             Eigen::Vector2d Correspondence::*point);
 pybind11::dict MakeDict(const Camera& camera);
 pybind11::object MakeArray(const Eigen::MatrixXd& matrix);
-pybind11::object ScalesOrNone(const MotionProblem& problem);  // None: all matches are alike
+pybind11::object ScalesOrNone(const MotionProblem& problem);  // None: the noise is equal for all matches
 
 }  // namespace rcme

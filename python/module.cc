@@ -1,5 +1,5 @@
-// The half of the Python package that is C++: rcme._rcme. It takes what python/rcme/*.py has checked;
-// docstrings for people are there.
+// The C++ part of the Python package, rcme._rcme. Its arguments were checked by python/rcme/*.py, which also
+// has the docstrings for users.
 #include <glog/logging.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -41,7 +41,7 @@ py::list Estimators() {
 }  // namespace
 
 PYBIND11_MODULE(_rcme, module) {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary; outcomes have names here
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary
   NameProgram("rcme_python");
   AddPeers();
   AddOutsideEstimators();

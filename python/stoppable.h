@@ -10,8 +10,8 @@
 
 namespace rcme {
 
-// Signals are requests to stop while any call of Python works: threads of Python may call at a time, and a
-// function of Python that is called may call in turn.
+// While an object lives, signals are stop requests. Several may live at a time: Python threads may call in
+// parallel, and a Python function called from a call may call again.
 class StopShared {
  public:
   StopShared() {
@@ -22,7 +22,7 @@ class StopShared {
     const std::scoped_lock lock(mutex_);
     if (--num_users_ > 0) return;
     stop_.reset();
-    stop_signal = 0;  // the next call is not stopped by it
+    stop_signal = 0;  // does not stop the next call
   }
   StopShared(const StopShared&) = delete;
   StopShared& operator=(const StopShared&) = delete;
@@ -33,7 +33,7 @@ class StopShared {
   static inline std::optional<StopOnSignals> stop_;
 };
 
-// Work that may be stopped: Ctrl-C is an exception of Python once what is in hand is kept.
+// Runs work that may be stopped: Ctrl-C becomes a Python exception after the finished part is saved.
 template <typename Work>
 auto RunStoppable(Work work) {
   const StopShared stop;

@@ -60,8 +60,8 @@ void BindStudySource(py::module_& module) {
              EstimatorSpec spec = DefaultEstimator(name);
              SetOwnOptions(&spec, options);
              if (!label.empty()) spec.label = label;
-             // Throws where two options contradict each other. What one conforms may be a function, or a
-             // command that nobody has allowed yet: the plan makes it.
+             // Throws if two options contradict each other. The estimator that `conform` wraps may be a
+             // function, or a command that is not permitted yet, so it is made by the plan instead.
              if (spec.name != kConformEstimator) Make(spec);
              source.added.push_back(spec);
            })

@@ -1,4 +1,4 @@
-// The study of a call: `StudySource`, and the functions that are estimators of it.
+// Binds `StudySource`, the study of a call, with Python functions as estimators.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -14,26 +14,26 @@
 
 namespace rcme {
 
-// A study and what a call changes in it. One that is no file is a text, whose messages call it `study`.
+// A study and the changes that a call makes to it. It is a file, or a text that messages call `study`.
 struct StudySource {
   std::string path, text;
   Settings overrides;
-  std::int64_t seed = -1, trials = 0;  // the study's own
+  std::int64_t seed = -1, trials = 0;  // defaults: those of the study
   std::vector<EstimatorSpec> added;
-  bool allow_process = false;  // the commands of the study and of estimator files (command_permission.h)
+  bool allow_process = false;  // allows commands in the study and in estimator files (command_permission.h)
   std::string Name() const { return path.empty() ? "study" : path; }
 };
 
-// Throws InputError as ParseStudy and LoadStudy, also for a label that the study has already.
+// Throws InputError like ParseStudy and LoadStudy, and for a label that the study already has.
 Study LoadSourceStudy(const StudySource& source);
 StudyPlan MakeSourcePlan(const StudySource& source, PlanEstimators estimators);
 
-// By name: the function, and a hash of its source.
+// Name -> function and hash of its source.
 using Functions = std::map<std::string, std::pair<pybind11::function, std::string>>;
 
 std::map<std::string, PythonFunction> MakeFunctions(const Functions& given);
 
-// The source with the functions as estimators, in front of those that it adds by name.
+// The source with the functions as estimators, before the estimators that it adds by name.
 StudySource AddFunctions(StudySource source, const Functions& functions);
 
 void BindStudySource(pybind11::module_& module);
