@@ -129,9 +129,9 @@ AsPrintedTest::AsPrintedTest(const UncertainFundamental& model, double sigma_px)
 //
 //   d2 = g^2 n2 / c,   det Sigma_delta = g^6 det(W'QW) c / n2^8.
 //
-// Nothing is divided by g, and W'QW stays regular where the motion is known (Sigma_p = 0) and the 4x4 matrix
-// has lost its digits. There, d2 = (|x1 - e1|^2 + |x2 - e2|^2) / sigma^2, e1 and e2 the epipoles: it does not
-// depend on the residual at all.
+// There is no division by g. If the motion is known (Sigma_p = 0), W'QW stays regular while the 4x4 matrix is
+// singular up to rounding. Then d2 = (|x1 - e1|^2 + |x2 - e2|^2) / sigma^2, e1 and e2 the epipoles,
+// independent of the residual.
 double AsPrintedTest::Distance(const Correspondence& match, PointResidual* residual) const {
   const EpipolarConstraint c = EvaluateConstraint(model_.F, match);
   const ConstraintSpread spread = SpreadOfConstraint(model_, c, sigma2_, H_, point_noise_, match);

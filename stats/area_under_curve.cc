@@ -78,7 +78,7 @@ double ComputePlacementCovariance(const std::vector<Placements>& positives,
 
 // Student's interval on the log odds of an area whose estimate, not 0 or 1, has this variance.
 Interval LogOddsInterval(double area, double variance, double degrees_of_freedom, double confidence) {
-  const boost::math::students_t law(degrees_of_freedom);  // which need not be whole
+  const boost::math::students_t law(degrees_of_freedom);  // a fractional number is allowed
   const double half = quantile(law, 0.5 * (1.0 + confidence)) * std::sqrt(variance) / (area * (1.0 - area));
   const double log_odds = std::log(area / (1.0 - area));
   return {1.0 / (1.0 + std::exp(half - log_odds)), 1.0 / (1.0 + std::exp(-half - log_odds))};
@@ -87,7 +87,7 @@ Interval LogOddsInterval(double area, double variance, double degrees_of_freedom
 Interval ComputeAreaInterval(double area, const std::vector<Placements>& positives,
                              const std::vector<Placements>& negatives, double confidence) {
   const ClusterMean p(positives, 0.5), n(negatives, 0.5);
-  const double least = std::min(p.num_clusters, n.num_clusters);  // one more than there are
+  const double least = std::min(p.num_clusters, n.num_clusters);  // includes the added cluster
   if (least < 3.0) return {0.0, 1.0};
   if (area == 0.0 || area == 1.0) {
     const double num_pairs = std::min(least - 1.0, std::floor(0.5 * static_cast<double>(positives.size())));

@@ -3,8 +3,8 @@
 // A bootstrap sample draws m conditions with replacement from the m measured ones, so trials of one condition
 // stay together (Davison & Hinkley 1997, 3.8). The standard error is the standard deviation of the statistic
 // over such samples, its variance times m / (m - 1) to correct for the loss from few conditions. The interval
-// is Student's with m - 1 degrees of freedom. Bootstrap quantiles, BCa included, cover less: with 6
-// conditions there are only 462 different samples in their tails. For a statistic that chance moves in one
+// is Student's with m - 1 degrees of freedom. Bootstrap quantiles, BCa included, cover less: 6 conditions
+// have only 462 different samples, too few for their tails. For a statistic that chance moves in one
 // direction, such as the expected calibration error, they do not contain the truth at all.
 #pragma once
 

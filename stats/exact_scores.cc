@@ -9,7 +9,7 @@
 namespace rcme {
 namespace {
 
-constexpr std::int64_t kWhole = std::int64_t{1} << 26;  // 2^63 / kWhole: of 1.4e11 scores
+constexpr std::int64_t kWhole = std::int64_t{1} << 26;  // 2^63 / kWhole = 1.4e11 scores fit without overflow
 constexpr int kNumSteps = ScoreMean::kNumSteps;
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace rcme {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-constexpr hn::CappedTag<double, 1> kOneLane;  // of the baseline: one lane needs no better
+constexpr hn::CappedTag<double, 1> kOneLane;  // of the baseline instruction set, enough for one lane
 
 }  // namespace
 

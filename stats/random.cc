@@ -42,7 +42,7 @@ double RandomStream::Normal() {
 }
 
 void RandomStream::FillUniform(std::span<double> uniforms) {
-  // What the buffer still holds, then whole vectors past the buffer, then the rest from a new buffer.
+  // First the rest of the buffer, then whole vectors past the buffer, then the remainder from a new buffer.
   while (!uniforms.empty() && num_used_ < 2 * kNumPairs) {
     uniforms.front() = Uniform();
     uniforms = uniforms.subspan(1);

@@ -26,7 +26,7 @@ std::vector<ReliabilityStep> ReliabilityCurve(std::span<const Forecast> forecast
 struct BrierDecomposition {
   double brier = 0.0;           // S
   double miscalibration = 0.0;  // S - S_C >= 0: the gain by recalibration
-  double discrimination = 0.0;  // S_R - S_C >= 0: the gain by the recalibrated forecasts
+  double discrimination = 0.0;  // S_R - S_C >= 0: the gain of the recalibrated forecasts over the constant
   double uncertainty = 0.0;     // S_R = share (1 - share): independent of the forecasts
 };
 BrierDecomposition DecomposeBrierScore(std::span<const Forecast> forecasts);

@@ -32,7 +32,7 @@ double ConvexHullArea(std::vector<Eigen::Vector2d> points) {
         hull.pop_back();
       hull.push_back(point);
     }
-    hull.pop_back();  // where the other side begins
+    hull.pop_back();  // the first point of the other side
     std::ranges::reverse(points);
   }
   double twice_area = 0.0;

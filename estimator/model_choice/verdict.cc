@@ -109,7 +109,7 @@ double ComputeModelChance(TwoViewModel model, const MotionProblem& problem, cons
   return ChanceOfAgreementInEllipse(problem, threshold, MeanRootDeterminant(problem, fits[model].matrix));
 }
 
-// How many of the inliers lie beyond the chi2_2 quantile of the rotation that fits them best.
+// The number of inliers beyond the chi2_2 quantile of the rotation that fits the inliers best.
 int CountParallax(const MotionProblem& problem, const std::vector<int>& inliers, const Eigen::Matrix3d& R,
                   double significance_level) {
   const ReferenceMatches matches(problem, RefinementError::kSampson);

@@ -32,7 +32,7 @@ inline constexpr std::array<SceneVerdict, 4> kSceneVerdicts = {SceneVerdict::kGe
 const std::string& Name(SceneVerdict verdict);
 
 enum class ModelCriterion {
-  kOrbSlam2,  // orb_slam2.h; without a rotation model: its verdict is then too_little_parallax
+  kOrbSlam2,  // orb_slam2.h; has no rotation model: a pure rotation is too_little_parallax
   kAic,       // criteria.h
   kGic,
   kGric,

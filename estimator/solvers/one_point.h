@@ -27,7 +27,7 @@ class OnePoint {
   static constexpr int kSampleSize = 1;
   static constexpr int kMaxModels = 1;
   static constexpr SolverCase kCase = SolverCase::kExact;
-  static constexpr int kSampleTestDof = 0;  // the motion fits its sample: nothing is left to test
+  static constexpr int kSampleTestDof = 0;  // the motion fits its sample exactly
   using Rays = std::array<Eigen::Vector3d, kSampleSize>;
   using Model = MinimalModel<kSampleSize>;
 
