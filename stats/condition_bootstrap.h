@@ -26,7 +26,7 @@ enum class ChanceBias {
   // For a sum of distances from 0, which chance increases. Let b be the mean of the bootstrap minus the
   // value. If all true distances are 0, the value is pure bias, a sum of |e|. The bootstrap's is one of |e +
   // e'| with e' equally large, sqrt(2) times the value, so b is (sqrt(2) - 1) of the bias. The bias is
-  // therefore at most (1 + sqrt(2)) b; the lower end is reduced by that, but not below 0.
+  // therefore at most (1 + sqrt(2)) b; the lower end is reduced by that, but not below the range.
   kUpwards
 };
 

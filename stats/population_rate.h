@@ -21,8 +21,8 @@
 //   s = S' / (T' (1 - p')), kept to [s_0 / 2, 1], is the size of an event, in conditions,
 //   s_0 = M B / (p (1 - p)) that of a single trial, and N = (M + w) / s;
 //   upper end: the quantile of the beta law with the parameters p' N and (1 - p') N.
-// The share w is found from the data. With the greatest share above the mean, r = max a_i M (q_i - p), and
-// the effective number of conditions that had the event, c = p^2 / sum a_i^2 q_i^2,
+// The share w is found from the data. With the greatest share above the mean, r = max a_i M (q_i - p), kept
+// to [s_0, 1], and the effective number of conditions that had the event, c = p^2 / sum a_i^2 q_i^2,
 //   w = (1 + 3 / (c + 3)) / 2  r^(c / (c + 8 h)).
 // With many such conditions it is half of the greatest (as the beta law of Jeffreys' prior has half an
 // event); with few it is more than was seen, up to a condition that always has the event. h is near 0 if the

@@ -34,7 +34,7 @@ struct SplittingRate {
   double relative_spread = 0.0;  // standard deviation of the replicates over their mean
   Interval interval;             // stats/lognormal_mean.h; [0, 1] if undefined
   // The upper end of the exact interval from the initial particles alone. Failures of a kind to which no
-  // level leads may have any rate up to this and be missed, since none was drawn.
+  // level leads may have any rate up to this and be missed.
   double unseen_up_to = 1.0;
   std::int64_t num_values = 0;  // values computed, including the pilot's
   double least_acceptance = 1.0;

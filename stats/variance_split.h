@@ -27,11 +27,11 @@ struct VarianceSplit {
   double within_share = 0.0;
   // By default 95 %. Student's on the logarithm of the share by the delta method, after adding three scenes
   // in which the event happens always, never, and in half of the repeats (as Agresti & Coull add trials to a
-  // rate). Two exceptions: with fewer than 25 scenes of both outcomes the lower end is at most that from the
-  // exact bound of the share of such scenes (each has at least w = 1 / R); with fewer than 10 scenes in which
-  // the event happened at all, or in which it failed to, the interval is [0, 1]. The coverage is not exact:
-  // 0.93 to 1 if influential scenes are not much rarer than one in n; down to 0.85 where a sample contains
-  // none of them. Measured in tests/stats/variance_split_test.cc.
+  // rate), and widened to contain within_share. Two exceptions: with fewer than 25 scenes of both outcomes
+  // the lower end is at most that from the exact bound of the share of such scenes (each has at least w = 1 /
+  // R); with fewer than 10 scenes in which the event happened at all, or in which it failed to, the interval
+  // is [0, 1]. The coverage is not exact: 0.93 to 1 if influential scenes are not much rarer than one in n;
+  // down to 0.85 where a sample contains none of them. Measured in tests/stats/variance_split_test.cc.
   Interval within_share_interval{0.0, 1.0};
   std::int64_t num_mixed = 0;  // scenes in which the event happened in some repeats only
   Interval mixed_interval;     // of their share among all scenes: exact (Clopper-Pearson)
