@@ -121,9 +121,8 @@ struct MotionEstimate {
   LoopCounts counts;
 
   // From estimators that state probabilities; others leave NaN and empty lists.
-  double failure_probability =
-      std::numeric_limits<double>::quiet_NaN();  // error beyond the bounds in its options
-  double sigma_estimated_px = std::numeric_limits<double>::quiet_NaN();  // from the residuals
+  double failure_probability = std::numeric_limits<double>::quiet_NaN();  // error beyond the options' bounds
+  double sigma_estimated_px = std::numeric_limits<double>::quiet_NaN();   // from the residuals
   double sigma_estimated_sd_px = std::numeric_limits<double>::quiet_NaN();
   std::vector<double> inlier_probabilities;  // one per match
   std::vector<MotionMode> other_modes;       // the most likely first

@@ -63,9 +63,7 @@ class KnownPoseTest {
   KnownPoseTest(const Eigen::Matrix3d& F, double sigma_px) : F_(F), sigma2_(sigma_px * sigma_px) {}
   double Distance(const Correspondence& match, PointResidual* residual) const;
   double Entropy(const PointResidual&) const { return 0.0; }  // excess entropy of an exact motion
-  double NegativeLogLikelihood(const PointResidual&) const {
-    return 0.0;
-  }  // unused: `standard` selects by count
+  double NegativeLogLikelihood(const PointResidual&) const { return 0.0; }  // unused by `standard`
 
  private:
   Eigen::Matrix3d F_;

@@ -54,8 +54,7 @@ class OpenCvUsac : public MotionEstimator {
     params.confidence = options_.confidence;
     params.maxIterations = options_.max_iterations;
     params.isParallel = false;
-    params.randomGeneratorState =
-        static_cast<int>(rng.Next32() >> 2);  // room for the small numbers that USAC's parts add
+    params.randomGeneratorState = static_cast<int>(rng.Next32() >> 2);  // USAC adds small numbers to it
     SetLocalSamples(&params);
     const CvPoints points = ListPixels(problem);
     cv::Mat mask;

@@ -201,8 +201,7 @@ TwoViewMotion TwoViewInitializer::Estimate(const std::vector<cv::Point2f>& point
     RandomStream rng({.seed = setup_->seed});
     return MotionFrom(problem, setup_->estimator->Estimate(problem, rng),
                       setup_->greatest_failure_probability, setup_->integrity_risk, setup_->is_conformed);
-  } catch (const std::exception&
-               error) {  // out of memory or an internal error: the robot goes on without this pair
+  } catch (const std::exception& error) {  // the robot goes on without this pair
     return BadInput(fmt::format("internal error: {}", error.what()));
   }
 }

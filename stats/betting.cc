@@ -78,8 +78,8 @@ double LogCapital(const std::vector<CountedNumber>& numbers, double m, std::span
 bool IsCapitalAtLeast(double log_capital, const std::vector<CountedNumber>& numbers, double m,
                       std::span<const double> stakes, double scale) {
   const LogCapitals capitals(numbers, m, stakes, scale);
-  return capitals.most >= log_capital &&
-         capitals.LogOfMean() >= log_capital;  // the mean is at most the greatest
+  // Cheap test first: the mean is at most the greatest.
+  return capitals.most >= log_capital && capitals.LogOfMean() >= log_capital;
 }
 
 double GreatestExcluded(double mean, double distance, const std::function<bool(double)>& is_excluded) {

@@ -24,8 +24,7 @@ std::vector<size_t> ParetoFront(const std::vector<double>& first, const std::vec
   std::vector<size_t> order(first.size()), front;
   std::iota(order.begin(), order.end(), size_t{0});
   std::ranges::stable_sort(order, {}, [&](size_t i) { return std::pair(first[i], second[i]); });
-  double least_of_lower =
-      std::numeric_limits<double>::infinity();  // least second one of all with a smaller first one
+  double least_of_lower = std::numeric_limits<double>::infinity();  // second ones, at smaller first ones
   bool has_lower = false;
   for (size_t begin = 0, end = 0; begin < order.size(); begin = end) {
     const double least = second[order[begin]];  // least second one of those with this first one

@@ -57,8 +57,8 @@ struct ModelChoice {
   std::string message;  // one sentence for a person
   SceneVerdict verdict = SceneVerdict::kGeneral;
 
-  TwoViewModel model =
-      TwoViewModel::kEssential;  // the chosen model, of least score; of equal ones the smaller model
+  // The chosen model, of least score; of equal ones the smaller model.
+  TwoViewModel model = TwoViewModel::kEssential;
   // In the order of kTwoViewModels, in the criterion's own units; infinite: not compared.
   std::array<double, 3> scores{};
   int num_inliers = 0;          // of the chosen model, within the 99.9 % quantile

@@ -20,8 +20,7 @@ std::optional<RelativePose> Descend(const RelativePose& start, const MotionCost&
     if (!step.allFinite()) return std::nullopt;
     const RelativePose moved = Retract(pose, step);
     const double decrease = -0.5 * step.dot(at.gradient);
-    if (damping < 1.0 && decrease < cost.negligible_decrease)
-      return moved;  // taken without another evaluation
+    if (damping < 1.0 && decrease < cost.negligible_decrease) return moved;  // no further evaluation
     NormalEquations there = cost.linearize(moved);
     if (there.cost < at.cost) {
       pose = moved;

@@ -25,9 +25,8 @@ class EightPoint {
  public:
   static constexpr int kSampleSize = 8;
   static constexpr int kMaxModels = 1;
-  static constexpr SolverCase kCase =
-      SolverCase::kOverdetermined;          // f has 8 parameters, F has 7 degrees of freedom
-  static constexpr int kSampleTestDof = 3;  // 8 equations, 5 degrees of freedom
+  static constexpr SolverCase kCase = SolverCase::kOverdetermined;  // 8 parameters, F has 7 dof
+  static constexpr int kSampleTestDof = 3;                          // 8 equations, 5 degrees of freedom
   using Rays = std::array<Eigen::Vector3d, kSampleSize>;
   using Model = LinearModel;
   static ModelList<Model, kMaxModels> FindModels(const Rays& rays1, const Rays& rays2);

@@ -51,8 +51,7 @@ VisibleRay ClipToImage2(const ViewPair& view, const Eigen::Vector2d& x1_px) {
   }
   VisibleRay ray;
   ray.far_in_cam2 = P + w_far * Q;
-  ray.near_in_cam2 =
-      std::isinf(w_near) ? Q : P + w_near * Q;  // w_near is infinite if image 2 shows the epipole
+  ray.near_in_cam2 = std::isinf(w_near) ? Q : P + w_near * Q;  // infinite: image 2 shows the epipole
   ray.far_px = view.camera2.Project(ray.far_in_cam2);
   ray.near_px = view.camera2.Project(ray.near_in_cam2);
   return ray;
