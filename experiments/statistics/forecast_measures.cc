@@ -65,8 +65,10 @@ class ClusterCounts {
   }
   std::int64_t n() const { return n_; }
   std::int64_t num_events() const { return num_events_; }
+  // Exact if each trial is a cluster of its own and not the draw of a population.
   Interval FindInterval(bool is_of_population) const {
-    if (!is_of_population) return ExactBinomialInterval(num_events_, n_);
+    const bool is_independent = std::ssize(of_cluster_) == n_;
+    if (is_independent && !is_of_population) return ExactBinomialInterval(num_events_, n_);
     std::vector<ConditionCount> counts;
     for (const auto& [cluster, of_cluster] : of_cluster_) counts.push_back(of_cluster);
     return MeasurePopulationRate(counts, ConditionWeights::kByTrials).interval;

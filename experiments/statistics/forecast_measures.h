@@ -46,8 +46,8 @@ struct ForecastMeasures {
   // The number of answers with a probability of at most kSureBelow, and how many of them failed.
   std::int64_t num_sure = 0, num_sure_failed = 0;
   // Intervals of num_sure_failed among num_sure, and of num_sure among all trials: for the population
-  // (population_rate.h), or exact. If scenes are repeated, the exact intervals are too narrow, as they treat
-  // all trials as independent.
+  // or for repeated scenes with the trials of a draw or a scene as one cluster (population_rate.h), else
+  // exact.
   Interval sure_failed_interval, sure_interval;
 
   std::int64_t num_trials() const { return n + num_refused; }

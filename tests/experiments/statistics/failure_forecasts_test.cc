@@ -234,6 +234,22 @@ TEST_F(FailureForecastsTest, TableAndFileSayTheSame) {
   EXPECT_EQ(entry["risk_coverage"].back()["coverage"], 1.0);
 }
 
+// All ten trials of 4 of 40 scenes fail at a small P: by scenes about [0.03, 0.24], by trials [0.07, 0.13].
+TEST_F(FailureForecastsTest, RatesOfRepeatedScenesAreByScene) {
+  std::vector<TrialRecord> records;
+  for (std::uint32_t trial = 0; trial < 400; ++trial)
+    records.push_back(StatedMotion(trial, 0.01, 50, trial < 40));
+  const Interval by_trials = MeasureForecasts(Collected(records), 7).sure_failed_interval;
+  EXPECT_EQ(by_trials.lower, ExactBinomialInterval(40, 400).lower);
+  EXPECT_EQ(by_trials.upper, ExactBinomialInterval(40, 400).upper);
+  study_.repeats_per_scene = 10;
+  const ForecastMeasures by_scenes = MeasureForecasts(Collected(records), 7);
+  EXPECT_EQ(by_scenes.num_sure_failed, 40);
+  EXPECT_LT(by_scenes.sure_failed_interval.lower, 0.05);
+  EXPECT_GT(by_scenes.sure_failed_interval.upper, 0.18);
+  EXPECT_LT(by_scenes.sure_interval.lower, 0.95) << "40 scenes, all of them sure";
+}
+
 TEST_F(FailureForecastsTest, WithoutAnswersOnlyCountsAreGiven) {
   const std::vector<ForecastMeasures> measures = MeasureFailureForecasts(Stored({Refusal(0), Refusal(1)}));
   EXPECT_EQ(measures[0].n, 0);
