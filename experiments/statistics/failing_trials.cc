@@ -57,6 +57,24 @@ Table MakeFailingTable(const FailingTrials& trials, bool with_probability = true
   return MakeTable(columns, trials.listed);
 }
 
+std::string FailingTrialsAsTable(const FailingTrials& trials, const std::string& run) {
+  std::string text =
+      fmt::format("Study {}: {} of {} answers\n", trials.study, trials.num_found, trials.num_looked_at);
+  if (trials.listed.empty()) return text;
+  const bool is_stated = std::ranges::any_of(
+      trials.listed, [](const FailingTrial& trial) { return !std::isnan(trial.failure_probability); });
+  text += "\n" + RenderText(MakeFailingTable(trials, is_stated)) + "\n";
+  const auto num_listed = static_cast<std::int64_t>(trials.listed.size());
+  if (num_listed < trials.num_found) text += fmt::format("The first {}; --limit 0 lists all.\n", num_listed);
+  const FailingTrial& first = trials.listed.front();
+  return text + fmt::format(
+                    "Look at one: rcme show {0} --condition {1} --trial {2}\n"
+                    "In full:     rcme replay {0} --condition {1} --trial {2}\n",
+                    run, first.condition, first.trial);
+}
+
+}  // namespace
+
 FailingTrials ListFailingTrials(const ResultStore& store, const FailureQuery& query) {
   const RunDescription run = store.Description();
   const TrialEvent& event = FindListedEvent(query.event);
@@ -81,24 +99,6 @@ FailingTrials ListFailingTrials(const ResultStore& store, const FailureQuery& qu
       query.condition);
   return trials;
 }
-
-std::string FailingTrialsAsTable(const FailingTrials& trials, const std::string& run) {
-  std::string text =
-      fmt::format("Study {}: {} of {} answers\n", trials.study, trials.num_found, trials.num_looked_at);
-  if (trials.listed.empty()) return text;
-  const bool is_stated = std::ranges::any_of(
-      trials.listed, [](const FailingTrial& trial) { return !std::isnan(trial.failure_probability); });
-  text += "\n" + RenderText(MakeFailingTable(trials, is_stated)) + "\n";
-  const auto num_listed = static_cast<std::int64_t>(trials.listed.size());
-  if (num_listed < trials.num_found) text += fmt::format("The first {}; --limit 0 lists all.\n", num_listed);
-  const FailingTrial& first = trials.listed.front();
-  return text + fmt::format(
-                    "Look at one: rcme show {0} --condition {1} --trial {2}\n"
-                    "In full:     rcme replay {0} --condition {1} --trial {2}\n",
-                    run, first.condition, first.trial);
-}
-
-}  // namespace
 
 CommandResult MakeFailuresResult(const FailingTrials& trials, const std::string& run) {
   return MakeResult(

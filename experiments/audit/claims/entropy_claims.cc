@@ -97,8 +97,8 @@ Outcome ResidualShareStatistic(Case& made) {
 }
 
 // Rank-aware inliers whose score is the printed entropy, or one of its two parts.
-enum class Part { kWhole, kResidual, kRest };
-template <Part part>
+enum class EntropyPart { kWhole, kResidual, kRest };
+template <EntropyPart part>
 class PrintedEntropyTest {
  public:
   static constexpr bool kNeedsCovariance = true;
@@ -114,9 +114,9 @@ class PrintedEntropyTest {
     PointResidual printed;
     as_printed_.Distance(match, &printed);
     const double whole = as_printed_.Entropy(printed);
-    residual->log_det_cov = part == Part::kWhole      ? whole
-                            : part == Part::kResidual ? log_residual
-                                                      : whole - log_residual;
+    residual->log_det_cov = part == EntropyPart::kWhole      ? whole
+                            : part == EntropyPart::kResidual ? log_residual
+                                                             : whole - log_residual;
     return d2;
   }
   double Entropy(const PointResidual& residual) const { return residual.log_det_cov; }
@@ -156,9 +156,10 @@ bool SelectionFails(const Case& made, Selection selection) {
 }
 
 Outcome SelectionStatistic(Case& made) {
-  const bool whole = SelectionFails<PrintedEntropyTest<Part::kWhole>>(made, Selection::kMeanEntropy);
-  const bool residual = SelectionFails<PrintedEntropyTest<Part::kResidual>>(made, Selection::kMeanEntropy);
-  const bool rest = SelectionFails<PrintedEntropyTest<Part::kRest>>(made, Selection::kMeanEntropy);
+  const bool whole = SelectionFails<PrintedEntropyTest<EntropyPart::kWhole>>(made, Selection::kMeanEntropy);
+  const bool residual =
+      SelectionFails<PrintedEntropyTest<EntropyPart::kResidual>>(made, Selection::kMeanEntropy);
+  const bool rest = SelectionFails<PrintedEntropyTest<EntropyPart::kRest>>(made, Selection::kMeanEntropy);
   const bool excess = SelectionFails<RankAwareTest>(made, Selection::kMeanEntropy);
   const bool predictive = SelectionFails<RankAwareTest>(made, Selection::kPredictiveLikelihood);
   return {1.0 * (rest && !whole), 1.0 * (excess && !whole), 1.0 * whole, 1.0 * residual, 1.0 * rest,
