@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/summarize.h"
 #include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 #include "stats/paired_sample_size.h"
 
 namespace rcme {
@@ -34,18 +37,25 @@ Estimate WidenForChoice(Estimate share, int num_estimators) {
   return share;
 }
 
-// By success, the best first.
-std::vector<AskedEstimator> RankEstimators(const RunDescription& run, const Summary& summary) {
+// The best first.
+std::vector<AskedEstimator> ListRanked(const RunDescription& run, const Summary& summary, double sigma_px) {
   const auto num_estimators = static_cast<int>(run.estimators.size());
   std::vector<AskedEstimator> ranked;
   for (const DescribedEstimator& estimator : run.estimators) {
-    ranked.push_back({estimator.label,
-                      WidenForChoice(FindEstimate(summary, estimator.label, "success"), num_estimators),
-                      FindEstimate(summary, estimator.label, "mean_time_ms").value});
+    const std::string& label = estimator.label;
+    ranked.push_back({label, WidenForChoice(FindEstimate(summary, label, "success"), num_estimators),
+                      FindEstimate(summary, label, "mean_time_ms").value,
+                      FindEstimate(summary, label, "max_error_median_deg").value,
+                      DescribeInlierThreshold(estimator.options, sigma_px)});
   }
-  std::ranges::stable_sort(ranked, std::ranges::greater{},
-                           [](const AskedEstimator& estimator) { return estimator.success.value; });
+  RankEstimators(&ranked);
   return ranked;
+}
+
+// The value of an option; empty: there is none.
+std::string FindValue(const Settings& options, const std::string& name) {
+  const auto found = std::ranges::find(options, name, &Settings::value_type::first);
+  return found == options.end() ? "" : found->second;
 }
 
 // Failure or refusal of the best and the next, turned into success.
@@ -83,17 +93,45 @@ Estimate EstimateFailed(const std::vector<StatedAnswer>& answers) {
 
 }  // namespace
 
-Answer AnswerQuestion(const ResultStore& run, double at_most) {
+void RankEstimators(std::vector<AskedEstimator>* estimators) {
+  const auto last_if_nan = [](double value) {
+    return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+  };
+  std::ranges::stable_sort(*estimators, {}, [&](const AskedEstimator& estimator) {
+    return std::array{last_if_nan(-estimator.success.value), last_if_nan(estimator.median_error_deg),
+                      last_if_nan(estimator.time_ms)};
+  });
+}
+
+std::string DescribeInlierThreshold(const Settings& options, double sigma_px) {
+  double number = 0.0;
+  if (ParseReal(FindValue(options, "threshold_sigma"), &number))
+    return fmt::format("{:g} sigma = {:.3g} px", number, number * sigma_px);
+  const std::string sigma = FindValue(options, "sigma");  // of rcme_calibrated
+  if (sigma == "estimated")
+    return fmt::format("none: it weighs each match by sigma, estimated from {:g} px on", sigma_px);
+  if (sigma == "assumed") return fmt::format("none: it weighs each match by sigma = {:g} px", sigma_px);
+  const std::string level = FindValue(options, "significance_level");
+  if (ParseReal(level, &number))
+    return fmt::format("a test that refuses {:g} % of the true matches, sigma = {:g} px", 100.0 * number,
+                       sigma_px);
+  return {};
+}
+
+Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px) {
   const RunDescription description = run.Description();
   if (description.conditions.size() != 1)
     throw InputError(fmt::format("ask: {}: has {} conditions; an answer is of one", description.study,
                                  description.conditions.size()));
   const Summary summary = Summarize(run, /*with_times=*/true);
-  const std::vector<AskedEstimator> ranked = RankEstimators(description, summary);
+  const std::vector<AskedEstimator> ranked = ListRanked(description, summary, sigma_px);
   Answer answer;
   answer.num_trials = summary.num_trials_done;
   answer.num_estimators = static_cast<int>(ranked.size());
   answer.at_most = at_most;
+  answer.failure = description.failure;
+  answer.num_alike = static_cast<int>(std::ranges::count(
+      ranked, ranked.front().success.value, [](const AskedEstimator& e) { return e.success.value; }));
   answer.best = ranked.front();
   if (ranked.size() > 1) {
     answer.next = ranked[1];

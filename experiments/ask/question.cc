@@ -29,8 +29,11 @@ constexpr AskedText kAskedTexts[] = {
 double ReadNumber(const char* option, const std::string& text, double least, double greatest) {
   double value = 0.0;
   if (ParseReal(text, &value) && value >= least && value <= greatest) return value;
-  throw InputError(fmt::format("{}: {} is not allowed; give a number in [{:g}, {:g}]", option, Quoted(text),
-                               least, greatest));
+  double share = 0.0;  // of "40%" or "40 %"
+  const bool is_percent = text.ends_with('%') && ParseReal(text.substr(0, text.find_first_of(" %")), &share);
+  throw InputError(fmt::format("{}: {} is not allowed; give a number in [{:g}, {:g}]{}", option, Quoted(text),
+                               least, greatest,
+                               is_percent ? fmt::format("; as a share: {:g}", share / 100.0) : ""));
 }
 
 int ReadPixels(const std::string& text, const std::string& image) {
@@ -100,14 +103,14 @@ std::string DescribeQuestion(const Question& q) {
                      q.num_matches);
 }
 
-std::string MakeStudyText(const Question& q) {
+std::string MakeStudyText(const Question& q, int trials) {
   return fmt::format(
       R"(# Written by `rcme ask`. Change it as you like: rcme list settings, rcme list estimators.
 name: asked
 description: >-
   {}.
 seed: {}
-trials: 20
+trials: {}
 data:
   scene: {}
   cameras: pinhole
@@ -129,7 +132,7 @@ failure:
   max_rotation_error_deg: {}
   max_direction_error_deg: {}
 )",
-      DescribeQuestion(q), q.seed, q.scene, q.image_width, q.image_height, q.focal_px, q.num_matches,
+      DescribeQuestion(q), q.seed, trials, q.scene, q.image_width, q.image_height, q.focal_px, q.num_matches,
       q.sigma_px, q.outliers, q.motion.empty() ? "" : "  motion: " + q.motion + "\n", q.outlier_ratio,
       q.max_rotation_error_deg, q.max_direction_error_deg);
 }

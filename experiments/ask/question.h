@@ -39,9 +39,9 @@ std::vector<std::string> MissingOptions(const AskedTexts& texts);
 // Fills in what the texts say. Throws InputError that names the option and what is allowed.
 void ReadTexts(const AskedTexts& texts, Question* question);
 
-// The study that answers the question, as YAML: its one condition, rcme_calibrated and those one would take
-// instead. Names that the program does not have are refused by whoever reads it.
-std::string MakeStudyText(const Question& question);
+// The study of so many trials that answers the question, as YAML: its one condition, rcme_calibrated and
+// those one would take instead. Names that the program does not have are refused by whoever reads it.
+std::string MakeStudyText(const Question& question, int trials);
 
 // "1280 x 720, f 900 px, noise 0.7 px; corridor; 40 % wrong (clustered_both), 500 matches".
 std::string DescribeQuestion(const Question& question);

@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -24,6 +25,8 @@
 
 namespace rcme {
 namespace {
+
+constexpr int kPilotTrials = 20;  // which say how long one takes
 
 struct AskArguments {
   AskedTexts texts;
@@ -63,6 +66,20 @@ int ChooseTrials(const RunReport& pilot, double seconds) {
   return chosen;
 }
 
+// How many trials the result file that is there was last asked for; 0: there is none.
+int FindTrialsAskedBefore(const AskArguments& arguments) {
+  if (!std::filesystem::exists(ResultPath(arguments))) return 0;
+  return ResultStore::OpenForReading(ResultPath(arguments)).Description().trials;
+}
+
+// The study of the question with the number of its trials, written to `path`.
+Study WriteStudy(const Question& question, int trials, const std::string& path) {
+  const std::string text = MakeStudyText(question, trials);
+  Study study = ParseStudy(text, path);
+  WriteFileWhole(path, text);
+  return study;
+}
+
 void RunAsk(AskArguments arguments) {
   const StopOnSignals stop;
   const std::vector<std::string> missing = MissingOptions(arguments.texts);
@@ -74,18 +91,18 @@ void RunAsk(AskArguments arguments) {
   ReadTexts(arguments.texts, &arguments.question);
   MakeResultFolder(arguments.out);
   const std::string path = arguments.out + "/study.yaml";
-  const std::string text = MakeStudyText(arguments.question);
-  const Study study = ParseStudy(text, path);
-  WriteFileWhole(path, text);
-  if (arguments.trials > 0) {
-    RunStudyTrials(arguments, arguments.trials, study);
-  } else {
-    const int trials =
-        ChooseTrials(RunStudyTrials(arguments, study.trials, study), ParseDuration(arguments.within).value());
+  int trials = arguments.trials > 0 ? arguments.trials : FindTrialsAskedBefore(arguments);
+  const bool is_pilot = arguments.trials == 0 && trials <= kPilotTrials;
+  if (is_pilot) trials = kPilotTrials;
+  const Study study = WriteStudy(arguments.question, trials, path);
+  const RunReport first = RunStudyTrials(arguments, trials, study);
+  if (is_pilot) {
+    trials = ChooseTrials(first, ParseDuration(arguments.within).value());
     PrintMessage("{} trials of each estimator, within about {}\n", trials, arguments.within);
-    RunStudyTrials(arguments, trials, study);
+    RunStudyTrials(arguments, trials, WriteStudy(arguments.question, trials, path));
   }
-  const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.at_most);
+  const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.at_most,
+                                       arguments.question.sigma_px);
   const std::string question = DescribeQuestion(arguments.question);
   PrintResult(MakeAnswerResult(answer, question, arguments.out), arguments.format);
 }

@@ -4,10 +4,9 @@
 #include <filesystem>
 
 #include "estimator/conform/conform_estimator.h"
-#include "estimator/estimator_registry.h"
 #include "experiments/commands/process_option.h"
-#include "experiments/core/files/shared_files.h"
 #include "experiments/study/command_permission.h"
+#include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
 
 namespace rcme {
@@ -38,22 +37,11 @@ void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* 
   AddProcessOption(command, &choice->allow_process);
 }
 
-namespace {
-
-// Whether only a file that comes with the program has this name.
-bool IsNameOfFile(const std::string& name) {
-  if (std::ranges::count(EstimatorRegistry(), name, &EstimatorEntry::name) > 0) return false;
-  const std::vector<std::string> files = NamesIn(SharedFolder::kEstimators);
-  return std::ranges::count(files, name) > 0;
-}
-
-}  // namespace
-
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
-  EstimatorSpec spec = choice.conform              ? DefaultEstimator(kConformEstimator)
-                       : choice.file               ? LoadEstimatorFile(*choice.file)
-                       : IsNameOfFile(choice.name) ? LoadEstimatorFile(choice.name)
-                                                   : DefaultEstimator(choice.name);
+  EstimatorSpec spec = choice.conform                       ? DefaultEstimator(kConformEstimator)
+                       : choice.file                        ? LoadEstimatorFile(*choice.file)
+                       : IsNameOfEstimatorFile(choice.name) ? LoadEstimatorFile(choice.name)
+                                                            : DefaultEstimator(choice.name);
   Settings options;
   if (choice.conform) options.emplace_back("file", *choice.conform);
   for (const std::string& text : choice.overrides) {

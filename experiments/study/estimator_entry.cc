@@ -2,12 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
+#include "experiments/core/files/shared_files.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/study_keys.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -44,7 +48,22 @@ Parameter BudgetParameter(double* budget_ms) {
                          "time of a call that the effort was chosen for");
 }
 
+// Throws InputError unless there is such an estimator.
+void CheckEstimatorName(const std::string& name) {
+  if (IsNameOfEstimatorFile(name)) {
+    throw InputError(
+        fmt::format("{} is an estimator file, not an estimator: write {{file: {}}}", Quoted(name), name));
+  }
+  FindEstimator(name);
+}
+
 }  // namespace
+
+bool IsNameOfEstimatorFile(const std::string& name) {
+  if (std::ranges::count(EstimatorRegistry(), name, &EstimatorEntry::name) > 0) return false;
+  const std::vector<std::string> files = NamesIn(SharedFolder::kEstimators);
+  return std::ranges::count(files, name) > 0;
+}
 
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller) {
@@ -70,7 +89,7 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
   if (spec.name.empty()) place.Fail(node, fmt::format("{}: key 'name' is missing", block));
   if (spec.label.empty()) spec.label = spec.name;
   const YAML::Node options = node["options"] ? node["options"] : YAML::Node(YAML::NodeType::Map);
-  if (node["name"]) place.At(node["name"], [&] { FindEstimator(spec.name); });
+  if (node["name"]) place.At(node["name"], [&] { CheckEstimatorName(spec.name); });
   ReadOptions(place, options, &spec);
   place.At(node, [&] {
     Configure(spec)->Make();  // throws where two options contradict each other

@@ -13,6 +13,9 @@ namespace rcme {
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller = {});
 
+// Returns whether only a file that comes with the program has this name, and no estimator.
+bool IsNameOfEstimatorFile(const std::string& name);
+
 // Writes the keys name, label, options and budget_ms into the open map, with the value of every option.
 void WriteEstimatorKeys(const EstimatorSpec& spec, YAML::Emitter* out);
 

@@ -18,6 +18,7 @@
 #include "experiments/study/settle_study.h"
 #include "experiments/study/study_keys.h"
 #include "experiments/study/tuning_file.h"
+#include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
 
@@ -321,7 +322,13 @@ void Override(Study* study, const std::string& key, const std::string& value) {
   if (has_any) FindParameter(Parameters(study->failure), key).SetFromText(value);
   for (EstimatorSpec& spec : study->estimators) {
     if (!HasOption(spec, key)) continue;
-    OverrideOption(key, value, &spec);
+    try {
+      OverrideOption(key, value, &spec);
+    } catch (const InputError& error) {
+      double number = 0.0;
+      if (key != "sigma" || !ParseReal(value, &number)) throw;
+      throw InputError(fmt::format("{} (the noise is sigma_px)", error.what()));
+    }
     has_any = true;
   }
   if (!has_any) ThrowUnknownOverride(*study, key);
