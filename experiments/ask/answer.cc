@@ -7,12 +7,13 @@
 #include <cmath>
 #include <limits>
 
+#include "experiments/ask/inlier_threshold.h"
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/summarize.h"
 #include "parameters/input_error.h"
-#include "parameters/plain_text.h"
+#include "stats/equivalence.h"
 #include "stats/paired_sample_size.h"
 
 namespace rcme {
@@ -46,43 +47,55 @@ std::vector<AskedEstimator> ListRanked(const RunDescription& run, const Summary&
     ranked.push_back({label, WidenForChoice(FindEstimate(summary, label, "success"), num_estimators),
                       FindEstimate(summary, label, "mean_time_ms").value,
                       FindEstimate(summary, label, "max_error_median_deg").value,
-                      DescribeInlierThreshold(estimator.options, sigma_px)});
+                      DescribeInlierThreshold(estimator.name, estimator.options, sigma_px)});
   }
   RankEstimators(&ranked);
   return ranked;
 }
 
-// The value of an option; empty: there is none.
-std::string FindValue(const Settings& options, const std::string& name) {
-  const auto found = std::ranges::find(options, name, &Settings::value_type::first);
-  return found == options.end() ? "" : found->second;
+bool IsMoreThanChance(const ComparisonRow& row) { return row.n > 0 && row.holm_p_value < 0.05; }
+
+// Those that the comparison with the best, by failure or refusal, does not tell from it.
+std::vector<AskedEstimator> FindAlike(const std::vector<AskedEstimator>& ranked,
+                                      const Comparison& comparison) {
+  std::vector<AskedEstimator> alike(ranked.begin() + 1, ranked.end());
+  std::erase_if(alike, [&](const AskedEstimator& estimator) {
+    return std::ranges::any_of(comparison.rows, [&](const ComparisonRow& row) {
+      return row.estimator == estimator.label && IsMoreThanChance(row);
+    });
+  });
+  return alike;
 }
 
-// Failure or refusal of the best and the next, turned into success.
-std::optional<AskedDifference> CompareTwo(const ResultStore& run, const std::string& best,
-                                          const std::string& next) {
-  const Comparison comparison = Compare(run, best, {.compared = {"failure_or_refusal"}});
+// Failure or refusal of the best and of `other`, turned into success. Holm's step-down tests the least
+// p-value of `num_undecided` at 0.05 / num_undecided, so trials are planned at that level.
+std::optional<AskedDifference> DescribeDifference(const Comparison& comparison, const std::string& other,
+                                                  size_t num_undecided) {
   for (const ComparisonRow& row : comparison.rows) {
-    if (row.estimator != next || row.n == 0) continue;
+    if (row.estimator != other || row.n == 0) continue;
     const auto n = static_cast<double>(row.n);
+    const double best_only = static_cast<double>(row.counts.first_only) / n;
+    const double other_only = static_cast<double>(row.counts.second_only) / n;
+    const double level = 0.05 / static_cast<double>(std::max<size_t>(num_undecided, 1));
+    const double discordant = std::max(best_only + other_only, kPlainDifference);
     return AskedDifference{{.value = row.difference, .interval = row.interval},
                            row.holm_p_value,
-                           TrialsToTellApart(static_cast<double>(row.counts.first_only) / n,
-                                             static_cast<double>(row.counts.second_only) / n)};
+                           TrialsToTellApart(best_only, other_only, level),
+                           TrialsToTellApart(0.5 * (discordant + kPlainDifference),
+                                             0.5 * (discordant - kPlainDifference), level)};
   }
   return std::nullopt;
 }
 
 // The answers of an estimator that state a probability and whose truth is known.
-std::vector<StatedAnswer> CollectStated(const ResultStore& run, const std::string& label) {
-  for (const FailureForecasts& of_one : CollectFailureForecasts(run)) {
+std::vector<StatedAnswer> CollectStated(const std::vector<FailureForecasts>& all, const std::string& label) {
+  std::vector<StatedAnswer> answers;
+  for (const FailureForecasts& of_one : all) {
     if (of_one.estimator != label || of_one.source != ForecastSource::kStated) continue;
-    std::vector<StatedAnswer> answers;
     for (const Forecast& forecast : of_one.forecasts)
       answers.push_back({forecast.probability, forecast.happened});
-    return answers;
   }
-  return {};
+  return answers;
 }
 
 Estimate EstimateFailed(const std::vector<StatedAnswer>& answers) {
@@ -91,31 +104,51 @@ Estimate EstimateFailed(const std::vector<StatedAnswer>& answers) {
   return {.value = static_cast<double>(failed) / static_cast<double>(n), .n = n};
 }
 
+// What the best, or the first alike that states any, states of its failures.
+void AddStated(const ResultStore& run, const Summary& summary, Answer* answer) {
+  std::vector<std::string> labels = {answer->best.label};
+  for (const AskedEstimator& estimator : answer->alike) labels.push_back(estimator.label);
+  const std::vector<FailureForecasts> all = CollectFailureForecasts(run);
+  for (const std::string& label : labels) {
+    const std::vector<StatedAnswer> stated = CollectStated(all, label);
+    if (stated.empty()) continue;
+    answer->stating = label;
+    answer->rule = CertifyAcceptRule(stated, answer->num_trials, answer->at_most, answer->num_estimators);
+    answer->stated = FindEstimate(summary, label, "failure_probability");
+    answer->failed = WidenForChoice(EstimateFailed(stated), answer->num_estimators);
+    return;
+  }
+}
+
+// Whether the region of the best covers, by the interval that holds although it was chosen.
+CoverageVerdict JudgeChosenCoverage(const Estimate& coverage, const Answer& answer) {
+  const std::int64_t n = coverage.n.value_or(0);
+  CoverageVerdict judged =
+      JudgeCoverage(coverage.value, coverage.interval, n, answer.num_trials, /*is_of_fixed_n=*/true);
+  if (judged.verdict != RegionVerdict::kUndecided || n == 0) return judged;
+  judged.trials_to_decide = TrialsToDecide(coverage.value, Around(kNominalCoverage, kCoverageMargin),
+                                           1.0 - 0.05 / answer.num_estimators) *
+                            static_cast<double>(answer.num_trials) / static_cast<double>(n);
+  return judged;
+}
+
 }  // namespace
+
+double RoundToTwoDigits(double value) {
+  if (!std::isfinite(value) || value <= 0.0) return value;
+  const double step = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
+  return step * std::round(value / step);
+}
 
 void RankEstimators(std::vector<AskedEstimator>* estimators) {
   const auto last_if_nan = [](double value) {
     return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
   };
   std::ranges::stable_sort(*estimators, {}, [&](const AskedEstimator& estimator) {
-    return std::array{last_if_nan(-estimator.success.value), last_if_nan(estimator.median_error_deg),
+    return std::array{last_if_nan(-estimator.success.value),
+                      last_if_nan(RoundToTwoDigits(estimator.median_error_deg)),
                       last_if_nan(estimator.time_ms)};
   });
-}
-
-std::string DescribeInlierThreshold(const Settings& options, double sigma_px) {
-  double number = 0.0;
-  if (ParseReal(FindValue(options, "threshold_sigma"), &number))
-    return fmt::format("{:g} sigma = {:.3g} px", number, number * sigma_px);
-  const std::string sigma = FindValue(options, "sigma");  // of rcme_calibrated
-  if (sigma == "estimated")
-    return fmt::format("none: it weighs each match by sigma, estimated from {:g} px on", sigma_px);
-  if (sigma == "assumed") return fmt::format("none: it weighs each match by sigma = {:g} px", sigma_px);
-  const std::string level = FindValue(options, "significance_level");
-  if (ParseReal(level, &number))
-    return fmt::format("a test that refuses {:g} % of the true matches, sigma = {:g} px", 100.0 * number,
-                       sigma_px);
-  return {};
 }
 
 Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px) {
@@ -130,25 +163,20 @@ Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px) {
   answer.num_estimators = static_cast<int>(ranked.size());
   answer.at_most = at_most;
   answer.failure = description.failure;
-  answer.num_alike = static_cast<int>(std::ranges::count(
-      ranked, ranked.front().success.value, [](const AskedEstimator& e) { return e.success.value; }));
   answer.best = ranked.front();
   if (ranked.size() > 1) {
+    const Comparison comparison = Compare(run, answer.best.label, {.compared = {"failure_or_refusal"}});
     answer.next = ranked[1];
-    answer.difference = CompareTwo(run, answer.best.label, answer.next->label);
+    answer.alike = FindAlike(ranked, comparison);
+    answer.difference = DescribeDifference(comparison, answer.next->label, answer.alike.size());
   }
+  AddStated(run, summary, &answer);
   const std::string& best = answer.best.label;
-  const std::vector<StatedAnswer> stated = CollectStated(run, best);
-  answer.states_probability = !stated.empty();
-  if (answer.states_probability) {
-    answer.rule = CertifyAcceptRule(stated, answer.num_trials, at_most, answer.num_estimators);
-    answer.stated = FindEstimate(summary, best, "failure_probability");
-    answer.failed = WidenForChoice(EstimateFailed(stated), answer.num_estimators);
-  }
   answer.sd_over_crb = FindEstimate(summary, best, "sd_over_crb").value;
   answer.rotation_sd_deg = FindEstimate(summary, best, "rotation_sd_deg").value;
   answer.direction_sd_deg = FindEstimate(summary, best, "direction_sd_deg").value;
   answer.coverage = WidenForChoice(FindEstimate(summary, best, "nees_coverage"), answer.num_estimators);
+  answer.coverage_verdict = JudgeChosenCoverage(answer.coverage, answer);
   return answer;
 }
 

@@ -7,18 +7,19 @@
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
+#include "stats/equivalence.h"
+#include "stats/risk_control.h"
 
 namespace rcme {
 namespace {
 
-// A wider interval that holds what is stated says nothing.
-constexpr double kWidestThatDecides = 0.06;
 // The rate of failure that one would like to see shown where nothing failed.
 constexpr double kRareRate = 0.001;
 
@@ -34,95 +35,148 @@ std::string DescribeSharpness(const Answer& a) {
                      a.direction_sd_deg);
 }
 
-// Whether an interval holds what is stated; `below` and `above` say what is wrong if all of it lies there.
-std::string JudgeStated(const Estimate& measured, double stated, const char* below, const char* above) {
-  const double width = measured.interval.upper - measured.interval.lower;
-  if (std::isnan(stated) || std::isnan(width)) return "undecided";
-  if (measured.interval.upper < stated) return below;
-  if (measured.interval.lower > stated) return above;
-  return width > kWidestThatDecides ? "undecided" : "right";
+// Of a measured rate, whether it is what is stated: another one if the interval does not hold the stated
+// one, right if it lies within `margin` of it.
+std::string JudgeStated(const Estimate& measured, double stated, double margin) {
+  const Interval& interval = measured.interval;
+  if (interval.upper < stated) return "too pessimistic";
+  if (interval.lower > stated) return "too sure";
+  const bool is_right = DecideEquivalence(interval, Around(stated, margin)) == Verdict::kHolds;
+  return is_right ? fmt::format("right to within {:g} %", 100.0 * margin) : "undecided";
+}
+
+// "rcme_calibrated: " where P is not that of the best estimator.
+std::string NameStating(const Answer& a) {
+  return a.stating == a.best.label ? std::string() : a.stating + ": ";
 }
 
 // What can be promised of accepted answers.
 std::string DescribeAcceptRule(const Answer& a) {
-  if (!a.states_probability) return a.best.label + " states no probability: nothing to accept by";
+  if (a.stating.empty()) return a.best.label + " states no P: nothing to accept by";
   if (!a.rule) {
-    return fmt::format("no rule promises failures below {:g} % yet: that takes {} trials without a failure",
-                       100.0 * a.at_most, FewestCertifyingAnswers(a.at_most, a.num_estimators));
+    return fmt::format("{}no rule keeps failures below {:g} % yet: it takes at least {} answers, all right",
+                       NameStating(a), 100.0 * a.at_most,
+                       FewestCertifyingAnswers(a.at_most, a.num_estimators));
   }
   const ErrorCount& accepted = a.rule->accepted;
-  const bool is_all = a.rule->greatest_probability >= 1.0;
-  if (is_all) return fmt::format("every answer: {} of {} failed", accepted.errors, accepted.n);
-  return fmt::format("P <= {:g}: keeps {:.1f} % of the trials, {} of {} failed", a.rule->greatest_probability,
+  const std::string rule = a.rule->greatest_probability >= 1.0
+                               ? "every answer"
+                               : fmt::format("P <= {:g}", a.rule->greatest_probability);
+  return fmt::format("{}{}: {:.1f} % of the trials, {} of {} failed", NameStating(a), rule,
                      100.0 * static_cast<double>(accepted.n) / static_cast<double>(a.rule->num_trials),
                      accepted.errors, accepted.n);
 }
 
-// The ties of the ranking, which the order of the estimators must not hide.
+std::int64_t CountSuccesses(const AskedEstimator& estimator) {
+  return std::llround(estimator.success.value * static_cast<double>(estimator.success.n.value_or(0)));
+}
+
+bool IsTied(const AskedEstimator& a, const AskedEstimator& b) { return a.success.value == b.success.value; }
+
+// Why the best leads those that succeed as often as it.
+std::string DescribeTieBreak(const Answer& a) {
+  if (!a.next || !IsTied(a.best, *a.next) || std::isnan(a.best.median_error_deg)) return "";
+  const double error = RoundToTwoDigits(a.best.median_error_deg);
+  const bool is_faster = error == RoundToTwoDigits(a.next->median_error_deg);
+  return fmt::format("; {} has the least median error, {:g} deg{}", a.best.label, error,
+                     is_faster ? ", and is faster" : "");
+}
+
+// The estimators that the trials do not tell from the best, which their order must not hide.
 std::string DescribeTies(const Answer& a) {
-  const double n = static_cast<double>(a.best.success.n.value_or(a.num_trials));
-  const std::string share = fmt::format("{} of {}", std::llround(a.best.success.value * n), std::llround(n));
-  const std::string who = a.num_alike < a.num_estimators
-                              ? fmt::format("{} of {} estimators", a.num_alike, a.num_estimators)
-                          : a.num_alike == 2 ? std::string("both")
-                                             : fmt::format("all {}", a.num_alike);
-  return fmt::format(
-      "{}: {}; ranked by median error ({}: {:.3g} deg{})", who, share, a.best.label, a.best.median_error_deg,
-      a.next ? fmt::format(", {}: {:.3g} deg", a.next->label, a.next->median_error_deg) : std::string());
+  const std::int64_t n = a.best.success.n.value_or(0);
+  const size_t num = a.alike.size() + 1;
+  const std::string who = static_cast<int>(num) == a.num_estimators
+                              ? (num == 2 ? std::string("both") : fmt::format("all {}", num))
+                              : fmt::format("{} of {}", num, a.num_estimators);
+  const bool all_tied =
+      std::ranges::all_of(a.alike, [&](const auto& other) { return IsTied(a.best, other); });
+  if (all_tied)
+    return fmt::format("{} succeed in {} of {}{}", who, CountSuccesses(a.best), n, DescribeTieBreak(a));
+  std::vector<std::string> counts;
+  for (const AskedEstimator& other : a.alike)
+    counts.push_back(fmt::format("{} {}", other.label, CountSuccesses(other)));
+  return fmt::format("its {} of {} may be chance, beside {}{}", CountSuccesses(a.best), n,
+                     fmt::join(counts, ", "), DescribeTieBreak(a));
 }
 
-// 2994 -> 3000: two digits.
-std::int64_t RoundToTwoDigits(double value) {
-  const double step = std::pow(10.0, std::max(0.0, std::floor(std::log10(value)) - 1.0));
-  return std::llround(step * std::round(value / step));
+std::int64_t RoundTrials(std::int64_t trials) {
+  return std::llround(RoundToTwoDigits(static_cast<double>(trials)));
 }
 
-// Without a failure in n trials a rate above 1 - 0.05^(1/n) is refuted at 95 % (the "rule of three").
+// How many trials tell the first two apart, and how many a difference that one would call one.
+std::string DescribeTrialsToTell(const Answer& a) {
+  if (!a.difference) return "";
+  const AskedDifference& d = *a.difference;
+  const bool is_known = d.trials_to_tell <= 10'000'000;
+  if (is_known && d.p_value < 0.05)
+    return fmt::format("; about {} tell the first two apart", RoundTrials(d.trials_to_tell));
+  const std::string plain = fmt::format("a difference of {:g} % takes about {}", 100.0 * kPlainDifference,
+                                        RoundTrials(d.trials_of_plain_difference));
+  return "; " +
+         (is_known ? fmt::format("about {} tell the first two apart, ", RoundTrials(d.trials_to_tell))
+                   : std::string()) +
+         plain;
+}
+
+// The interval of `success` without a failure in n trials begins at (0.025 / estimators)^(1/n).
 std::string DescribeTrials(const Answer& a) {
-  if (a.difference && a.difference->trials_to_tell <= 10'000'000)
-    return fmt::format("{} here; about {} tell the first two apart", a.num_trials,
-                       a.difference->trials_to_tell);
-  std::string text = fmt::format("{} here; the first two are as good as alike", a.num_trials);
-  if (a.best.success.value < 1.0 || a.num_trials < 1) return text;
-  const double shown = -std::expm1(std::log(0.05) / static_cast<double>(a.num_trials));
-  text += fmt::format("; a failure rate below {:.2g} % is shown by these", 100.0 * shown);
-  if (shown > kRareRate)
-    text += fmt::format("; below {:g} % needs about {}", 100.0 * kRareRate,
-                        RoundToTwoDigits(std::log(0.05) / std::log1p(-kRareRate)));
+  std::string text = fmt::format("{}{}", a.num_trials, DescribeTrialsToTell(a));
+  if (a.best.success.value < 1.0 || a.num_trials == 0) return text;
+  const std::int64_t needed = FewestCertifyingTrials(kRareRate, 0.025 / a.num_estimators);
+  if (needed > a.num_trials)
+    text += fmt::format("; to show a failure rate below {:g} % takes {} without one", 100.0 * kRareRate,
+                        RoundTrials(needed));
   return text;
+}
+
+std::string DescribeNext(const Answer& a) {
+  std::string text = fmt::format("{}: {}", a.next->label, FormatEstimate(a.next->success, kPercent));
+  if (!a.difference || a.difference->difference.value == 0.0) return text;
+  return text + fmt::format("; {} less, {}", FormatEstimate(a.difference->difference, kPercent),
+                            a.difference->p_value < 0.05 ? "more than chance" : "may be chance");
+}
+
+std::string DescribeCoverage(const Answer& a) {
+  return fmt::format("{}: the 95 % region contains the truth in {}{}",
+                     std::isnan(a.coverage.value) ? "not known" : DescribeCoverageVerdict(a.coverage_verdict),
+                     FormatEstimate(a.coverage, kPercent), DescribeSharpness(a));
 }
 
 Lines DescribeAnswer(const Answer& a) {
   const auto percent = [](const Estimate& estimate) { return FormatEstimate(estimate, kPercent); };
   Lines lines = {{"Estimator", fmt::format("{}: success {}", a.best.label, percent(a.best.success))}};
-  if (a.num_alike > 1) lines.emplace_back("Ties", DescribeTies(a));
-  if (a.next) lines.emplace_back("Next best", fmt::format("{}: {}", a.next->label, percent(a.next->success)));
-  if (a.difference) {
-    const bool is_sure = a.difference->p_value < 0.05;
-    lines.emplace_back("Difference", fmt::format("{}; {}", percent(a.difference->difference),
-                                                 is_sure ? "more than chance" : "may be chance"));
-  }
-  lines.emplace_back("Failure",
-                     fmt::format("an error above {:g} deg of rotation or {:g} deg of direction",
-                                 a.failure.max_rotation_error_deg, a.failure.max_direction_error_deg));
+  if (!a.alike.empty()) lines.emplace_back("Ties", DescribeTies(a));
+  if (a.next) lines.emplace_back("Next best", DescribeNext(a));
   lines.emplace_back("Accept if", DescribeAcceptRule(a));
-  if (!a.best.inlier_threshold.empty()) lines.emplace_back("Inlier threshold", a.best.inlier_threshold);
-  if (a.states_probability) {
-    lines.emplace_back("Trust in P",
-                       fmt::format("{}: states {:.2f} % on average; fail: {}",
-                                   JudgeStated(a.failed, a.stated.value, "too pessimistic", "too sure"),
-                                   100.0 * a.stated.value, percent(a.failed)));
+  if (!a.stating.empty()) {
+    lines.emplace_back("Trust in P", fmt::format("{}{}: states {:.2f} % on average; fail: {}", NameStating(a),
+                                                 JudgeStated(a.failed, a.stated.value, a.at_most),
+                                                 100.0 * a.stated.value, percent(a.failed)));
   }
-  lines.emplace_back("Covariance",
-                     fmt::format("{}: 95 % region contains the truth in {}{}",
-                                 JudgeStated(a.coverage, kNominalCoverage, "too sure", "too pessimistic"),
-                                 percent(a.coverage), DescribeSharpness(a)));
+  if (!a.best.inlier_threshold.empty()) lines.emplace_back("Inlier threshold", a.best.inlier_threshold);
+  lines.emplace_back("Covariance", DescribeCoverage(a));
   lines.emplace_back(
       "Time",
       fmt::format("{:.3g} ms a call{}", a.best.time_ms,
                   a.next ? fmt::format("; {}: {:.3g} ms", a.next->label, a.next->time_ms) : std::string()));
   lines.emplace_back("Trials", DescribeTrials(a));
   return lines;
+}
+
+// What the words of the table mean.
+std::string DescribeTerms(const Answer& a) {
+  const std::string promise =
+      a.rule ? fmt::format(
+                   "\nAccepted answers fail in less than {:g} %, except with probability 0.05, that\n"
+                   "choice included.",
+                   100.0 * a.at_most)
+             : std::string();
+  return fmt::format(
+      "Success: an error of at most {:g} deg of rotation and {:g} deg of direction. P: the\n"
+      "probability of failure that an estimator states with its answer. Intervals hold\n"
+      "with 95 % although the same trials chose the estimator among {}.{}\n",
+      a.failure.max_rotation_error_deg, a.failure.max_direction_error_deg, a.num_estimators, promise);
 }
 
 nlohmann::ordered_json EstimatorAsJson(const AskedEstimator& estimator) {
@@ -145,26 +199,33 @@ Table MakeAskedTable(const Answer& answer) {
       asked);
 }
 
+// What is judged of a stated probability, below `stating` where it is not the best estimator's.
+void AddStated(const Answer& a, nlohmann::ordered_json* json) {
+  const bool is_of_best = a.stating == a.best.label;
+  nlohmann::ordered_json& stated = is_of_best ? *json : (*json)["stating"];
+  if (!is_of_best) stated["label"] = a.stating;
+  if (a.rule) {
+    stated["accept"] = {{"max_failure_probability", a.rule->greatest_probability},
+                        {"accepted", a.rule->accepted.n},
+                        {"failed", a.rule->accepted.errors}};
+  }
+  stated["stated"] = RenderJson(a.stated);
+  stated["failed"] = RenderJson(a.failed);
+}
+
 }  // namespace
 
 std::string AnswerAsText(const Answer& answer, const std::string& question, const std::string& folder) {
   Table table{{Column::Key("part"), Column::Text("answer")}};
   for (const auto& [part, words] : DescribeAnswer(answer)) table.rows.push_back({part, words});
-  const std::string promise = answer.rule ? fmt::format(
-                                                "Accepted answers fail in less than {:g} %,\n"
-                                                "except with probability 0.05, that choice included.",
-                                                100.0 * answer.at_most)
-                                          : std::string("Nothing is promised of accepted answers.");
-  return question + "\n\n" + RenderText(table) +
+  return question + "\n\n" + RenderText(table) + "\n" + DescribeTerms(answer) +
          fmt::format(
-             "\nIntervals hold with 95 % for the estimator that leads, although the same trials\n"
-             "chose it among {}. {}\n\n"
-             "The study is {}/study.yaml. Next, all of it on one page, and up to which share of\n"
+             "\nThe study is {0}/study.yaml. Next, all of it on one page, and up to which share of\n"
              "wrong matches it holds:\n"
-             "  rcme report {}/run.sqlite --out {}/report.html\n"
-             "  rcme solve {}/study.yaml --over outlier_ratio --from 0.05 --to 0.9 --at {:g} \\\n"
-             "    --out {}/solve --max-time 5m\n",
-             answer.num_estimators, promise, folder, folder, folder, folder, answer.at_most, folder);
+             "  rcme report {0}/run.sqlite --out {0}/report.html\n"
+             "  rcme solve {0}/study.yaml --over outlier_ratio --from 0.05 --to 0.9 --at {1:g} \\\n"
+             "    --out {0}/solve --max-time 5m\n",
+             folder, answer.at_most);
 }
 
 std::string AnswerAsJson(const Answer& a, const std::string& question) {
@@ -173,8 +234,9 @@ std::string AnswerAsJson(const Answer& a, const std::string& question) {
                                  {"estimators", a.num_estimators},
                                  {"at_most", a.at_most},
                                  {"best", EstimatorAsJson(a.best)},
-                                 {"alike", a.num_alike},
+                                 {"alike", nlohmann::ordered_json::array()},
                                  {"rows", RenderJson(MakeAskedTable(a))}};
+  for (const AskedEstimator& other : a.alike) json["alike"].push_back(EstimatorAsJson(other));
   if (a.next) json["next"] = EstimatorAsJson(*a.next);
   if (a.difference) {
     json["difference"] = RenderJson(a.difference->difference);
@@ -182,16 +244,9 @@ std::string AnswerAsJson(const Answer& a, const std::string& question) {
     const std::int64_t to_tell = a.difference->trials_to_tell;
     const bool is_known = to_tell < std::numeric_limits<std::int64_t>::max();
     json["difference"]["trials_to_tell"] = is_known ? nlohmann::ordered_json(to_tell) : nullptr;
+    json["difference"]["trials_to_tell_1_percent"] = a.difference->trials_of_plain_difference;
   }
-  if (a.rule) {
-    json["accept"] = {{"max_failure_probability", a.rule->greatest_probability},
-                      {"accepted", a.rule->accepted.n},
-                      {"failed", a.rule->accepted.errors}};
-  }
-  if (a.states_probability) {
-    json["stated"] = RenderJson(a.stated);
-    json["failed"] = RenderJson(a.failed);
-  }
+  if (!a.stating.empty()) AddStated(a, &json);
   json["coverage"] = RenderJson(a.coverage);
   json["sd_over_crb"] = JsonNumber(a.sd_over_crb);
   json["rotation_sd_deg"] = JsonNumber(a.rotation_sd_deg);

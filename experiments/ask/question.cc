@@ -24,24 +24,46 @@ constexpr AskedText kAskedTexts[] = {
     {"--focal", "Focal length in px, such as 900", &AskedTexts::focal_px},
     {"--noise", "Noise of a point in px, per coordinate, such as 0.7", &AskedTexts::sigma_px},
     {"--scene", "Scene, such as corridor, room, street, plane or uniform_volume", &AskedTexts::scene},
-    {"--wrong", "Share of wrong matches, such as 0.4", &AskedTexts::wrong}};
+    {"--wrong", "Share of wrong matches, such as 0.4 or 40%", &AskedTexts::wrong}};
 
 double ReadNumber(const char* option, const std::string& text, double least, double greatest) {
   double value = 0.0;
   if (ParseReal(text, &value) && value >= least && value <= greatest) return value;
-  double share = 0.0;  // of "40%" or "40 %"
-  const bool is_percent = text.ends_with('%') && ParseReal(text.substr(0, text.find_first_of(" %")), &share);
-  throw InputError(fmt::format("{}: {} is not allowed; give a number in [{:g}, {:g}]{}", option, Quoted(text),
-                               least, greatest,
-                               is_percent ? fmt::format("; as a share: {:g}", share / 100.0) : ""));
+  throw InputError(fmt::format("{}: {} is not allowed; give a number in [{:g}, {:g}]", option, Quoted(text),
+                               least, greatest));
 }
 
-int ReadPixels(const std::string& text, const std::string& image) {
-  long long value = 0;
-  if (ParseInteger(text, &value) && value >= 16 && value <= 100'000) return static_cast<int>(value);
+double ReadShare(const char* option, const std::string& text, double greatest) {
+  double share = 0.0;
+  if (ParseShare(text, &share) && share >= 0.0 && share <= greatest) return share;
+  throw InputError(fmt::format("{}: {} is not allowed; give a share in [0, {:g}], such as 0.4 or 40%", option,
+                               Quoted(text), greatest));
+}
+
+// The numbers of "1280x720", "1280 x 720", "1280 720".
+std::vector<std::string> SplitSize(const std::string& text) {
+  const char* const separators = "xX* \t";
+  std::vector<std::string> numbers;
+  for (size_t begin = text.find_first_not_of(separators); begin != std::string::npos;) {
+    const size_t end = std::min(text.find_first_of(separators, begin), text.size());
+    numbers.push_back(text.substr(begin, end - begin));
+    begin = text.find_first_not_of(separators, end);
+  }
+  return numbers;
+}
+
+void ReadSize(const std::string& text, int* width, int* height) {
+  const auto read = [](const std::string& number, int* pixels) {
+    long long value = 0;
+    const bool is_allowed = ParseInteger(number, &value) && value >= 16 && value <= 100'000;
+    if (is_allowed) *pixels = static_cast<int>(value);
+    return is_allowed;
+  };
+  const std::vector<std::string> numbers = SplitSize(text);
+  if (numbers.size() == 2 && read(numbers[0], width) && read(numbers[1], height)) return;
   throw InputError(fmt::format(
       "--image: {} is not allowed; give WIDTHxHEIGHT in px, each in [16, 100000], such as 1280x720",
-      Quoted(image)));
+      Quoted(text)));
 }
 
 // A line without its end; false: there is none.
@@ -79,14 +101,19 @@ void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts) {
   }
 }
 
+bool ParseShare(const std::string& text, double* share) {
+  if (!text.ends_with('%')) return ParseReal(text, share);
+  const size_t end = text.find_last_not_of(" %");
+  if (end == std::string::npos || !ParseReal(text.substr(0, end + 1), share)) return false;
+  *share /= 100.0;
+  return true;
+}
+
 void ReadTexts(const AskedTexts& texts, Question* question) {
-  const size_t times = texts.image.find('x');
-  const bool has_both = times != std::string::npos;
-  question->image_width = ReadPixels(texts.image.substr(0, times), texts.image);
-  question->image_height = ReadPixels(has_both ? texts.image.substr(times + 1) : "", texts.image);
+  ReadSize(texts.image, &question->image_width, &question->image_height);
   question->focal_px = ReadNumber("--focal", texts.focal_px, 1.0, 1e6);
   question->sigma_px = ReadNumber("--noise", texts.sigma_px, 0.001, 100.0);
-  question->outlier_ratio = ReadNumber("--wrong", texts.wrong, 0.0, 0.95);
+  question->outlier_ratio = ReadShare("--wrong", texts.wrong, 0.95);
   std::vector<std::string> scenes;
   for (const SceneEntry& entry : SceneRegistry()) scenes.push_back(entry.name);
   if (std::ranges::count(scenes, texts.scene) == 0) {

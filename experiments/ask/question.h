@@ -10,11 +10,11 @@ namespace rcme {
 
 // What the question needs, as text; empty: not said yet.
 struct AskedTexts {
-  std::string image;     // "1280x720", px
+  std::string image;     // "1280x720" or "1280 720", px
   std::string focal_px;  // of fx and fy
   std::string sigma_px;  // noise per coordinate
   std::string scene;     // of `rcme list scenes`
-  std::string wrong;     // share of wrong matches
+  std::string wrong;     // share of wrong matches, "0.4" or "40%"
 };
 
 struct Question {
@@ -35,6 +35,9 @@ void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts);
 
 // Those of the options that are missing: {"--focal"}.
 std::vector<std::string> MissingOptions(const AskedTexts& texts);
+
+// A share, also of a text in percent: 0.4 of "0.4", "40%" and "40 %". False: the text is none.
+bool ParseShare(const std::string& text, double* share);
 
 // Fills in what the texts say. Throws InputError that names the option and what is allowed.
 void ReadTexts(const AskedTexts& texts, Question* question);

@@ -27,6 +27,7 @@ namespace rcme {
 namespace {
 
 constexpr int kPilotTrials = 20;  // which say how long one takes
+constexpr int kFewestTrials = 50;
 
 struct AskArguments {
   AskedTexts texts;
@@ -46,20 +47,23 @@ std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
 
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
 
-// Runs so many trials of the study into the file; those that are there already are kept.
-RunReport RunStudyTrials(const AskArguments& arguments, int trials, Study study) {
-  study.trials = trials;
-  const StudyPlan plan = MakePlan(study, arguments.out + "/study.yaml");
+// Runs so many trials of the question's study into the file; those that are there already are kept. Nothing
+// is written, study.yaml included, if the file is one of another question.
+RunReport RunTrialsOf(const AskArguments& arguments, int trials) {
+  const std::string path = arguments.out + "/study.yaml";
+  const std::string text = MakeStudyText(arguments.question, trials);
+  const StudyPlan plan = MakePlan(ParseStudy(text, path), path);
   ResultStore store = ResultStore::OpenForRun(ResultPath(arguments), plan);
+  WriteFileWhole(path, text);
   return RunStudy(plan, arguments.threads, &store);
 }
 
-// The greatest of a few round numbers that the time is enough for, judged by the first trials; their number,
-// if these were there already. It depends on no outcome, so that the intervals hold.
+// The greatest of a few round numbers that the time is enough for, judged by the first trials; the least of
+// them, if these were there already. It depends on no outcome, so that the intervals hold.
 int ChooseTrials(const RunReport& pilot, double seconds) {
-  if (pilot.num_run_now == 0) return static_cast<int>(pilot.num_trials);
+  if (pilot.num_run_now == 0) return kFewestTrials;
   const double seconds_per_trial = pilot.seconds / static_cast<double>(pilot.num_run_now);
-  int chosen = 50;
+  int chosen = kFewestTrials;
   for (const int trials : {100, 200, 500, 1000, 2000, 5000}) {
     if (seconds_per_trial * trials <= 0.8 * seconds) chosen = trials;
   }
@@ -72,12 +76,21 @@ int FindTrialsAskedBefore(const AskArguments& arguments) {
   return ResultStore::OpenForReading(ResultPath(arguments)).Description().trials;
 }
 
-// The study of the question with the number of its trials, written to `path`.
-Study WriteStudy(const Question& question, int trials, const std::string& path) {
-  const std::string text = MakeStudyText(question, trials);
-  Study study = ParseStudy(text, path);
-  WriteFileWhole(path, text);
-  return study;
+// As many trials as are asked for, were asked for before, or fit into the time.
+void RunQuestion(const AskArguments& arguments) {
+  const int before = FindTrialsAskedBefore(arguments);
+  if (arguments.trials > 0) {
+    RunTrialsOf(arguments, arguments.trials);
+  } else if (before > kPilotTrials) {
+    PrintMessage("The answer is of the {} trials that {} was begun with; --trials N takes more\n", before,
+                 ResultPath(arguments));
+    RunTrialsOf(arguments, before);
+  } else {
+    const int trials =
+        ChooseTrials(RunTrialsOf(arguments, kPilotTrials), ParseDuration(arguments.within).value());
+    PrintMessage("{} trials of each estimator, within about {}\n", trials, arguments.within);
+    RunTrialsOf(arguments, trials);
+  }
 }
 
 void RunAsk(AskArguments arguments) {
@@ -90,21 +103,21 @@ void RunAsk(AskArguments arguments) {
   AskForMissing(std::cin, std::cerr, &arguments.texts);
   ReadTexts(arguments.texts, &arguments.question);
   MakeResultFolder(arguments.out);
-  const std::string path = arguments.out + "/study.yaml";
-  int trials = arguments.trials > 0 ? arguments.trials : FindTrialsAskedBefore(arguments);
-  const bool is_pilot = arguments.trials == 0 && trials <= kPilotTrials;
-  if (is_pilot) trials = kPilotTrials;
-  const Study study = WriteStudy(arguments.question, trials, path);
-  const RunReport first = RunStudyTrials(arguments, trials, study);
-  if (is_pilot) {
-    trials = ChooseTrials(first, ParseDuration(arguments.within).value());
-    PrintMessage("{} trials of each estimator, within about {}\n", trials, arguments.within);
-    RunStudyTrials(arguments, trials, WriteStudy(arguments.question, trials, path));
-  }
+  RunQuestion(arguments);
   const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.at_most,
                                        arguments.question.sigma_px);
   const std::string question = DescribeQuestion(arguments.question);
   PrintResult(MakeAnswerResult(answer, question, arguments.out), arguments.format);
+}
+
+// "5%" is 0.05.
+CLI::Validator PercentAsShare() {
+  return {[](std::string& text) {
+            double share = 0.0;
+            if (text.ends_with('%') && ParseShare(text, &share)) text = fmt::format("{}", share);
+            return std::string();
+          },
+          ""};
 }
 
 }  // namespace
@@ -114,27 +127,33 @@ void AddAskCommand(CLI::App& app) {
       "ask", "Answer for your camera: which estimator, how far to trust it, how many trials");
   command->footer(R"(Writes a study of one condition, runs as many trials as the time allows, and answers in
 about ten lines: the estimator that succeeds most often among rcme_calibrated, tuned
-RCME, MSAC, OpenCV's MAGSAC and OpenGV's RANSAC; whether its lead is more than chance;
-from which stated probability of failure on to refuse its answers; whether its
-probabilities and covariances are right; and how many trials would tell the first two
-apart. Without the first five options it asks for them at a terminal.
+RCME, MSAC, OpenCV's MAGSAC and OpenGV's RANSAC, and which of the others the trials
+cannot tell from it (of those that succeed as often, the one of the least median error
+leads, then the fastest); up to which stated probability of failure to accept answers;
+whether probabilities and covariances are right; what it takes for an inlier; and how
+many trials tell the first two apart. Without the first five options it asks for them
+at a terminal.
 
 The study, the result file and what you can do next are named at the end. The same
-command again goes on with the trials that are there.
+command again answers from the trials that are there; --trials N takes more.
 
 Examples:
   rcme ask
   rcme ask --image 1280x720 --focal 900 --noise 0.7 --scene corridor --motion forward \
-           --wrong 0.4 --outliers clustered_both --out corridor
+           --wrong 40% --outliers clustered_both --out corridor
   rcme ask --image 640x480 --focal 525 --noise 1 --scene room --wrong 0.2 --within 30s)");
   auto arguments = std::make_shared<AskArguments>();
   AskedTexts& texts = arguments->texts;
   Question& question = arguments->question;
-  command->add_option("--image", texts.image, "size of an image, WIDTHxHEIGHT, px");
+  command
+      ->add_option_function<std::vector<std::string>>(
+          "--image", [&texts](const auto& words) { texts.image = fmt::format("{}", fmt::join(words, " ")); },
+          "size of an image, WIDTHxHEIGHT, px")
+      ->expected(1, 3);
   command->add_option("--focal", texts.focal_px, "focal length, px");
   command->add_option("--noise", texts.sigma_px, "standard deviation of a point's noise per coordinate, px");
   command->add_option("--scene", texts.scene, "kind of scene (`rcme list scenes`)");
-  command->add_option("--wrong", texts.wrong, "share of wrong matches, 0 to 0.95");
+  command->add_option("--wrong", texts.wrong, "share of wrong matches, 0 to 0.95 or 0% to 95%");
   command
       ->add_option("--motion", question.motion, "kind of motion (`rcme list motions`); default: the scene's")
       ->check(MakeChoiceValidator(ListNames(MotionRegistry())));
@@ -147,15 +166,16 @@ Examples:
   command
       ->add_option("--max-rotation-error", question.max_rotation_error_deg,
                    "a motion with a greater rotation error has failed, deg")
-      ->transform(NumberIn({0.0, 180.0}))
+      ->transform(NumberIn({1e-6, 180.0}))
       ->capture_default_str();
   command
       ->add_option("--max-direction-error", question.max_direction_error_deg,
                    "a motion with a greater error of the direction has failed, deg")
-      ->transform(NumberIn({0.0, 180.0}))
+      ->transform(NumberIn({1e-6, 180.0}))
       ->capture_default_str();
   command->add_option("--at-most", arguments->at_most, "rate of failure among the answers that you accept")
       ->transform(NumberIn({1e-6, 0.5}))
+      ->transform(PercentAsShare())
       ->capture_default_str();
   command
       ->add_option("--within", arguments->within, "time that it may take (30s, 2m, 1h); at least 50 trials")
