@@ -54,9 +54,9 @@ std::string NameStating(const Answer& a) {
 std::string DescribeAcceptRule(const Answer& a) {
   if (a.stating.empty()) return a.best.label + " states no P: nothing to accept by";
   if (!a.rule) {
-    return fmt::format("{}no rule keeps failures below {:g} % yet: it takes at least {} answers, all right",
-                       NameStating(a), 100.0 * a.at_most,
-                       FewestCertifyingAnswers(a.at_most, a.num_estimators));
+    return fmt::format(
+        "{}no rule keeps failures below {:g} % yet: it takes at least {} answers without a failure",
+        NameStating(a), 100.0 * a.at_most, FewestCertifyingAnswers(a.at_most, a.num_estimators));
   }
   const ErrorCount& accepted = a.rule->accepted;
   const std::string rule = a.rule->greatest_probability >= 1.0
@@ -96,7 +96,7 @@ std::string DescribeTies(const Answer& a) {
   std::vector<std::string> counts;
   for (const AskedEstimator& other : a.alike)
     counts.push_back(fmt::format("{} {}", other.label, CountSuccesses(other)));
-  return fmt::format("its {} of {} may be chance, beside {}{}", CountSuccesses(a.best), n,
+  return fmt::format("{} of {}; not told apart from it: {}{}", CountSuccesses(a.best), n,
                      fmt::join(counts, ", "), DescribeTieBreak(a));
 }
 
@@ -111,8 +111,8 @@ std::string DescribeTrialsToTell(const Answer& a) {
   const bool is_known = d.trials_to_tell <= 10'000'000;
   if (is_known && d.p_value < 0.05)
     return fmt::format("; about {} tell the first two apart", RoundTrials(d.trials_to_tell));
-  const std::string plain = fmt::format("a difference of {:g} % takes about {}", 100.0 * kPlainDifference,
-                                        RoundTrials(d.trials_of_plain_difference));
+  const std::string plain = fmt::format("to tell a difference of {:g} % takes about {}",
+                                        100.0 * kPlainDifference, RoundTrials(d.trials_of_plain_difference));
   return "; " +
          (is_known ? fmt::format("about {} tell the first two apart, ", RoundTrials(d.trials_to_tell))
                    : std::string()) +
@@ -125,8 +125,8 @@ std::string DescribeTrials(const Answer& a) {
   if (a.best.success.value < 1.0 || a.num_trials == 0) return text;
   const std::int64_t needed = FewestCertifyingTrials(kRareRate, 0.025 / a.num_estimators);
   if (needed > a.num_trials)
-    text += fmt::format("; to show a failure rate below {:g} % takes {} without one", 100.0 * kRareRate,
-                        RoundTrials(needed));
+    text += fmt::format("; to show a failure rate below {:g} % takes about {} without a failure",
+                        100.0 * kRareRate, RoundTrials(needed));
   return text;
 }
 
@@ -138,9 +138,10 @@ std::string DescribeNext(const Answer& a) {
 }
 
 std::string DescribeCoverage(const Answer& a) {
+  if (std::isnan(a.coverage.value)) return "coverage is not known" + DescribeSharpness(a);
   return fmt::format("{}: the 95 % region contains the truth in {}{}",
-                     std::isnan(a.coverage.value) ? "not known" : DescribeCoverageVerdict(a.coverage_verdict),
-                     FormatEstimate(a.coverage, kPercent), DescribeSharpness(a));
+                     DescribeCoverageVerdict(a.coverage_verdict), FormatEstimate(a.coverage, kPercent),
+                     DescribeSharpness(a));
 }
 
 Lines DescribeAnswer(const Answer& a) {
@@ -223,9 +224,9 @@ std::string AnswerAsText(const Answer& answer, const std::string& question, cons
              "\nThe study is {0}/study.yaml. Next, all of it on one page, and up to which share of\n"
              "wrong matches it holds:\n"
              "  rcme report {0}/run.sqlite --out {0}/report.html\n"
-             "  rcme solve {0}/study.yaml --over outlier_ratio --from 0.05 --to 0.9 --at {1:g} \\\n"
-             "    --out {0}/solve --max-time 5m\n",
-             folder, answer.at_most);
+             "  rcme solve {0}/study.yaml --estimator {2} --over outlier_ratio \\\n"
+             "    --from 0.05 --to 0.9 --at {1:g} --trials 2000 --out {0}/solve --max-time 5m\n",
+             folder, answer.at_most, answer.best.label);
 }
 
 std::string AnswerAsJson(const Answer& a, const std::string& question) {

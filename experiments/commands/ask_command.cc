@@ -64,7 +64,7 @@ int ChooseTrials(const RunReport& pilot, double seconds) {
   if (pilot.num_run_now == 0) return kFewestTrials;
   const double seconds_per_trial = pilot.seconds / static_cast<double>(pilot.num_run_now);
   int chosen = kFewestTrials;
-  for (const int trials : {100, 200, 500, 1000, 2000, 5000}) {
+  for (const int trials : {100, 150, 200, 300, 500, 700, 1000, 1500, 2000, 3000, 5000}) {
     if (seconds_per_trial * trials <= 0.8 * seconds) chosen = trials;
   }
   return chosen;
@@ -114,7 +114,8 @@ void RunAsk(AskArguments arguments) {
 CLI::Validator PercentAsShare() {
   return {[](std::string& text) {
             double share = 0.0;
-            if (text.ends_with('%') && ParseShare(text, &share)) text = fmt::format("{}", share);
+            if (text.ends_with('%') && ParseShare(text, &share) && share <= 1.0)
+              text = fmt::format("{}", share);
             return std::string();
           },
           ""};

@@ -35,8 +35,8 @@ TEST_F(AskProgram, AnswersWithStudyAndResultFile) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const std::string part :
        {"640 x 480 px, f 500 px, noise 0.5 px; corridor; 20 % wrong (uniform) of 80 matches", "Estimator",
-        "Next best", "Difference", "Threshold", "Covariance", "Time", "Trials", "rcme report ",
-        "rcme solve "})
+        "Next best", "Accept if", "Inlier threshold", "Covariance", "Time", "Trials", "Success: an error of",
+        "rcme report ", "rcme solve "})
     EXPECT_THAT(result.out, HasSubstr(part));
   EXPECT_TRUE(std::filesystem::exists(folder_.Path("asked/study.yaml")));
   const ProgramResult again = RunRcme({"run", folder_.Path("asked/study.yaml"), "--trials", "12", "--threads",
@@ -50,6 +50,22 @@ TEST_F(AskProgram, AnswersWithStudyAndResultFile) {
   ExpectSameRows(Ask({"--image", "640x480", "--trials", "12", "--format", "csv"}).out, json["rows"]);
 }
 
+// Two words for the size and percent for a share are the same question, whose trials are there.
+TEST_F(AskProgram, TheSameQuestionInOtherWordsGoesOn) {
+  ASSERT_EQ(Ask({"--image", "640x480", "--trials", "21"}).exit_code, 0);
+  const std::string study = ReadBytes(folder_.Path("asked/study.yaml"));
+  const ProgramResult same =
+      RunRcme({"ask", "--image", "640", "480", "--focal", "500", "--noise", ".5", "--wrong", "20%", "--scene",
+               "corridor", "--matches", "80", "--at-most", "5%", "--out", folder_.Path("asked")});
+  EXPECT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.err, HasSubstr("21 of 21 trials are there already"));
+  EXPECT_EQ(ReadBytes(folder_.Path("asked/study.yaml")), study);
+  const ProgramResult other = Ask({"--image", "640x481", "--trials", "21"});
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("holds the results of another study"));
+  EXPECT_EQ(ReadBytes(folder_.Path("asked/study.yaml")), study) << "it is still that of run.sqlite";
+}
+
 TEST_F(AskProgram, WithoutATerminalItNamesWhatIsMissing) {
   const ProgramResult result = Ask({});
   EXPECT_EQ(result.exit_code, 2);
@@ -61,6 +77,8 @@ TEST_F(AskProgram, RefusesWhatIsNoCamera) {
   const ProgramResult result = Ask({"--image", "640"});
   EXPECT_EQ(result.exit_code, 2);
   EXPECT_THAT(result.err, HasSubstr("give WIDTHxHEIGHT"));
+  EXPECT_THAT(Ask({"--image", "640x480", "--at-most", "500%"}).err,
+              HasSubstr("--at-most: '500%' is not allowed; give a number in [1e-06, 0.5]"));
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("asked")));
 }
 

@@ -90,6 +90,13 @@ TEST_F(BadInput, UnknownStudyKey) {
   EXPECT_FALSE(std::filesystem::exists(out_)) << "a result file was made for a file that is not a study";
 }
 
+// What somebody writes who has read a list of names.
+TEST_F(BadInput, AnEstimatorFileIsNoEstimator) {
+  const std::string bad = folder_.Write("bad.yaml", SmallStudyYaml() + "  - {name: rcme_tuned}\n");
+  EXPECT_TRUE(IsRefused(RunRcme({"run", bad, "--out", out_}),
+                        {"bad.yaml:10:", "'rcme_tuned' is an estimator file", "write {file: rcme_tuned}"}));
+}
+
 TEST_F(BadInput, StudiesThatCannotBePlannedNameTheirFile) {
   const std::string bad =
       folder_.Write("bad.yaml", "data: {scene: match_files, folder: " + folder_.Path("none") +

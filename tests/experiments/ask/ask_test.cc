@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -10,9 +12,13 @@
 
 #include "experiments/ask/accept_rule.h"
 #include "experiments/ask/answer_output.h"
+#include "experiments/ask/inlier_threshold.h"
 #include "experiments/ask/question.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
+#include "tests/test_support/add_records.h"
+#include "tests/test_support/small_study.h"
+#include "tests/test_support/temp_folder.h"
 
 namespace rcme {
 namespace {
@@ -43,11 +49,27 @@ TEST(Ask, ReadsTheTextsAndRefusesWhatIsNone) {
   EXPECT_EQ(question.focal_px, 900.0);
   EXPECT_EQ(question.sigma_px, 0.7);
   EXPECT_EQ(question.outlier_ratio, 0.4);
+  for (const std::string image : {"1280 720", "1280 x 720", "1280X720"}) {
+    AskedTexts texts = Corridor();
+    Question same;
+    texts.image = image;
+    ReadTexts(texts, &same);
+    EXPECT_EQ(std::pair(same.image_width, same.image_height), std::pair(1280, 720)) << image;
+  }
+  for (const std::string wrong : {"40%", "40 %", "0.40"}) {
+    AskedTexts texts = Corridor();
+    Question same;
+    texts.wrong = wrong;
+    ReadTexts(texts, &same);
+    EXPECT_EQ(MakeStudyText(same, 9), MakeStudyText(question, 9)) << wrong;
+  }
   const std::vector<std::pair<std::string AskedTexts::*, std::string>> wrong = {
       {&AskedTexts::image, "1280"},  {&AskedTexts::image, "1280x"},  {&AskedTexts::image, "1280x720x3"},
       {&AskedTexts::image, "8x8"},   {&AskedTexts::focal_px, "0"},   {&AskedTexts::focal_px, "900px"},
       {&AskedTexts::sigma_px, "-1"}, {&AskedTexts::sigma_px, "nan"}, {&AskedTexts::scene, "corridoor"},
-      {&AskedTexts::wrong, "40"},    {&AskedTexts::wrong, "1"}};
+      {&AskedTexts::wrong, "40"},    {&AskedTexts::wrong, "1"},      {&AskedTexts::wrong, "100%"},
+      {&AskedTexts::wrong, "%"},     {&AskedTexts::wrong, "nan%"},   {&AskedTexts::image, "1280 720 3"},
+      {&AskedTexts::image, "x"},     {&AskedTexts::image, "1e3x99"}, {&AskedTexts::focal_px, "1e300"}};
   for (const auto& [text, value] : wrong) {
     AskedTexts texts = Corridor();
     texts.*text = value;
@@ -61,10 +83,11 @@ TEST(Ask, TheStudyIsTheQuestion) {
   question.motion = "forward";
   question.outliers = "clustered_both";
   // Peers and estimator files are the program's (end_to_end/ask_test.cc).
-  const std::string text = MakeStudyText(question);
+  const std::string text = MakeStudyText(question, 120);
   const Study study = ParseStudy(
       text.substr(0, text.find("estimators:")) + "estimators: [{name: rcme_calibrated}]\n", "asked.yaml");
   EXPECT_EQ(study.name, "asked");
+  EXPECT_EQ(study.trials, 120);
   EXPECT_EQ(study.factors.size(), 1u);
   for (const auto& [key, value] : Settings{{"scene", "corridor"},
                                            {"cameras", "pinhole"},
@@ -78,15 +101,20 @@ TEST(Ask, TheStudyIsTheQuestion) {
   }
 }
 
+// The words of an answer's text, in however many lines.
+std::string JoinWords(const Answer& answer) {
+  std::istringstream text(AnswerAsText(answer, "?", "folder"));
+  std::string all, word;
+  while (text >> word) all += word + " ";
+  return all;
+}
+
 TEST(Ask, CoverageIsNotSaidWithoutSharpness) {
   Answer answer;
   answer.best.label = "ours";
   answer.coverage = {.value = 0.94, .interval = {0.9, 0.97}};
-  const auto says = [&](const std::string& words) {  // in however many lines
-    std::istringstream text(AnswerAsText(answer, "?", "folder"));
-    std::string all, word;
-    while (text >> word) all += word + " ";
-    return all.find(words) != std::string::npos;
+  const auto says = [&](const std::string& words) {
+    return JoinWords(answer).find(words) != std::string::npos;
   };
   EXPECT_FALSE(says("stated sd"));
   answer.rotation_sd_deg = 0.25, answer.direction_sd_deg = 1.5;
@@ -94,6 +122,141 @@ TEST(Ask, CoverageIsNotSaidWithoutSharpness) {
   answer.sd_over_crb = 1.625;
   EXPECT_TRUE(says("; stated sd 1.62 times the least possible"));
   EXPECT_EQ(nlohmann::json::parse(AnswerAsJson(answer, "?"))["sd_over_crb"], 1.625);
+}
+
+TEST(Ask, ThoseOfEqualSuccessAreRankedByErrorThenTime) {
+  const auto ranked = [](std::vector<AskedEstimator> estimators) {
+    RankEstimators(&estimators);
+    std::string labels;
+    for (const AskedEstimator& estimator : estimators) labels += estimator.label;
+    return labels;
+  };
+  const auto make = [](const char* label, double success, double error_deg, double time_ms) {
+    return AskedEstimator{label, {.value = success}, time_ms, error_deg, ""};
+  };
+  EXPECT_EQ(ranked({make("a", 0.9, 0.1, 1.0), make("b", 1.0, 0.9, 9.0)}), "ba") << "success first";
+  EXPECT_EQ(ranked({make("a", 1.0, 0.2, 1.0), make("b", 1.0, 0.1, 9.0)}), "ba") << "then the error";
+  EXPECT_EQ(ranked({make("a", 1.0, 0.122, 9.0), make("b", 1.0, 0.124, 1.0)}), "ba") << "alike in two digits";
+  EXPECT_EQ(ranked({make("a", 1.0, kNaN, 1.0), make("b", 1.0, 0.1, 9.0), make("c", kNaN, 0.0, 0.0)}), "bac")
+      << "what is not known is last";
+}
+
+TEST(Ask, AnInlierThresholdHasItsUnit) {
+  // The square root of the 95 % quantile of chi-squared with one degree of freedom is 1.95996.
+  EXPECT_EQ(DescribeInlierThreshold("msac", {{"significance_level", "0.05"}}, 0.7),
+            "1.37 px of Sampson distance (1.96 sigma: keeps 95 % of the true matches)");
+  EXPECT_EQ(DescribeInlierThreshold("opencv_usac", {{"threshold_sigma", "1.5"}}, 0.5),
+            "1.5 px as OpenCV takes it (1.5 standard deviations of its distance)");
+  EXPECT_EQ(DescribeInlierThreshold("opengv_ransac", {{"threshold_sigma", "2"}}, 0.7),
+            "1.4 px of reprojection error in both images together (2 sigma)");
+  const std::string rcme = DescribeInlierThreshold("rcme", {{"significance_level", "0.05"}}, 0.7);
+  EXPECT_TRUE(rcme.starts_with("none in px: a test that keeps 95 % of the true matches")) << rcme;
+  const std::string calibrated = DescribeInlierThreshold("rcme_calibrated", {{"sigma", "estimated"}}, 0.7);
+  EXPECT_TRUE(calibrated.starts_with("none: ")) << calibrated;
+  EXPECT_TRUE(calibrated.ends_with("(estimated, from 0.7 px on)")) << calibrated;
+  EXPECT_EQ(DescribeInlierThreshold("own", {}, 0.7), "");
+}
+
+// Three estimators: standard, which states probabilities, ours, third.
+class AnswerOfRun : public testing::Test {
+ protected:
+  struct Outcome {
+    double error_deg, failure_probability = kNaN;
+  };
+  // Adds trials of which each has these outcomes.
+  void Add(int num_trials, const std::vector<Outcome>& outcomes) {
+    for (int i = 0; i < num_trials; ++i, ++num_trials_) {
+      for (const Outcome& outcome : outcomes) {
+        TrialRecord record;
+        record.trial = num_trials_;
+        record.estimator = static_cast<std::uint32_t>(&outcome - outcomes.data());
+        record.status = MotionStatus::kOk;
+        record.rotation_error_deg = outcome.error_deg;
+        record.direction_error_deg = 0.01;
+        record.failure_probability = outcome.failure_probability;
+        record.seconds = 0.001;
+        records_.push_back(record);
+      }
+    }
+  }
+  Answer Ask() {
+    std::string yaml = SmallStudyYaml() + "  - {name: standard, label: third}\n";
+    yaml.replace(yaml.find("[0.0, 0.3]"), 10, "[0.3]");
+    Study study = ParseStudy(yaml, "asked.yaml");
+    study.trials = static_cast<int>(num_trials_);
+    AddRecords(*std::make_unique<ResultStore>(ResultStore::OpenForRun(path_, MakePlan(study))), records_);
+    return AnswerQuestion(ResultStore::OpenForReading(path_), 0.05, 0.5);
+  }
+
+  TempFolder folder_;
+  std::string path_ = folder_.Path("run.sqlite");
+  std::uint32_t num_trials_ = 0;
+  std::vector<TrialRecord> records_;
+};
+
+// standard and ours succeed in 200 of 200, third fails in 50.
+TEST_F(AnswerOfRun, TwoOfThreeAreTied) {
+  Add(150, {{1.0, 0.01}, {0.5}, {0.1}});
+  Add(50, {{1.0, 0.01}, {0.5}, {90.0}});
+  const Answer answer = Ask();
+  EXPECT_EQ(answer.best.label, "ours") << "its median error is the least of the two";
+  ASSERT_EQ(answer.alike.size(), 1u);
+  EXPECT_EQ(answer.alike[0].label, "standard");
+  // Of Clopper-Pearson with the confidence 1 - 0.05 / 3: (0.025 / 3)^(1 / 200).
+  EXPECT_NEAR(answer.best.success.interval.lower, std::pow(0.025 / 3.0, 1.0 / 200.0), 1e-9);
+  EXPECT_EQ(answer.difference->difference.value, 0.0);
+  // (1.959964 sqrt(0.01) + 0.841621 sqrt(0.01 - 0.0001))^2 / 0.0001 = 782.5
+  EXPECT_EQ(answer.difference->trials_of_plain_difference, 783);
+  EXPECT_EQ(answer.stating, "standard") << "ours states nothing, and cannot be told from it";
+  ASSERT_TRUE(answer.rule);
+  EXPECT_EQ(answer.rule->accepted.n, 200);
+  const std::string words = JoinWords(answer);
+  for (const std::string part :
+       {"2 of 3 succeed in 200 of 200; ours has the least median error, 0.5 deg ",
+        "standard: every answer: 100.0 % of the trials, 0 of 200 failed",
+        "standard: right to within 5 %: states 1.00 % on average; fail: 0.00 %",
+        "200; to tell a difference of 1 % takes about 780; to show a failure rate below 0.1 % takes about "
+        "4800",
+        "Success: an error of at most 3 deg of rotation and 15 deg of direction.",
+        "Accepted answers fail in less than 5 %", "--estimator ours", "--out folder/solve --max-time 5m"})
+    EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
+  const auto json = nlohmann::json::parse(AnswerAsJson(answer, "?"));
+  EXPECT_EQ(json["alike"][0]["label"], "standard");
+  EXPECT_EQ(json["stating"]["accept"]["accepted"], 200);
+  EXPECT_FALSE(json.contains("accept")) << "the best states no probability";
+}
+
+// ours fails in one trial of 40: one discordant trial says nothing.
+TEST_F(AnswerOfRun, OneFailureMoreMayBeChance) {
+  Add(39, {{1.0, 0.2}, {0.5}, {90.0}});
+  Add(1, {{1.0, 0.2}, {90.0}, {90.0}});
+  const Answer answer = Ask();
+  EXPECT_EQ(answer.best.label, "standard") << "by success, although its error is greater";
+  ASSERT_EQ(answer.alike.size(), 1u);
+  EXPECT_EQ(answer.alike[0].label, "ours");
+  EXPECT_EQ(answer.stating, "standard");
+  // (1.959964 sqrt(0.025) + 0.841621 sqrt(0.025 - 0.000625))^2 / 0.000625 = 311.0
+  EXPECT_EQ(answer.difference->trials_to_tell, 312);
+  const std::string words = JoinWords(answer);
+  for (const std::string part :
+       {"40 of 40; not told apart from it: ours 39 ", "2.50 % [", "less, may be chance",
+        "no rule keeps failures below 5 % yet: it takes at least 123 answers without a failure",
+        "too pessimistic: states 20.00 % on average", "40; about 310 tell the first two apart"})
+    EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
+}
+
+// third succeeds in 30 of 40 trials, the others in none.
+TEST_F(AnswerOfRun, ALeadThatIsMoreThanChanceHasNoTies) {
+  Add(30, {{90.0, 0.9}, {90.0}, {0.1}});
+  Add(10, {{90.0, 0.9}, {90.0}, {90.0}});
+  const Answer answer = Ask();
+  EXPECT_EQ(answer.best.label, "third");
+  EXPECT_TRUE(answer.alike.empty());
+  EXPECT_EQ(answer.stating, "") << "that which states a probability fails more often";
+  const std::string words = JoinWords(answer);
+  EXPECT_EQ(words.find("Ties"), std::string::npos);
+  EXPECT_NE(words.find("third states no P: nothing to accept by"), std::string::npos) << words;
+  EXPECT_NE(words.find("less, more than chance"), std::string::npos) << words;
 }
 
 // 300 answers of P 0.004, none of which fails, and 100 of P 0.15, of which half do. P(Binomial(300, 0.05) =

@@ -331,6 +331,15 @@ TEST(Override, FailureBound) {
   EXPECT_EQ(study.failure.max_direction_error_deg, 5.0);
 }
 
+// Of rcme_calibrated `sigma` is an option, a word; whoever writes a number means the noise.
+TEST(Override, ANumberForSigmaIsTheNoise) {
+  Study study = ParseStudy(SmallStudyYaml() + "  - {name: rcme_calibrated}\n", "s.yaml");
+  EXPECT_TRUE(ThrowsInputError([&] { Override(&study, "sigma", "1"); },
+                               {"sigma: '1'", "estimated, assumed", "(the noise is sigma_px)"}));
+  Override(&study, "sigma", "assumed");
+  EXPECT_EQ(ReadOption(study.estimators[2], "sigma"), "assumed");
+}
+
 TEST(Override, Errors) {
   const auto refuses = [](const std::string& key, const std::string& value,
                           const std::vector<std::string>& fragments) {
