@@ -45,26 +45,27 @@ std::string JudgeStated(const Estimate& measured, double stated, double margin) 
   return is_right ? fmt::format("right to within {:g} %", 100.0 * margin) : "undecided";
 }
 
-// "rcme_calibrated: " where P is not that of the best estimator.
-std::string NameStating(const Answer& a) {
-  return a.stating == a.best.label ? std::string() : a.stating + ": ";
-}
-
 // What can be promised of accepted answers.
 std::string DescribeAcceptRule(const Answer& a) {
   if (a.stating.empty()) return a.best.label + " states no P: nothing to accept by";
   if (!a.rule) {
     return fmt::format(
-        "{}no rule keeps failures below {:g} % yet: it takes at least {} answers without a failure",
-        NameStating(a), 100.0 * a.at_most, FewestCertifyingAnswers(a.at_most, a.num_estimators));
+        "no bound on the P of {} keeps failures below {:g} % yet: that takes at least {} answers without a "
+        "failure",
+        a.stating, 100.0 * a.at_most, FewestCertifyingAnswers(a.at_most, a.num_estimators));
   }
   const ErrorCount& accepted = a.rule->accepted;
   const std::string rule = a.rule->greatest_probability >= 1.0
-                               ? "every answer"
-                               : fmt::format("P <= {:g}", a.rule->greatest_probability);
-  return fmt::format("{}{}: {:.1f} % of the trials, {} of {} failed", NameStating(a), rule,
+                               ? "answers, whatever its P"
+                               : fmt::format("states P <= {:g}", a.rule->greatest_probability);
+  return fmt::format("{} {}: {:.1f} % of the trials, {} of {} failed", a.stating, rule,
                      100.0 * static_cast<double>(accepted.n) / static_cast<double>(a.rule->num_trials),
                      accepted.errors, accepted.n);
+}
+
+std::string DescribeTrust(const Answer& a) {
+  return fmt::format("{} states {:.2f} % on average, {} fail: {}", a.stating, 100.0 * a.stated.value,
+                     FormatEstimate(a.failed, kPercent), JudgeStated(a.failed, a.stated.value, a.at_most));
 }
 
 std::int64_t CountSuccesses(const AskedEstimator& estimator) {
@@ -139,9 +140,8 @@ std::string DescribeNext(const Answer& a) {
 
 std::string DescribeCoverage(const Answer& a) {
   if (std::isnan(a.coverage.value)) return "coverage is not known" + DescribeSharpness(a);
-  return fmt::format("{}: the 95 % region contains the truth in {}{}",
-                     DescribeCoverageVerdict(a.coverage_verdict), FormatEstimate(a.coverage, kPercent),
-                     DescribeSharpness(a));
+  return fmt::format("its 95 % region contains the truth in {}: {}{}", FormatEstimate(a.coverage, kPercent),
+                     DescribeCoverageVerdict(a.coverage_verdict), DescribeSharpness(a));
 }
 
 Lines DescribeAnswer(const Answer& a) {
@@ -150,11 +150,7 @@ Lines DescribeAnswer(const Answer& a) {
   if (!a.alike.empty()) lines.emplace_back("Ties", DescribeTies(a));
   if (a.next) lines.emplace_back("Next best", DescribeNext(a));
   lines.emplace_back("Accept if", DescribeAcceptRule(a));
-  if (!a.stating.empty()) {
-    lines.emplace_back("Trust in P", fmt::format("{}{}: states {:.2f} % on average; fail: {}", NameStating(a),
-                                                 JudgeStated(a.failed, a.stated.value, a.at_most),
-                                                 100.0 * a.stated.value, percent(a.failed)));
-  }
+  if (!a.stating.empty()) lines.emplace_back("Trust in P", DescribeTrust(a));
   if (!a.best.inlier_threshold.empty()) lines.emplace_back("Inlier threshold", a.best.inlier_threshold);
   lines.emplace_back("Covariance", DescribeCoverage(a));
   lines.emplace_back(

@@ -213,8 +213,8 @@ TEST_F(AnswerOfRun, TwoOfThreeAreTied) {
   const std::string words = JoinWords(answer);
   for (const std::string part :
        {"2 of 3 succeed in 200 of 200; ours has the least median error, 0.5 deg ",
-        "standard: every answer: 100.0 % of the trials, 0 of 200 failed",
-        "standard: right to within 5 %: states 1.00 % on average; fail: 0.00 %",
+        "standard answers, whatever its P: 100.0 % of the trials, 0 of 200 failed",
+        "standard states 1.00 % on average, 0.00 % [0.00, 2.37] (n 200) fail: right to within 5 % ",
         "200; to tell a difference of 1 % takes about 780; to show a failure rate below 0.1 % takes about "
         "4800",
         "Success: an error of at most 3 deg of rotation and 15 deg of direction.",
@@ -240,8 +240,10 @@ TEST_F(AnswerOfRun, OneFailureMoreMayBeChance) {
   const std::string words = JoinWords(answer);
   for (const std::string part :
        {"40 of 40; not told apart from it: ours 39 ", "2.50 % [", "less, may be chance",
-        "no rule keeps failures below 5 % yet: it takes at least 123 answers without a failure",
-        "too pessimistic: states 20.00 % on average", "40; about 310 tell the first two apart"})
+        "no bound on the P of standard keeps failures below 5 % yet: that takes at least 123 answers without "
+        "a failure",
+        "standard states 20.00 % on average, 0.00 % [0.00, 11.28] (n 40) fail: too pessimistic ",
+        "40; about 310 tell the first two apart"})
     EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
 }
 
