@@ -78,9 +78,9 @@ bool IsTied(const AskedEstimator& a, const AskedEstimator& b) { return a.success
 std::string DescribeTieBreak(const Answer& a) {
   if (!a.next || !IsTied(a.best, *a.next) || std::isnan(a.best.median_error_deg)) return "";
   const double error = RoundToTwoDigits(a.best.median_error_deg);
-  const bool is_faster = error == RoundToTwoDigits(a.next->median_error_deg);
-  return fmt::format("; {} has the least median error, {:g} deg{}", a.best.label, error,
-                     is_faster ? ", and is faster" : "");
+  const bool needs_time = error == RoundToTwoDigits(a.next->median_error_deg);
+  return fmt::format("; {} leads by median error, {:g} deg{}", a.best.label, error,
+                     needs_time ? ", then by time" : "");
 }
 
 // The estimators that the trials do not tell from the best, which their order must not hide.
@@ -112,7 +112,7 @@ std::string DescribeTrialsToTell(const Answer& a) {
   const bool is_known = d.trials_to_tell <= 10'000'000;
   if (is_known && d.p_value < 0.05)
     return fmt::format("; about {} tell the first two apart", RoundTrials(d.trials_to_tell));
-  const std::string plain = fmt::format("to tell a difference of {:g} % takes about {}",
+  const std::string plain = fmt::format("to tell a {:g} % difference in success takes about {}",
                                         100.0 * kPlainDifference, RoundTrials(d.trials_of_plain_difference));
   return "; " +
          (is_known ? fmt::format("about {} tell the first two apart, ", RoundTrials(d.trials_to_tell))
@@ -126,8 +126,8 @@ std::string DescribeTrials(const Answer& a) {
   if (a.best.success.value < 1.0 || a.num_trials == 0) return text;
   const std::int64_t needed = FewestCertifyingTrials(kRareRate, 0.025 / a.num_estimators);
   if (needed > a.num_trials)
-    text += fmt::format("; to show a failure rate below {:g} % takes about {} without a failure",
-                        100.0 * kRareRate, RoundTrials(needed));
+    text += fmt::format("; to show a failure rate below {:g} % about {} without a failure", 100.0 * kRareRate,
+                        RoundTrials(needed));
   return text;
 }
 

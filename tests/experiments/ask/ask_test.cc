@@ -212,11 +212,11 @@ TEST_F(AnswerOfRun, TwoOfThreeAreTied) {
   EXPECT_EQ(answer.rule->accepted.n, 200);
   const std::string words = JoinWords(answer);
   for (const std::string part :
-       {"2 of 3 succeed in 200 of 200; ours has the least median error, 0.5 deg ",
+       {"2 of 3 succeed in 200 of 200; ours leads by median error, 0.5 deg ",
         "standard answers, whatever its P: 100.0 % of the trials, 0 of 200 failed",
         "standard states 1.00 % on average, 0.00 % [0.00, 2.37] (n 200) fail: right to within 5 % ",
-        "200; to tell a difference of 1 % takes about 780; to show a failure rate below 0.1 % takes about "
-        "4800",
+        "200; to tell a 1 % difference in success takes about 780; to show a failure rate below 0.1 % about "
+        "4800 without",
         "Success: an error of at most 3 deg of rotation and 15 deg of direction.",
         "Accepted answers fail in less than 5 %", "--estimator ours", "--out folder/solve --max-time 5m"})
     EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
