@@ -172,9 +172,9 @@ Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px) {
   }
   AddStated(run, summary, &answer);
   const std::string& best = answer.best.label;
-  answer.sd_over_crb = FindEstimate(summary, best, "sd_over_crb").value;
-  answer.rotation_sd_deg = FindEstimate(summary, best, "rotation_sd_deg").value;
-  answer.direction_sd_deg = FindEstimate(summary, best, "direction_sd_deg").value;
+  answer.sharpness = {FindEstimate(summary, best, "sd_over_crb").value,
+                      FindEstimate(summary, best, "rotation_sd_deg").value,
+                      FindEstimate(summary, best, "direction_sd_deg").value};
   answer.coverage = WidenForChoice(FindEstimate(summary, best, "nees_coverage"), answer.num_estimators);
   answer.coverage_verdict = JudgeChosenCoverage(answer.coverage, answer);
   return answer;

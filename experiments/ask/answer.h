@@ -11,6 +11,7 @@
 #include "experiments/core/table/table.h"
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/coverage_verdict.h"
+#include "experiments/statistics/stated_sharpness.h"
 #include "experiments/study/study.h"
 #include "stats/constants.h"
 
@@ -52,8 +53,7 @@ struct Answer {
   Estimate stated, failed;         // mean stated probability, and rate of failure of the same answers
   Estimate coverage;               // of the 95 % region
   CoverageVerdict coverage_verdict;
-  // Medians of what the covariances state, without intervals; NaN: not known.
-  double sd_over_crb = kNaN, rotation_sd_deg = kNaN, direction_sd_deg = kNaN;
+  StatedSharpness sharpness;
 };
 
 // The best first: by success, then by the median error in two digits (not known: last), then by the time of

@@ -26,15 +26,6 @@ constexpr double kRareRate = 0.001;
 // The parts of the answer: what a line is about, and what it says.
 using Lines = std::vector<std::pair<std::string, std::string>>;
 
-// A region covers as often as it likes if it is wide enough.
-std::string DescribeSharpness(const Answer& a) {
-  if (!std::isnan(a.sd_over_crb))
-    return fmt::format("; stated sd {:.3g} times the least possible", a.sd_over_crb);
-  if (std::isnan(a.rotation_sd_deg)) return "";
-  return fmt::format("; stated sd {:.2g} deg of rotation, {:.2g} deg of direction", a.rotation_sd_deg,
-                     a.direction_sd_deg);
-}
-
 // Of a measured rate, whether it is what is stated: another one if the interval does not hold the stated
 // one, right if it lies within `margin` of it.
 std::string JudgeStated(const Estimate& measured, double stated, double margin) {
@@ -139,9 +130,10 @@ std::string DescribeNext(const Answer& a) {
 }
 
 std::string DescribeCoverage(const Answer& a) {
-  if (std::isnan(a.coverage.value)) return "coverage is not known" + DescribeSharpness(a);
+  const std::string sharpness = a.sharpness.IsKnown() ? "; " + DescribeSharpness(a.sharpness) : "";
+  if (std::isnan(a.coverage.value)) return "coverage is not known" + sharpness;
   return fmt::format("its 95 % region contains the truth in {}: {}{}", FormatEstimate(a.coverage, kPercent),
-                     DescribeCoverageVerdict(a.coverage_verdict), DescribeSharpness(a));
+                     DescribeCoverageVerdict(a.coverage_verdict), sharpness);
 }
 
 Lines DescribeAnswer(const Answer& a) {
@@ -245,9 +237,9 @@ std::string AnswerAsJson(const Answer& a, const std::string& question) {
   }
   if (!a.stating.empty()) AddStated(a, &json);
   json["coverage"] = RenderJson(a.coverage);
-  json["sd_over_crb"] = JsonNumber(a.sd_over_crb);
-  json["rotation_sd_deg"] = JsonNumber(a.rotation_sd_deg);
-  json["direction_sd_deg"] = JsonNumber(a.direction_sd_deg);
+  json["sd_over_crb"] = JsonNumber(a.sharpness.sd_over_crb);
+  json["rotation_sd_deg"] = JsonNumber(a.sharpness.rotation_sd_deg);
+  json["direction_sd_deg"] = JsonNumber(a.sharpness.direction_sd_deg);
   return JsonText(kAnswerFormat, json);
 }
 

@@ -118,7 +118,8 @@ do not enter the rates, and the intervals of all regions hold together.
   failure       share of the trials that failed
   sure_failure  share that failed, of the answers with a stated probability of at most 0.1
   coverage      truths outside of the stated 95 % region, of answers with P <= 0.01, or of
-                successes if the estimator states no probability
+                successes if the estimator states no probability; beside it the median of the
+                stated standard deviations
   difference    failed, less that of --against on the same trials
 
 The folder OUT receives worst.txt, worst.csv and worst.json, and of each region a study

@@ -16,6 +16,9 @@ const TrialQuantity& FindQuantity(const std::string& name) {
   return *found;
 }
 
+// Says nothing alone: wide regions cover.
+bool IsCoverage(const TrialQuantity& quantity) { return quantity.name == "nees_coverage"; }
+
 std::optional<size_t> FindIfPresent(const RunDescription& run, const std::string& label) {
   const auto found = std::ranges::find(run.estimators, label, &DescribedEstimator::label);
   if (found == run.estimators.end()) return std::nullopt;
@@ -55,6 +58,10 @@ void HypothesisEvidence::Add(std::uint32_t condition, const std::vector<TrialRec
   const std::optional<double> second =
       is_paired_ ? quantity_.Measure(records[*against_], bounds_) : std::optional(0.0);
   if (!first || !second) return;
+  if (IsCoverage(quantity_)) {
+    sharpness_.Add(records[*estimator_]);
+    if (is_paired_) sharpness_against_.Add(records[*against_]);
+  }
   if (is_of_means_) return scene_.Add(*first - *second);
   const bool is_first = *first != 0.0, is_second = *second != 0.0;
   Cluster& cluster = clusters_[cluster_of_[condition]];
@@ -86,6 +93,10 @@ MeasuredHypothesis HypothesisEvidence::Measure(bool is_of_population, double con
   measured.n = is_of_means_ ? scores_.n() : pairs_.n();
   if (measured.n == 0) measured.value = std::nan("");
   return measured;
+}
+
+StatedSharpness HypothesisEvidence::MeasureSharpness(Side side) const {
+  return (side == Side::kEstimator ? sharpness_ : sharpness_against_).Measure();
 }
 
 MeasuredHypothesis HypothesisEvidence::MeasureForConditions(double confidence) const {

@@ -7,6 +7,7 @@
 
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/scenes_of_run.h"
+#include "experiments/statistics/stated_sharpness.h"
 #include "experiments/statistics/summary_quantities.h"
 #include "experiments/study/stated_hypothesis.h"
 #include "stats/intervals.h"
@@ -36,6 +37,10 @@ class HypothesisEvidence {
   void EndScene(std::uint32_t condition);
 
   MeasuredHypothesis Measure(bool is_of_population, double confidence) const;
+  // Of the answers that are measured, if the quantity is a coverage; else unknown. kAgainst: of the other
+  // estimator, of the same trials.
+  enum class Side { kEstimator, kAgainst };
+  StatedSharpness MeasureSharpness(Side side) const;
 
  private:
   struct Cluster {
@@ -57,6 +62,7 @@ class HypothesisEvidence {
   std::vector<size_t> cluster_of_;
   std::vector<Cluster> clusters_;
   PairedCounts pairs_;
+  SharpnessMedians sharpness_, sharpness_against_;  // only of a coverage
   SceneMean scene_;
   ScoreMean scores_;
 };

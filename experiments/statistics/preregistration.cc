@@ -41,6 +41,8 @@ std::vector<DecidedHypothesis> DecideAll(const ResultStore& store, const RunDesc
     decided.interval = measured.interval;
     decided.n = measured.n;
     decided.num_conditions = evidence[i].CountConditions();
+    decided.sharpness = evidence[i].MeasureSharpness(HypothesisEvidence::Side::kEstimator);
+    decided.sharpness_against = evidence[i].MeasureSharpness(HypothesisEvidence::Side::kAgainst);
     decided.why_open = WhyOpen(evidence[i], read, before, decided);
     if (decided.why_open.empty()) decided.verdict = Decide(decided.stated, decided.interval);
     all.push_back(std::move(decided));

@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "experiments/run/store/result_store.h"
+#include "experiments/statistics/stated_sharpness.h"
 #include "experiments/study/stated_hypothesis.h"
 #include "stats/intervals.h"
 
@@ -37,6 +38,7 @@ struct DecidedHypothesis {
   Interval interval;   // simultaneous
   std::int64_t n = 0;  // trials; scenes if scenes are repeated
   std::int64_t num_conditions = 0;
+  StatedSharpness sharpness, sharpness_against;  // of a coverage; else unknown
   HypothesisVerdict verdict = HypothesisVerdict::kOpen;
   std::string why_open;  // "50 of 100 trials are done"; empty: the interval decides
 };

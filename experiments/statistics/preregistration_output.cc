@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/core/text/columns.h"
+#include "experiments/core/text/field_text.h"
 
 namespace rcme {
 namespace {
@@ -22,6 +23,19 @@ std::string VerdictText(const DecidedHypothesis& decided) {
                                   : fmt::format("{}: {}", Name(decided.verdict), decided.why_open);
 }
 
+// "   ours: stated sd 1.3 times the least possible (median)"; empty: unknown, or of no coverage.
+std::string SharpnessLine(const std::string& estimator, const StatedSharpness& sharpness) {
+  if (!sharpness.IsKnown()) return "";
+  return fmt::format("   {}: {} (median)\n", estimator, DescribeSharpness(sharpness));
+}
+
+Json SharpnessAsJson(const StatedSharpness& sharpness) {
+  if (!sharpness.IsKnown()) return nullptr;
+  return {{"sd_over_crb", JsonNumber(sharpness.sd_over_crb)},
+          {"rotation_sd_deg", JsonNumber(sharpness.rotation_sd_deg)},
+          {"direction_sd_deg", JsonNumber(sharpness.direction_sd_deg)}};
+}
+
 }  // namespace
 
 std::string PreregistrationAsText(const Preregistration& preregistration) {
@@ -36,6 +50,8 @@ std::string PreregistrationAsText(const Preregistration& preregistration) {
   for (const DecidedHypothesis& decided : preregistration.hypotheses) {
     text += "\n" + FormatParagraph(fmt::format("{}. {}", ++number, Describe(decided.stated)));
     text += fmt::format("   {}; {}, n = {}\n", VerdictText(decided), InPerCent(decided), decided.n);
+    text += SharpnessLine(decided.stated.estimator, decided.sharpness) +
+            SharpnessLine(decided.stated.against, decided.sharpness_against);
   }
   if (number > 0) {
     text += fmt::format(
@@ -62,6 +78,8 @@ Json PreregistrationAsJson(const Preregistration& preregistration) {
                           {"interval", {decided.interval.lower, decided.interval.upper}},
                           {"n", decided.n},
                           {"conditions", decided.num_conditions},
+                          {"sharpness", SharpnessAsJson(decided.sharpness)},
+                          {"sharpness_against", SharpnessAsJson(decided.sharpness_against)},
                           {"verdict", Name(decided.verdict)},
                           {"why_open", decided.why_open}});
   }

@@ -240,6 +240,16 @@ def comparison(run, event):
                  by_condition(lines, lambda row: condition_heading(run, row, run.comparison.factors)))
 
 
+def stated_sharpness(one):
+    """Of a hypothesis about coverage: how wide the regions are, of each estimator (medians)."""
+    for who, stated in ((one["estimator"], one.get("sharpness")), (one["against"], one.get("sharpness_against"))):
+        if stated and stated["sd_over_crb"] is not None:
+            yield f"{who}: stated sd {stated['sd_over_crb']:.3g} times the least possible"
+        elif stated and stated["rotation_sd_deg"] is not None:
+            yield (f"{who}: stated sd {stated['rotation_sd_deg']:.2g} deg of rotation, "
+                   f"{stated['direction_sd_deg']:.2g} deg of direction")
+
+
 def hypotheses(decided):
     """What was stated before the run, a row each."""
     rows = []
@@ -248,6 +258,7 @@ def hypotheses(decided):
         if one["n"] and one["value"] is not None:
             lower, upper = one["interval"]
             value = joined([f"{100 * one['value']:.2f} %", Html("<br>"), small(f"[{100 * lower:.2f}, {100 * upper:.2f}]")])
+            value = joined([value, *[part for words in stated_sharpness(one) for part in (Html("<br>"), small(words))]])
         why = [Html("<br>"), small(one["why_open"])] if one["why_open"] else []
         rows.append([one["hypothesis"], value, f"{one['n']:,}", joined([element("strong", one["verdict"]), *why])])
     caption = (f"All {len(rows)} intervals together hold with {100 * decided['confidence']:.0f} %, each with "

@@ -11,7 +11,7 @@ from common.command_line import PlotError
 from common.whole_file import write_text
 from worst_search.intervals import clopper_pearson
 from worst_search.run_rcme import run_rcme
-from worst_search.run_trials import QUANTITIES, number_text, study_text
+from worst_search.run_trials import QUANTITIES, SHARPNESS, number_text, study_text
 
 
 def limit_text(space, key, limit):
@@ -27,12 +27,34 @@ def share_interval(region, pool):
     return clopper_pearson(int(region.box.contains(pool).sum()), pool.size, 0.95)
 
 
+def fresh_answer(objective, region):
+    with open(objective.path(region.name, ".json"), encoding="utf-8") as file:
+        return json.load(file)
+
+
+def sharpness_columns(objective, region):
+    """Of a coverage: medians of what the answers of its fresh trials state."""
+    if objective.quantity != "coverage":
+        return {}
+    return {key: fresh_answer(objective, region).get("sharpness", {}).get(key) for key in SHARPNESS}
+
+
+def sharpness_text(row):
+    """Lines; none if no sharpness is known or asked for."""
+    if row.get("sd_over_crb") is not None:
+        return [f"  stated sd (median): {row['sd_over_crb']:.3g} times the least possible"]
+    if row.get("rotation_sd_deg") is not None:
+        return [f"  stated sd (median): {row['rotation_sd_deg']:.2g} deg of rotation, "
+                f"{row['direction_sd_deg']:.2g} deg of direction"]
+    return []
+
+
 def row_of(objective, plan, number, region):
     lower, upper = share_interval(region, objective.space.pool)
     return {"region": number, "rate": region.rate.estimate, "lower": region.rate.lower, "upper": region.rate.upper,
             "events": region.fresh.events, "reverse": region.fresh.reverse, "trials": region.fresh.trials,
             "claim": plan.claim, "is_find": region.is_find, "share": region.share, "share_lower": lower,
-            "share_upper": upper, "search_rate": region.search_rate,
+            "share_upper": upper, "search_rate": region.search_rate, **sharpness_columns(objective, region),
             "limits": "; ".join(limit_text(objective.space, k, v) for k, v in region.box.limits)}
 
 
@@ -59,6 +81,7 @@ def as_text(objective, plan, regions, rows):
         lines += ["", f"Region {row['region']}: {percent(row['rate'])} % [{percent(row['lower'])}, {percent(row['upper'])}] of "
                   f"{row['trials']} fresh trials ({verdict} of {percent(plan.claim)} %); {100 * row['share']:.2f} % "
                   f"[{100 * row['share_lower']:.2f}, {100 * row['share_upper']:.2f}] of the population"]
+        lines += sharpness_text(row)
         lines += ["  " + limit_text(objective.space, key, limit) for key, limit in region.box.limits]
     return "\n".join(lines) + "\n"
 
@@ -100,9 +123,7 @@ def write_report(objective, plan, regions):
                                 "the draws of its fresh trials."}
         path = os.path.join(objective.folder, f"region_{number}.yaml")
         write_text(path, study_text(study))
-        with open(objective.path(region.name, ".json"), encoding="utf-8") as file:
-            answer = json.load(file)
-        paths += [path, *show(objective, number, path, answer)]
+        paths += [path, *show(objective, number, path, fresh_answer(objective, region))]
     text = as_text(objective, plan, regions, rows)
     files = {"worst.txt": text, "worst.csv": as_csv(rows),
              "worst.json": json.dumps({"format": "rcme worst 1", "study": objective.study["name"],

@@ -28,6 +28,7 @@ QUANTITIES = {"failure": "share of the trials that failed",
               "coverage": "share of the truths outside of the stated 95 % region, of answers with P <= "
                           f"{SURE_OF_COVERAGE:g}, or of successes if the estimator states no P",
               "difference": "share of the trials that failed, less that of the other estimator"}
+SHARPNESS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg")  # beside a coverage: wide regions cover
 CLAIMS = {"failure": 0.5, "sure_failure": SURE_BELOW, "coverage": 0.05, "difference": 0.0}
 
 
@@ -163,6 +164,12 @@ def event_of(quantity, row):
     return int(float(nees) > COVERED_BELOW) if is_sure and nees else NOT_THERE
 
 
+def sharpness_of(rows):
+    """{column: median over these answers}, None where none states it."""
+    known = {key: [float(row[key]) for row in rows if row.get(key)] for key in SHARPNESS}
+    return {key: float(np.median(values)) if values else None for key, values in known.items()}
+
+
 class TrialsOfRun(Objective):
     """`folder` holds study.yaml; `pool`: {number of the draw: levels} in order."""
 
@@ -239,6 +246,7 @@ class TrialsOfRun(Objective):
             raise PlotError(f"{name}: {table.stderr.strip()}")
         rows = csv.DictReader(io.StringIO(table.stdout))
         levels, answers, num_calls = {}, {label: {} for label in self.labels}, 0
+        measured = []  # of a coverage, the answers that count
         names = rows.fieldnames[3:rows.fieldnames.index("trial")]  # after study, condition, draw
         columns = {name if name in self.space.keys else name.removeprefix("level_"): name for name in names}
         for row in rows:
@@ -248,6 +256,8 @@ class TrialsOfRun(Objective):
             num_calls += row["estimator"] == self.labels[0]
             if trial >= first:
                 answers[row["estimator"]][condition, trial] = event_of(self.quantity, row)
+                if self.quantity == "coverage" and answers[row["estimator"]][condition, trial] != NOT_THERE:
+                    measured.append(row)
         counts = {condition: [0, 0, 0] for condition in levels}
         failing = []
         for key, event in sorted(answers[self.labels[0]].items()):
@@ -264,4 +274,5 @@ class TrialsOfRun(Objective):
         return {"draws": [levels[c][0] for c in order], "levels": [levels[c][1] for c in order],
                 "events": [counts[c][0] for c in order], "trials": [counts[c][1] for c in order],
                 "reverse": [counts[c][2] for c in order], "conditions": order, "failing": failing,
-                "calls": num_calls, "seconds": round(self.last_seconds, 3)}
+                "calls": num_calls, "seconds": round(self.last_seconds, 3),
+                **({"sharpness": sharpness_of(measured)} if self.quantity == "coverage" else {})}

@@ -13,7 +13,8 @@ import plot_test_case  # noqa: F401  makes plots/ importable
 from planted_regions import PlantedRegion
 from worst_search.intervals import clopper_pearson, simultaneous_rate
 from worst_search.objective import Counts
-from worst_search.run_trials import TrialsOfRun, event_of, narrowed_conditions
+from worst_search.report import sharpness_text
+from worst_search.run_trials import TrialsOfRun, event_of, narrowed_conditions, sharpness_of
 from worst_search.search import Plan, find_worst
 from worst_search.space import Box, Space, overlap
 
@@ -173,6 +174,16 @@ class Events(unittest.TestCase):
         self.assertEqual([event_of("sure_failure", row) for row in (sure_failure, doubtful, silent, absent)], [1, -1, -1, -1])
         self.assertEqual([event_of("coverage", row) for row in (sure_failure, doubtful, silent)], [1, -1, -1])
         self.assertEqual(event_of("coverage", {**silent, "outcome": "success", "nees": "5"}), 0)
+
+    def test_a_coverage_comes_with_its_sharpness(self):
+        rows = [{"sd_over_crb": bound, "rotation_sd_deg": "0.5", "direction_sd_deg": sd} for bound, sd in
+                (("1", "2"), ("1.5", "4"), ("", "3"), ("9", ""))]
+        known = sharpness_of(rows)
+        self.assertEqual(known, {"sd_over_crb": 1.5, "rotation_sd_deg": 0.5, "direction_sd_deg": 3.0})
+        self.assertEqual(sharpness_text(known), ["  stated sd (median): 1.5 times the least possible"])
+        self.assertEqual(sharpness_text({**known, "sd_over_crb": None}),
+                         ["  stated sd (median): 0.5 deg of rotation, 3 deg of direction"])
+        self.assertEqual(sharpness_text(sharpness_of([])), [])
 
 
 if __name__ == "__main__":

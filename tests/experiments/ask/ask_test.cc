@@ -117,9 +117,9 @@ TEST(Ask, CoverageIsNotSaidWithoutSharpness) {
     return JoinWords(answer).find(words) != std::string::npos;
   };
   EXPECT_FALSE(says("stated sd"));
-  answer.rotation_sd_deg = 0.25, answer.direction_sd_deg = 1.5;
+  answer.sharpness.rotation_sd_deg = 0.25, answer.sharpness.direction_sd_deg = 1.5;
   EXPECT_TRUE(says("; stated sd 0.25 deg of rotation, 1.5 deg of direction"));
-  answer.sd_over_crb = 1.625;
+  answer.sharpness.sd_over_crb = 1.625;
   EXPECT_TRUE(says("; stated sd 1.62 times the least possible"));
   EXPECT_EQ(nlohmann::json::parse(AnswerAsJson(answer, "?"))["sd_over_crb"], 1.625);
 }

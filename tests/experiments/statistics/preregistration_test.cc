@@ -1,14 +1,14 @@
-#include "experiments/statistics/preregistration_output.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "experiments/core/files/sha256.h"
+#include "experiments/statistics/preregistration_output.h"
 #include "experiments/statistics/summary_quantities.h"
 #include "experiments/study/study_lock.h"
 #include "stats/paired.h"
@@ -200,6 +200,24 @@ TEST_F(PreregistrationTest, IsSaidForPeople) {
   study_.hypotheses.clear();
   StudyPlan plan = MakePlan(study_);
   EXPECT_FALSE(DescribePreregistered(Describe(plan), "run"));
+}
+
+// Wide regions cover: beside each coverage stands how wide they are, of both estimators.
+TEST_F(PreregistrationTest, ACoverageComesWithItsSharpness) {
+  State(
+      "  - {quantity: nees_coverage, estimator: ours, at_least: 0.9}\n"
+      "  - {quantity: nees_coverage, estimator: ours, against: standard, direction: not_lower, margin: 0.1}\n"
+      "  - {quantity: failure, estimator: ours, at_most: 0.5}\n");
+  const Preregistration decided = Run(100, 10);
+  const std::string text = PreregistrationAsText(decided);
+  // Trial k states k + 1 times the bound (Motion), so the 100-th of 200 is 50.
+  const std::string ours = "   ours: stated sd 50 times the least possible (median)\n";
+  EXPECT_THAT(text, HasSubstr("n = 200\n" + ours + "\n2. "));
+  EXPECT_THAT(text, HasSubstr(ours + "   standard: stated sd 50 times the least possible (median)\n\n3. "));
+  const auto hypotheses = PreregistrationAsJson(decided)["hypotheses"];
+  EXPECT_EQ(hypotheses[0]["sharpness"]["sd_over_crb"], 50.0);
+  EXPECT_TRUE(hypotheses[0]["sharpness_against"].is_null());
+  EXPECT_TRUE(hypotheses[2]["sharpness"].is_null());
 }
 
 TEST_F(PreregistrationTest, AForgedLockIsRefused) {
