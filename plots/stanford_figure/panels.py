@@ -82,11 +82,17 @@ def misleading_in_words(diagram):
     return f"{diagram.error}: {value} % [{lower}, {upper}] of the answers have an error beyond their level"
 
 
+# As the Stanford-ESA diagram of aviation names them, of the error, the protection level and the alert limit.
+DEFINITIONS = ("available: error \u2264 level \u2264 alert limit", "misleading: level < error \u2264 limit",
+               "hazardously misleading: level \u2264 limit < error, no warning",
+               "unavailable: limit < level, a warning, misleading if error > level; a trial without a motion has no level")
+
+
 def caption_of(file):
     first = file.diagrams[0]
     parts = [f"{style.label_of(file.estimator)} on study {file.study}, {first.trials} trials, {first.without_motion} of them "
              "without a motion", f"protection levels for a risk of {100 * file.risk:g} % an answer",
-             *map(misleading_in_words, file.diagrams), "percentages in the figure are of all trials; intervals 95 %"]
+             *map(misleading_in_words, file.diagrams), *DEFINITIONS, "percentages in the figure are of all trials; intervals 95 %"]
     return "; ".join(parts) + "."
 
 

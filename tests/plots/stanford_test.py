@@ -56,7 +56,9 @@ class StanfordTest(PlotTestCase):
     def test_the_caption_has_the_rate_to_hold_against_the_risk(self):
         caption = draw(self.read()).texts[0].get_text().replace("\n", " ")
         for words in ("RCME, calibrated on study demo, 200 trials, 20 of them without a motion", "a risk of 0.1 %",
-                      "rotation: 6.67 % [3.51, 11.3] of the answers"):
+                      "rotation: 6.67 % [3.51, 11.3] of the answers", "available: error \u2264 level \u2264 alert limit",
+                      "misleading: level < error \u2264 limit", "hazardously misleading: level \u2264 limit < error",
+                      "unavailable: limit < level"):
             self.assertIn(words, caption)
 
     def test_large_and_small_alert_limits_leave_room_for_names(self):
