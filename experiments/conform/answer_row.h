@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "estimator/conform/visible_features.h"
+#include "stats/constants.h"
 
 namespace rcme {
 
@@ -18,6 +19,11 @@ struct AnswerRow {
   double max_error_deg = 0.0;  // the greater of rotation and direction error; infinite: no valid motion
   double log_det = 0.0;        // log det of the stated covariance (rad^2)
   bool is_wrong = false;       // beyond the failure bounds, or no valid motion
+  // Where the truth has an error of its own (Truth::sd); promises take it as exact. `nees` with that error in
+  // the covariance, NaN where the truth has none; and whether two of its standard deviations could make a
+  // right answer wrong or a wrong one right.
+  double nees_of_inexact_truth = kNaN;
+  bool is_wrong_by_truth = false;
 };
 
 // A trial whose answer is a row, or a refusal.

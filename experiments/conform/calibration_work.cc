@@ -11,6 +11,7 @@
 
 #include "experiments/trial/covariance_score.h"
 #include "experiments/trial/trial.h"
+#include "experiments/trial/truth_error.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -19,11 +20,24 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kTrialsOfItem = 50;
-constexpr size_t kNumbersOfRow = 5 + kNumVisibleFeatures;
+constexpr size_t kNumbersBeforeFeatures = 7, kNumbersOfRow = kNumbersBeforeFeatures + kNumVisibleFeatures;
 
 double LogDeterminant(const Matrix5d& covariance) {
   const Eigen::LDLT<Matrix5d> ldlt(covariance);
   return ldlt.vectorD().array().max(0.0).log().sum();
+}
+
+// What the truth's own error may change (answer_row.h).
+void AddTruthError(const FailureBounds& bounds, const TrialRecord& record, const Truth& truth,
+                   AnswerRow* row) {
+  if (!truth.sd) return;
+  row->nees_of_inexact_truth = std::isnan(record.nees) ? kInfinity : record.nees;
+  const TruthErrorDeg truth_error = ComputeTruthErrorDeg(truth);
+  const auto is_wrong = [&](double moved) {
+    return record.rotation_error_deg + moved * truth_error.rotation > bounds.max_rotation_error_deg ||
+           record.direction_error_deg + moved * truth_error.direction > bounds.max_direction_error_deg;
+  };
+  row->is_wrong_by_truth = is_wrong(-1.0) != is_wrong(1.0);
 }
 
 // Nothing where the trial has no answer, or nobody knows how wrong it is.
@@ -44,13 +58,15 @@ AnswerKind MakeRow(const FailureBounds& bounds, const TrialResult& result, Answe
   row->nees = std::isnan(nees) ? kInfinity : nees;
   row->max_error_deg = std::max(record.rotation_error_deg, record.direction_error_deg);
   row->log_det = LogDeterminant(estimate.pose_cov);
+  AddTruthError(bounds, record, result.data.truth, row);
   return AnswerKind::kAnswer;
 }
 
-// [trial, wrong, nees, error, log det, features ...]
+// [trial, wrong, nees, error, log det, nees with the truth's error, wrong or not by the truth, features ...]
 Json RowAsJson(std::uint32_t trial, const AnswerRow& row) {
-  std::vector<double> numbers = {static_cast<double>(trial), row.is_wrong ? 1.0 : 0.0, row.nees,
-                                 row.max_error_deg, row.log_det};
+  std::vector<double> numbers = {
+      static_cast<double>(trial), row.is_wrong ? 1.0 : 0.0,         row.nees, row.max_error_deg, row.log_det,
+      row.nees_of_inexact_truth,  row.is_wrong_by_truth ? 1.0 : 0.0};
   numbers.insert(numbers.end(), row.features.begin(), row.features.end());
   return NumbersAsJson(numbers);
 }
@@ -79,8 +95,11 @@ AnswerRow RowFrom(const std::vector<double>& numbers) {
   row.nees = numbers[2];
   row.max_error_deg = numbers[3];
   row.log_det = numbers[4];
-  std::copy(numbers.begin() + 5, numbers.end(), row.features.begin());
-  Require((row.is_wrong || numbers[1] == 0.0) && row.nees >= 0.0 && row.max_error_deg >= 0.0 &&
+  row.nees_of_inexact_truth = numbers[5];
+  row.is_wrong_by_truth = numbers[6] == 1.0;
+  std::copy(numbers.begin() + kNumbersBeforeFeatures, numbers.end(), row.features.begin());
+  Require((row.is_wrong_by_truth || numbers[6] == 0.0) && !(row.nees_of_inexact_truth < 0.0) &&
+          (row.is_wrong || numbers[1] == 0.0) && row.nees >= 0.0 && row.max_error_deg >= 0.0 &&
           !std::isnan(row.log_det));
   return row;
 }
@@ -112,7 +131,9 @@ void ReadPiece(const StudyPlan& plan, const TrialGrouping& grouping, const ItemP
 
 }  // namespace
 
-WorkPlan PlanCalibration(const StudyPlan& plan) { return PlanTrialItems(plan, "conform", kTrialsOfItem); }
+WorkPlan PlanCalibration(const StudyPlan& plan) {
+  return PlanTrialItems(plan, "conform", kTrialsOfItem, "conform 2\n");
+}
 
 void GetCalibration(const StudyPlan& plan, Runner* runner) {
   GetTrialItems(

@@ -18,6 +18,7 @@
 #include "experiments/core/text/json_output.h"
 #include "experiments/statistics/coverage_strata_output.h"
 #include "experiments/statistics/share_of_clusters.h"
+#include "experiments/trial/truth_error.h"
 #include "stats/clustered_estimate.h"
 #include "stats/conformal.h"
 #include "stats/constants.h"
@@ -95,12 +96,13 @@ bool IsAcceptedInUse(const JudgedAnswer& answer) {
 }
 
 // Of all problems, also the refused ones, as it is promised.
-Estimate MeasureWrongAndAccepted(const ConformReport& report) {
+Estimate MeasureWrongAndAccepted(const ConformReport& report,
+                                 const std::function<bool(const JudgedAnswer&)>& accepts) {
   std::vector<std::int64_t> refused;
   for (const AskedProblem& problem : report.problems)
     if (problem.is_refused) refused.push_back(problem.group);
   return MeasureShare(
-      report.judged, [](const JudgedAnswer& a) { return a.row.is_wrong && IsAcceptedByRule(a); }, refused);
+      report.judged, [&](const JudgedAnswer& a) { return a.row.is_wrong && accepts(a); }, refused);
 }
 
 struct AcceptKind {
@@ -128,6 +130,8 @@ Table MakeAcceptTable(const ConformReport& report) {
          return MeasureShare(report.judged,
                              [&](const JudgedAnswer& a) { return a.row.is_wrong && kind.accepts(a); });
        }},
+      {Column::Estimated("wrong_of_problems", kShare),
+       [&](const AcceptKind& kind) { return MeasureWrongAndAccepted(report, kind.accepts); }},
       {Column::Estimated("wrong_among_accepted", kShare),
        [&](const AcceptKind& kind) {
          return MeasureShare(among(kind.accepts), [](const JudgedAnswer& a) { return a.row.is_wrong; });
@@ -177,6 +181,19 @@ Table MakeProbabilityTable(const ConformReport& report) {
   return MakeTable(columns, kinds);
 }
 
+// What the intervals of a cross-validation are of (cross_validate.h); of a check they are of the file's rule.
+std::string DescribeRules(const ConformReport& report) {
+  if (report.is_check || report.judged.empty()) return "";
+  const auto [least, greatest] = std::ranges::minmax_element(report.judged, {}, &JudgedAnswer::rule_accepts);
+  return FormatParagraph(
+      fmt::format("Each answer is judged by the rule of one fold, and the intervals are of the mean of these "
+                  "rules for new "
+                  "problems. The rule of the file is another one: those of the folds accept from {:.1f} to "
+                  "{:.1f} % of the "
+                  "answers. What the file's own rule does is measured by --check on new problems.",
+                  100.0 * least->rule_accepts, 100.0 * greatest->rule_accepts));
+}
+
 std::string Counted(std::int64_t n, const std::string& one, const std::string& many) {
   return fmt::format("{} {}", n, n == 1 ? one : many);
 }
@@ -211,6 +228,37 @@ std::string ShareAsText(const Estimate& share) {
                      100.0 * share.interval.upper);
 }
 
+// Coverage of the stated and the conformed region, were the truth's own error in the covariance.
+std::string DescribeCoverageByTruth(const Judged& judged) {
+  Judged moved = judged;
+  for (JudgedAnswer& answer : moved) {
+    if (!std::isnan(answer.row.nees_of_inexact_truth)) answer.row.nees = answer.row.nees_of_inexact_truth;
+  }
+  std::string text;
+  for (const RegionKind& kind : ListRegionKinds(/*is_check=*/true))
+    text += fmt::format("{}{} {:.1f} % instead of {:.1f} %", text.empty() ? "" : ", ", kind.name,
+                        100.0 * MeasureShare(moved, kind.covers).value,
+                        100.0 * MeasureShare(judged, kind.covers).value);
+  return text;
+}
+
+// Empty where every truth is exact.
+std::string DescribeTruth(const ConformReport& report) {
+  if (!report.has_real_truth || report.judged.empty()) return "";
+  const std::string text =
+      "The truth of real pairs is taken as exact: its errors count as errors of the estimator.";
+  const auto num_inexact = std::ranges::count_if(
+      report.judged, [](const JudgedAnswer& a) { return !std::isnan(a.row.nees_of_inexact_truth); });
+  if (num_inexact == 0) return FormatParagraph(text + " How good it is, no pair says (truth_sd).");
+  const auto num_open =
+      std::ranges::count_if(report.judged, [](const JudgedAnswer& a) { return a.row.is_wrong_by_truth; });
+  return FormatParagraph(fmt::format(
+      "{} With its own error (truth_sd, of {} of {} answers) in the covariances the regions would cover: {}. "
+      "{} {:g} of its standard deviations from being wrong instead of right, or right instead of wrong.",
+      text, num_inexact, report.judged.size(), DescribeCoverageByTruth(report.judged),
+      Counted(num_open, "answer is within", "answers are within"), kTruthErrorSds));
+}
+
 // What is refuted first; where nothing is, that.
 std::vector<std::string> DescribeKept(const ConformReport& report) {
   const PromiseFinding& kept = *report.kept;
@@ -219,12 +267,13 @@ std::vector<std::string> DescribeKept(const ConformReport& report) {
   if (kept.IsCoverageRefuted()) {
     const Estimate coverage = MeasureShare(report.judged, ListRegionKinds(true).back().covers);
     sentences.push_back(fmt::format(
-        "The promise of the regions does not hold on these problems: coverage {} of a promised {:.3g} % (p = "
-        "{:.2g}).",
-        ShareAsText(coverage), 100.0 * rule.level, kept.coverage_p_value));
+        "The promise of the regions does not hold on these problems: coverage {} of a promised {:.3g} %, by "
+        "regions of {:.2g} deg in the median (p = {:.2g}).",
+        ShareAsText(coverage), 100.0 * rule.level, MedianSize(report.judged, ListRegionKinds(true).back()),
+        kept.coverage_p_value));
   }
   if (kept.IsAcceptRefuted()) {
-    const Estimate wrong = MeasureWrongAndAccepted(report);
+    const Estimate wrong = MeasureWrongAndAccepted(report, IsAcceptedByRule);
     sentences.push_back(fmt::format(
         "The promise of the accept rule does not hold on these problems: wrong and accepted are {} of them, "
         "promised are at most {:.3g} % (p = {:.2g}).",
@@ -330,6 +379,7 @@ std::string ConformAsText(const ConformReport& report, bool by_strata) {
       report.is_check ? "New answers, judged by the file:"
                       : "Cross-validated, each answer judged by a rule of other groups:"));
   if (report.judged.empty()) return text;
+  text += DescribeTruth(report);
   for (const Table& table : {MakeRegionTable(report), MakeAcceptTable(report), MakeProbabilityTable(report)})
     text += "\n" + RenderText(table);
   text += "\n" +
@@ -337,10 +387,10 @@ std::string ConformAsText(const ConformReport& report, bool by_strata) {
               "size_deg: median of the geometric mean of the region's semi-axes; "
               "hardest: the {} answers that look "
               "hardest; all_motions: regions that exclude nothing. in use: by the rule and not strange, as "
-              "an estimator of the file accepts. Shares are of the answers, refusals left out. Intervals "
-              "are 95 %.",
+              "an estimator of the file accepts. wrong_of_problems: wrong and accepted of all problems, also "
+              "the refused ones, as it is promised; the other shares are of the answers. Intervals are 95 %.",
               (report.judged.size() + 3) / 4)) +
-          "\n";
+          DescribeRules(report) + "\n";
   for (const std::string& promise : DescribePromises(rule)) text += FormatParagraph(promise);
   if (report.shares_images)
     text += FormatParagraph(
@@ -361,6 +411,7 @@ std::string ConformAsJson(const ConformReport& report, bool by_strata) {
       {"without_truth", report.num_unscored},
       {"level", report.rule.level},
       {"strata", report.rule.factors.size()},
+      {"intervals_are_of", report.is_check ? "the rule of the file" : "the mean of the folds' rules"},
       {"promises", DescribePromises(report.rule)},
       {"regions", RenderJson(WithIntervalColumns(MakeRegionTable(report)))},
       {"accept", RenderJson(WithIntervalColumns(MakeAcceptTable(report)))},

@@ -152,6 +152,7 @@ ConformReport CalibrateConform(const StudyPlan& plan, NewProblem new_problem, co
                         new_problem == NewProblem::kCondition};
   report.judged = CrossValidate(answers, promise, models);
   report.problems = answers.problems;
+  report.has_real_truth = HasRealScenes(plan);
   report.num_unscored = answers.num_unscored;
   report.shares_images = new_problem == NewProblem::kTrial && HasRealScenes(plan);
   return report;
@@ -166,6 +167,7 @@ ConformReport CheckConform(const StudyPlan& plan, const ConformRule& rule, const
   report.shift = LookForShift(rule, answers);
   report.kept = TestPromises(rule, answers, report.judged);
   report.problems = answers.problems;
+  report.has_real_truth = HasRealScenes(plan);
   report.num_unscored = answers.num_unscored;
   return report;
 }

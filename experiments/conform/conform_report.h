@@ -29,8 +29,9 @@ struct ConformReport {
   std::vector<JudgedAnswer> judged;    // by cross-validation, or new ones
   std::vector<AskedProblem> problems;  // answered and refused ones
   std::int64_t num_unscored = 0;
-  bool is_check = false;       // of a rule that is there, by new answers
-  bool shares_images = false;  // real pairs counted as if they were independent
+  bool is_check = false;        // of a rule that is there, by new answers
+  bool has_real_truth = false;  // a measured one, of real pairs
+  bool shares_images = false;   // real pairs counted as if they were independent
   std::optional<ShiftFinding> shift;
   std::optional<PromiseFinding> kept;  // are the promises kept; of a check
 };

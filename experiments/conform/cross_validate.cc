@@ -1,5 +1,6 @@
 #include "experiments/conform/cross_validate.h"
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <utility>
@@ -7,6 +8,16 @@
 #include "experiments/conform/fit_rule.h"
 
 namespace rcme {
+namespace {
+
+double ComputeAcceptedShare(const ConformRule& rule, const std::vector<AnswerRow>& rows) {
+  const auto num_accepted = std::ranges::count_if(rows, [&](const AnswerRow& row) {
+    return rule.greatest_log_odds && rule.failure.At(row.features) <= *rule.greatest_log_odds;
+  });
+  return static_cast<double>(num_accepted) / static_cast<double>(rows.size());
+}
+
+}  // namespace
 
 std::vector<JudgedAnswer> JudgeAnswers(const ConformRule& rule, const std::vector<AnswerRow>& rows) {
   const ConformJudge judge(rule);
@@ -36,7 +47,9 @@ std::vector<JudgedAnswer> CrossValidate(const AnswerRows& answers, const Conform
         ComputeFactor(ComputeBound(others.rows, promise.level, &AnswerRow::nees), promise.level);
     const double ball_deg = ComputeBound(others.rows, promise.level, &AnswerRow::max_error_deg);
     const std::optional<double> by_count = CertifyThreshold(others, ScoreByAgreeing(others.rows), promise);
+    const double rule_accepts = ComputeAcceptedShare(rule, answers.rows);
     for (JudgedAnswer& answer : JudgeAnswers(rule, held_out.rows)) {
+      answer.rule_accepts = rule_accepts;
       answer.one_factor = one_factor;
       answer.ball_deg = ball_deg;
       answer.is_accepted_by_count = by_count && ScoreByAgreeing({answer.row}).front() <= *by_count;

@@ -43,7 +43,7 @@ def main():
             rule = arguments.out / f"{estimator}.{new}.conform.json"
             report = conform_runs.run([STUDY, "--set", f"folder={pairs}", "--estimator", estimator, "--new", new, "--out", str(rule.resolve()), *PROMISE])
             for name, rows in tables.items():
-                rows += [{"estimator": estimator, "new": words, "answers": report["answers"], **conform_runs.flat(row)}
+                rows += [{"estimator": estimator, "new": words, "answers": report["answers"], **conform_runs.flat(conform_runs.without_problems(row))}
                          for row in report[name] if row.get("accepted") != "in use"]
     for name, rows in tables.items():
         conform_runs.write(arguments.out / f"real_{name}.csv", rows)

@@ -61,6 +61,11 @@ def write(path, rows):
             table.writerow({key: f"{value:.3g}" if isinstance(value, float) else value for key, value in row.items()})
 
 
+def without_problems(row):
+    """Without the share of all problems: the files have those of the answers."""
+    return {key: value for key, value in row.items() if not key.startswith("wrong_of_problems")}
+
+
 def population_tables(out, conditions):
     tables = {"regions": [], "accept": [], "probabilities": []}
     study = "studies/conform.yaml"
@@ -74,7 +79,7 @@ def population_tables(out, conditions):
         fresh = run([study, "--check", str(rule), "--seed", str(FRESH_SEED)])
         for draws, report in (("cross-validated", made), ("fresh", fresh)):
             for name, rows in tables.items():
-                rows += [{"estimator": estimator, "draws": draws, "answers": report["answers"], **flat(row)}
+                rows += [{"estimator": estimator, "draws": draws, "answers": report["answers"], **flat(without_problems(row))}
                          for row in report[name] if row.get("accepted") != "in use"]
     for name, rows in tables.items():
         write(out / f"{name}.csv", rows)
