@@ -65,7 +65,8 @@ void RunIntegrity(const IntegrityArguments& arguments) {
                          UsualNewProblem(plan),
                          plan.study.common_scenes,
                          plan.factor_names,
-                         ReadIntegrity(plan, runner)};
+                         ReadIntegrity(plan, runner),
+                         HasRealScenes(plan)};
   const CommandResult result = MakeIntegrityResult(report);
   PrintResult(result, arguments.format);
   if (!arguments.out.empty()) WriteReport(result, arguments.out);
@@ -87,6 +88,8 @@ answer is available if its level is within the alert limit.
 
   misleading   the error is beyond the level: of the answers at most the risk should be
   hazardous    the error is beyond the alert limit, and the level is not
+
+The row `either` counts trials that are misleading or hazardous in rotation or in direction.
 
 Prints their rates with exact intervals, over all trials and for each condition. With --out
 DIR they are in DIR/integrity.txt too, and in DIR/integrity.json with the counts of the

@@ -21,7 +21,10 @@ struct IntegrityTerms {
 };
 
 inline constexpr size_t kNumIntegrityQuantities = 2;
-const char* IntegrityQuantityName(size_t quantity);  // "rotation", "direction"
+// What a robot has to fear is either: a trial counts as misleading or hazardous if its rotation or its
+// direction is, and as available if both are. It is counted itself: no bound of the two rates is needed.
+inline constexpr size_t kEither = kNumIntegrityQuantities;
+const char* IntegrityQuantityName(size_t quantity);  // "rotation", "direction", "either"
 
 // Where an answer lies, by its error, its level and the alert limit.
 enum class StanfordRegion {
@@ -41,8 +44,13 @@ using RegionCounts = std::array<std::int64_t, kNumStanfordRegions>;
 struct IntegrityTally {
   std::int64_t num_without_motion = 0;
   std::array<RegionCounts, kNumIntegrityQuantities> regions{};
+  struct Either {
+    std::int64_t num_answers = 0;  // with a known truth of both
+    std::int64_t num_available = 0, num_misleading = 0, num_hazardous = 0;
+  } either;
 
   void Add(const IntegrityTally& other);
+  // `quantity`: also kEither.
   std::int64_t NumAnswers(size_t quantity) const;
   std::int64_t NumTrials(size_t quantity) const { return num_without_motion + NumAnswers(quantity); }
   std::int64_t NumAvailable(size_t quantity) const;   // level <= limit
@@ -56,8 +64,23 @@ inline constexpr int kNumIntegrityBins = 100, kIntegrityBinsPerDecade = 16;
 double IntegrityEdgeDeg(int k);
 int FindIntegrityBin(double angle_deg);
 
+// How much of it hangs on a truth that has an error of its own (Truth::sd). Errors are taken against the
+// truth as it is given; were each truth off by kTruthReachSds of its standard deviations, towards the answer
+// or away from it, so many would be misleading and hazardous. An exact truth moves nothing.
+inline constexpr double kTruthReachSds = 2.0;
+struct TruthSensitivity {
+  struct Range {
+    std::int64_t least = 0, most = 0;
+  };
+  std::array<std::int64_t, kNumIntegrityQuantities> num_inexact{};  // answers with such a truth
+  std::array<Range, kNumIntegrityQuantities> misleading{}, hazardous{};
+
+  void Add(const TruthSensitivity& other);
+};
+
 struct IntegrityCounts {
   IntegrityTally tally;
+  TruthSensitivity truth_sensitivity;
   std::int64_t num_refusals = 0, num_invalid = 0;  // their sum is that of the tally without a motion
   std::int64_t num_not_simulated = 0;
   std::array<std::int64_t, kNumIntegrityQuantities> num_unscored{};  // whose truth is not known or in doubt

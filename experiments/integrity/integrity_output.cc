@@ -9,6 +9,7 @@
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/trial/truth_error.h"
 #include "stats/clustered_estimate.h"
 #include "stats/intervals.h"
 
@@ -132,7 +133,9 @@ Table MakeIntegrityTable(std::vector<ColumnOf<IntegrityRow>> columns, TableFor t
   AddRate("available", &IntegrityRates::available, table_for, &columns);
   AddRate("misleading", &IntegrityRates::misleading, table_for, &columns);
   AddRate("hazardous", &IntegrityRates::hazardous, table_for, &columns);
-  columns.push_back({Column::Text("risk"), [](R row) { return Name(row.rates.verdict); }});
+  columns.push_back({Column::Text("risk"), [](R row) {
+                       return std::string(row.quantity == kEither ? "-" : Name(row.rates.verdict));
+                     }});
   return MakeTable(columns, rows);
 }
 
@@ -142,7 +145,7 @@ const ColumnOf<IntegrityRow> kQuantityColumn = {
 Table MakeTableOfAll(const IntegrityReport& report, TableFor table_for) {
   const IntegrityCounts all = CountAll(report);
   std::vector<IntegrityRow> rows;
-  for (size_t q = 0; q < kNumIntegrityQuantities; ++q)
+  for (size_t q = 0; q <= kEither; ++q)
     rows.push_back({{}, q, all.tally.NumTrials(q), all.tally.NumAnswers(q), MeasureIntegrity(report, q)});
   return MakeIntegrityTable({kQuantityColumn}, table_for, rows);
 }
@@ -178,11 +181,39 @@ std::string DescribeCounts(const IntegrityReport& report) {
   return FormatParagraph(text);
 }
 
+// Empty where every truth is exact.
+std::string DescribeTruth(const IntegrityReport& report) {
+  if (!report.has_real_truth) return "";
+  const IntegrityCounts all = CountAll(report);
+  const TruthSensitivity& sensitivity = all.truth_sensitivity;
+  std::string text =
+      "The truth of real pairs is taken as exact: its errors count as errors of the estimator.";
+  if (sensitivity.num_inexact[0] + sensitivity.num_inexact[1] == 0)
+    return FormatParagraph(text + " How good it is, no pair says (truth_sd).");
+  for (size_t q = 0; q < kNumIntegrityQuantities; ++q) {
+    const auto percent = [](std::int64_t count, std::int64_t n) {
+      return n == 0 ? 0.0 : 100.0 * static_cast<double>(count) / static_cast<double>(n);
+    };
+    const std::int64_t num_answers = all.tally.NumAnswers(q), num_trials = all.tally.NumTrials(q);
+    text += fmt::format(
+        " Were each truth off by {:g} of its own standard deviations (truth_sd, of {} of {} answers), {} "
+        "would be misleading in {:.3g} to {:.3g} % and hazardous in {:.3g} to {:.3g} %.",
+        kTruthErrorSds, sensitivity.num_inexact[q], num_answers, IntegrityQuantityName(q),
+        percent(sensitivity.misleading[q].least, num_answers),
+        percent(sensitivity.misleading[q].most, num_answers),
+        percent(sensitivity.hazardous[q].least, num_trials),
+        percent(sensitivity.hazardous[q].most, num_trials));
+  }
+  return FormatParagraph(text);
+}
+
 std::string DescribeColumns(const IntegrityReport& report) {
   return FormatParagraph(fmt::format(
       "available: of all trials, those with a protection level within the alert limit; misleading: of the "
       "answers, those with an error beyond their level, which the risk promises to be at most {:g} %; "
-      "hazardous: of all trials, those with an error beyond the alert limit and a level within. risk: "
+      "hazardous: of all trials, those with an error beyond the alert limit and a level within. either: "
+      "misleading or hazardous in rotation or in direction, available in both; its interval is of that rate "
+      "itself. The risk is promised for rotation and direction each, and so for either at most twice. risk: "
       "exceeded or kept where the whole interval of misleading is on that side. Intervals are 95 %{}.",
       100.0 * report.terms.risk,
       report.new_problem == NewProblem::kCondition
@@ -203,12 +234,18 @@ Json RenderTallyCells(const std::map<int, std::int64_t>& cells) {
   return json;
 }
 
+// Counts, were each truth off towards the answer, and away from it.
+Json RangeAsJson(const TruthSensitivity::Range& range) { return Json::array({range.least, range.most}); }
+
 Json DiagramAsJson(const IntegrityReport& report, const IntegrityCounts& all, size_t quantity) {
   return {{"error", IntegrityQuantityName(quantity)},
           {"alert_limit_deg", report.terms.LimitDeg(quantity)},
           {"trials", all.tally.NumTrials(quantity)},
           {"without_motion", all.tally.num_without_motion},
           {"without_truth", all.num_unscored[quantity]},
+          {"inexact_truth", all.truth_sensitivity.num_inexact[quantity]},
+          {"misleading_by_truth", RangeAsJson(all.truth_sensitivity.misleading[quantity])},
+          {"hazardous_by_truth", RangeAsJson(all.truth_sensitivity.hazardous[quantity])},
           {"regions", RegionsAsJson(all.tally.regions[quantity])},
           {"cells", RenderTallyCells(all.cells[quantity])}};
 }
@@ -261,8 +298,8 @@ RiskVerdict JudgeRisk(const IntegrityReport& report) {
 }
 
 std::string IntegrityAsText(const IntegrityReport& report) {
-  std::string text =
-      DescribeCounts(report) + "\n" + RenderText(MakeTableOfAll(report, TableFor::kPeople)) + "\n";
+  std::string text = DescribeCounts(report) + DescribeTruth(report) + "\n" +
+                     RenderText(MakeTableOfAll(report, TableFor::kPeople)) + "\n";
   if (report.conditions.size() > 1) {
     text += RenderText(MakeTableOfConditions(report, TableFor::kPeople, kMostConditionsInText)) + "\n";
     if (report.conditions.size() > kMostConditionsInText)

@@ -17,19 +17,21 @@ struct IntegrityReport {
   bool has_common_scenes = false;  // a number is the same scene in all conditions
   std::vector<std::string> factors;
   std::vector<ConditionIntegrity> conditions;
+  bool has_real_truth = false;  // a measured one, of real pairs
 };
 
 // Whether errors are beyond their level as seldom as the risk says, by the 95 % interval of how often.
 enum class RiskVerdict { kKept, kExceeded, kUndecided };
 const char* Name(RiskVerdict verdict);
 
-// What a row says of one quantity. Intervals are exact binomial ones; where trials depend on each other, by
-// clusters (stats/clustered_estimate.h).
+// What a row says of one quantity, or of either (kEither). Intervals are exact binomial ones; where trials
+// depend on each other, by clusters (stats/clustered_estimate.h).
 struct IntegrityRates {
   Estimate available;   // of all trials: level within the alert limit
   Estimate misleading;  // of the answers: error beyond the level
   Estimate hazardous;   // of all trials: error beyond the alert limit, level within
-  RiskVerdict verdict = RiskVerdict::kUndecided;
+  RiskVerdict verdict =
+      RiskVerdict::kUndecided;  // of rotation and of direction: the risk is promised for each
 };
 // `clusters` are independent; where each is to be taken as trials that are independent themselves,
 // `by_trial`.

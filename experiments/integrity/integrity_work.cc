@@ -30,7 +30,7 @@ std::string ComputeCounts(const StudyPlan& plan, const IntegrityTerms& terms, co
 
 WorkPlan PlanIntegrity(const StudyPlan& plan, const IntegrityTerms& terms) {
   return PlanTrialItems(plan, "integrity", kTrialsOfIntegrityItem,
-                        fmt::format("integrity: risk {}, alert limits {} and {} deg\n", terms.risk,
+                        fmt::format("integrity 2: risk {}, alert limits {} and {} deg\n", terms.risk,
                                     terms.rotation_limit_deg, terms.direction_limit_deg));
 }
 

@@ -2,6 +2,7 @@
 // the risk with its false alarms and its power.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -64,13 +65,20 @@ TEST(IntegrityCounts, AreThoseOfTheTrialsOneByOne) {
   ASSERT_EQ(conditions.size(), 2u);
   for (size_t c = 0; c < 2; ++c) {
     std::int64_t num_available = 0, num_misleading = 0, num_hazardous = 0, num_answers = 0;
+    std::int64_t num_both_available = 0, num_either_misleading = 0, num_either_hazardous = 0;
     for (std::uint32_t trial = 0; trial < 130; ++trial) {
       const TrialResult result = RunTrial(plan, plan.conditions[c], trial);
       if (result.records.front().status != MotionStatus::kOk) continue;
       ++num_answers;
-      const double level_deg =
-          kDegPerRad * ComputeProtectionLevels(result.estimates.front(), 0.05).direction_rad;
-      const double error_deg = result.records.front().direction_error_deg;
+      const ProtectionLevels levels = ComputeProtectionLevels(result.estimates.front(), 0.05);
+      const double level_deg = kDegPerRad * levels.direction_rad,
+                   rotation_level_deg = kDegPerRad * levels.rotation_rad;
+      const double error_deg = result.records.front().direction_error_deg,
+                   rotation_error_deg = result.records.front().rotation_error_deg;
+      num_both_available += level_deg <= 2.0 && rotation_level_deg <= 0.4;
+      num_either_misleading += error_deg > level_deg || rotation_error_deg > rotation_level_deg;
+      num_either_hazardous +=
+          (level_deg <= 2.0 && error_deg > 2.0) || (rotation_level_deg <= 0.4 && rotation_error_deg > 0.4);
       num_available += level_deg <= 2.0;
       num_misleading += error_deg > level_deg;
       num_hazardous += level_deg <= 2.0 && error_deg > 2.0;
@@ -81,6 +89,11 @@ TEST(IntegrityCounts, AreThoseOfTheTrialsOneByOne) {
     EXPECT_EQ(tally.NumAvailable(1), num_available);
     EXPECT_EQ(tally.NumMisleading(1), num_misleading);
     EXPECT_EQ(tally.NumHazardous(1), num_hazardous);
+    EXPECT_EQ(tally.NumAnswers(kEither), num_answers);
+    EXPECT_EQ(tally.NumAvailable(kEither), num_both_available);
+    EXPECT_EQ(tally.NumMisleading(kEither), num_either_misleading);
+    EXPECT_EQ(tally.NumHazardous(kEither), num_either_hazardous);
+    EXPECT_GT(num_either_misleading, std::max(num_misleading, tally.NumMisleading(0)));
     EXPECT_GT(num_misleading, 0);
     EXPECT_LT(num_available, num_answers);
     EXPECT_TRUE(conditions[c].scenes.empty());
@@ -108,10 +121,52 @@ TEST(IntegrityCounts, ComeBackFromTheirText) {
   const IntegrityCounts back = ReadIntegrityCounts(text, 1, &back_scenes);
   EXPECT_EQ(IntegrityCountsAsText(back, back_scenes), text);
   EXPECT_THROW(ReadIntegrityCounts(text, 2, &back_scenes), std::invalid_argument);
-  for (const char* wrong : {"[]", "3", "[[0,[1,0,0,0,0],[1,0,0,0,0]],0,0,[0,0],[1,2],[1,1],[]]",
-                            "[[0,[1,0,0,0,0],[1,0,0,0,0]],0,0,[0,0],[10000,1],[1,1],[]]",
-                            "[[0,[2,0,0,0,0],[1,0,0,0,0]],0,0,[0,0],[1,2],[1,1],[]]"})
+  const std::string regions = "[1,0,0,0,0],[1,0,0,0,0]", exact = "[[0,0,0,0,0],[0,0,0,0,0]]";
+  const auto text_of = [](const std::string& of_regions, const std::string& either, const std::string& cells,
+                          const std::string& truth) {
+    return "[[0," + of_regions + "," + either + "],0,0,[0,0]," + cells + ",[1,1],[]," + truth + "]";
+  };
+  EXPECT_NO_THROW(ReadIntegrityCounts(text_of(regions, "[1,1,0,0]", "[1,1]", exact), 1, &back_scenes));
+  for (const std::string& wrong :
+       {std::string("[]"), std::string("3"), text_of(regions, "[1,1,0,0]", "[1,2]", exact),
+        text_of(regions, "[1,1,0,0]", "[10000,1]", exact),
+        text_of("[2,0,0,0,0],[1,0,0,0,0]", "[1,1,0,0]", "[1,2]", exact),
+        text_of(regions, "[2,1,0,0]", "[1,1]", exact), text_of(regions, "[1,1,0,1]", "[1,1]", exact),
+        text_of(regions, "[1,1,0,0]", "[1,1]", "[[0,1,0,0,0],[0,0,0,0,0]]")})
     EXPECT_THROW(ReadIntegrityCounts(wrong, 1, &back_scenes), std::invalid_argument) << wrong;
+}
+
+// A truth with an error of its own of .5 deg about each axis: 1 deg nearer or farther. Exact truths move
+// nothing.
+TEST(IntegrityCounts, SayWhatTheErrorOfTheTruthMayChange) {
+  const StudyPlan plan = PlanOfOne(1);
+  TrialResult result = RunTrial(plan, plan.conditions[0], 0);
+  const IntegrityTerms terms{0.05, 3.0, 3.0};
+  const double level_deg = kDegPerRad * ComputeProtectionLevels(result.estimates[0], 0.05).rotation_rad;
+  ASSERT_LT(level_deg, 2.0);
+  const auto count = [&](double error_deg) {
+    result.records[0].rotation_error_deg = error_deg;
+    return CountTrial(result, terms).truth_sensitivity;
+  };
+  EXPECT_EQ(count(level_deg + 0.9).num_inexact[0], 0);
+  EXPECT_EQ(count(level_deg + 0.9).misleading[0].least, 1);
+  result.data.truth.sd = TruthSd{Eigen::Vector3d(0.1, 0.5, 0.1) * kRadPerDeg, Eigen::Vector3d::Zero()};
+  const struct {
+    double error_deg;
+    std::int64_t misleading_least, misleading_most, hazardous_least, hazardous_most;
+  } kKnown[] = {{level_deg + 1.1, 1, 1, 0, level_deg + 1.1 > 2.0},
+                {level_deg + 0.9, 0, 1, 0, level_deg + 0.9 > 2.0},
+                {0.0, 0, level_deg < 1.0, 0, 0},
+                {4.1, 1, 1, 1, 1},
+                {3.9, 1, 1, 0, 1}};
+  for (const auto& k : kKnown) {
+    const TruthSensitivity sensitivity = count(k.error_deg);
+    EXPECT_EQ(sensitivity.num_inexact[0], 1);
+    EXPECT_EQ(sensitivity.misleading[0].least, k.misleading_least) << k.error_deg;
+    EXPECT_EQ(sensitivity.misleading[0].most, k.misleading_most) << k.error_deg;
+    EXPECT_EQ(sensitivity.hazardous[0].least, k.hazardous_least) << k.error_deg;
+    EXPECT_EQ(sensitivity.hazardous[0].most, k.hazardous_most) << k.error_deg;
+  }
 }
 
 // Answers to so many trials, errors beyond the level with this probability in each.
@@ -139,6 +194,42 @@ TEST(RiskVerdict, FalseAlarmsAndPowerAreKnown) {
   EXPECT_LE(num_false_alarms, 73);
   EXPECT_GE(num_false_alarms, 10);  // the test is not empty: its exact rate is about 3 %
   EXPECT_GE(num_seen, 190);
+}
+
+// The interval of either is one of the union, however rotation and direction depend on each other: of 1,000
+// draws of 500 trials with rates of .02 each, together, apart or independent, at most 5 % lack the rate of
+// the union; more than 73 would with probability 1e-3. Ends of the two rates would not do: where they are
+// apart the union is twice as frequent as each.
+TEST(IntegrityRates, TheIntervalOfEitherHoldsTheUnion) {
+  constexpr double kRate = 0.02;
+  RandomStream rng({.seed = 3, .purpose = 493});
+  for (const double both : {kRate, 0.0, kRate * kRate}) {  // P(rotation and direction)
+    const double either = 2.0 * kRate - both;
+    int num_lacking = 0, num_lacking_of_rotation = 0;
+    for (int i = 0; i < 1000; ++i) {
+      IntegrityTally tally;
+      for (int trial = 0; trial < 500; ++trial) {
+        const double u = rng.Uniform();
+        const bool is_rotation = u < kRate, is_direction = u < both || (u >= kRate && u < either);
+        const auto region = [](bool is_hazardous) { return is_hazardous ? 2U : 0U; };
+        ++tally.regions[0][region(is_rotation)];
+        ++tally.regions[1][region(is_direction)];
+        tally.either.num_answers += 1;
+        tally.either.num_misleading += is_rotation || is_direction;
+        tally.either.num_hazardous += is_rotation || is_direction;
+      }
+      const auto lacks = [&](size_t quantity) {
+        const Interval& of = MeasureIntegrity({tally}, true, quantity, 0.01).hazardous.interval;
+        return either < of.lower || either > of.upper;
+      };
+      num_lacking += lacks(kEither);
+      num_lacking_of_rotation += lacks(0);
+    }
+    EXPECT_LE(num_lacking, 73) << both;
+    if (both == 0.0) {
+      EXPECT_GE(num_lacking_of_rotation, 500);
+    }
+  }
 }
 
 TEST(RiskVerdict, KeptNeedsAsManyTrialsAsTheRiskAsksFor) {
@@ -207,7 +298,20 @@ TEST(IntegrityOutput, SaysCountsInWordsAndInJson) {
   const std::string text = IntegrityAsText(report);
   EXPECT_NE(text.find("ours on demo: 20 trials, 4 refused"), std::string::npos) << text;
   EXPECT_NE(text.find("street"), std::string::npos);
+  EXPECT_EQ(text.find("truth of real pairs"), std::string::npos);
+  report.has_real_truth = true;
+  EXPECT_NE(IntegrityAsText(report).find("How good it is, no pair says"), std::string::npos);
+  report.conditions[0].counts.truth_sensitivity = {{8, 8}, {{{0, 4}, {1, 2}}}, {{{0, 2}, {0, 1}}}};
+  std::string moved = IntegrityAsText(report);
+  std::ranges::replace(moved, '\n', ' ');
+  EXPECT_NE(
+      moved.find("(truth_sd, of 8 of 16 answers), rotation would be misleading in 0 to 25 % and hazardous "
+                 "in 0 to 10 %"),
+      std::string::npos)
+      << moved;
   const auto json = nlohmann::json::parse(IntegrityAsJson(report));
+  EXPECT_EQ(json["diagrams"][0]["misleading_by_truth"], (nlohmann::json{0, 4}));
+  EXPECT_EQ(json["all"][2]["error"], "either");
   EXPECT_EQ(json["format"], "rcme integrity 1");
   EXPECT_EQ(json["diagrams"][0]["regions"]["hazardous"], 2);
   EXPECT_EQ(json["diagrams"][1]["cells"][0], (nlohmann::json{{"error", 99}, {"level", 98}, {"n", 16}}));
