@@ -9,8 +9,6 @@
 namespace rcme {
 namespace {
 
-constexpr std::ptrdiff_t kLeastUnits = 5;
-
 double RatioIn(std::span<const UnitValues* const> units) {
   std::vector<double> observed, null;
   for (const UnitValues* unit : units) {
@@ -37,7 +35,8 @@ ComparedMedians RatioOfMedians(std::span<const UnitValues> units, double confide
   for (const UnitValues& unit : units) drawn.push_back(&unit);
   ComparedMedians compared{RatioIn(drawn), {0.0, std::numeric_limits<double>::infinity()}};
   const auto has_values = [](const UnitValues& unit) { return !unit.observed.empty(); };
-  if (std::isnan(compared.value) || std::ranges::count_if(units, has_values) < kLeastUnits) return compared;
+  if (std::isnan(compared.value) || std::ranges::count_if(units, has_values) < kLeastUnitsOfRatio)
+    return compared;
   std::vector<double> ratios;
   for (int resample = 0; resample < num_resamples; ++resample) {
     for (const UnitValues*& unit : drawn)

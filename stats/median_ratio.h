@@ -20,10 +20,12 @@ struct UnitValues {
   std::vector<double> observed, null;
 };
 
+inline constexpr int kLeastUnitsOfRatio = 5;
+
 // Median of all observed values over the median of all null values. For quadratic forms it is the factor by
 // which a variance is too small, robust to a few gross errors. Percentile bootstrap over units (Efron 1979),
-// since the values of one unit are dependent. With fewer than five units that have observed values the
-// interval is [0, infinity].
+// since the values of one unit are dependent. With fewer than kLeastUnitsOfRatio units that have observed
+// values the interval is [0, infinity].
 ComparedMedians RatioOfMedians(std::span<const UnitValues> units, double confidence, int num_resamples,
                                RandomStream& rng);
 

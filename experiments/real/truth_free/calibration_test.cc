@@ -280,6 +280,7 @@ std::string DescribeFault(const FaultReport& report) {
     }
     case TruthFreeVerdict::kUndecided: {
       const double half = 0.5 * (report.joint.interval.upper - report.joint.interval.lower);
+      if (!std::isfinite(half)) return "undecided: these pairs are too few to tell";
       if (!(half < kTooWide * text.nominal) && !report.confused_with)
         return fmt::format("undecided: these pairs hardly tell (+-{:.2g}{}{})", text.per_unit * half,
                            *text.unit ? " " : "", text.unit);

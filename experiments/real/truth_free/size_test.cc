@@ -69,6 +69,8 @@ SizeReport TestKeyPointSizes(const std::vector<PairAnswers>& answers) {
 }
 
 std::string DescribeSizeTest(const SizeReport& report) {
+  if (report.verdict != TruthFreeVerdict::kNoData && !std::isfinite(report.slope.interval.lower))
+    return fmt::format("undecided: {} pairs are too few for an interval", report.num_pairs);
   const std::string range = fmt::format("{:.2g} [{:.2g}, {:.2g}]", report.slope.value,
                                         report.slope.interval.lower, report.slope.interval.upper);
   switch (report.verdict) {

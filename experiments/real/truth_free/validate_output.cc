@@ -16,8 +16,20 @@ namespace {
 
 const NumberFormat kTwoDigits{1.0, "", ".2g"};
 
+bool IsBounded(const Interval& interval) {
+  return std::isfinite(interval.lower) && std::isfinite(interval.upper);
+}
+
 std::string RangeText(double value, const Interval& interval) {
-  return fmt::format("{:.2g} [{:.2g}, {:.2g}]", value, interval.lower, interval.upper);  // unbounded ends too
+  if (!IsBounded(interval)) return fmt::format("{:.2g} (too few for an interval)", value);
+  return fmt::format("{:.2g} [{:.2g}, {:.2g}]", value, interval.lower, interval.upper);
+}
+
+// Of a ratio without an interval (stats/median_ratio.h).
+std::string DescribeTooFew(const TruthFreeTest& test) {
+  return fmt::format("the variances' ratio, {:.2g} here, cannot be told from {} {}: it takes {} at least",
+                     test.ratio.value, test.num_units,
+                     test.num_units == 1 ? "pair or loop" : "pairs or loops", kLeastUnitsOfRatio);
 }
 
 const char* CauseName(FaultCause cause) {
@@ -293,7 +305,11 @@ PartColumns<std::string> MakeAdviceColumns() {
 }
 
 // The simulation has no twins of its own.
-Value AgainstTwins(const SetRow& row, const Estimate& estimate) {
+Value AgainstTwins(const SetRow& row, Estimate estimate) {
+  if (!IsBounded(estimate.interval)) {
+    estimate.interval = {std::nan(""), std::nan("")};
+    estimate.note = "too few for an interval";
+  }
   return row.test && row.name != kSimulationTest ? Value(estimate) : Value();
 }
 
@@ -329,6 +345,11 @@ std::string SetAsTable(const SetReport& report) {
 
 std::string DescribeVerdict(const TruthFreeTest& test) {
   const ComparedMedians& ratio = test.ratio;
+  if (!std::isnan(ratio.value) && !IsBounded(ratio.interval) && test.verdict != TruthFreeVerdict::kNoData) {
+    if (test.verdict != TruthFreeVerdict::kTooSmall) return "undecided: " + DescribeTooFew(test);
+    return fmt::format("too small by the coverage; {}{}", DescribeTooFew(test),
+                       DescribeCause(test.cause, true));
+  }
   const std::string range = RangeText(ratio.value, ratio.interval);
   switch (test.verdict) {
     case TruthFreeVerdict::kTooSmall:
@@ -339,7 +360,7 @@ std::string DescribeVerdict(const TruthFreeTest& test) {
           RangeText(1.0 / ratio.value, {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower}),
           DescribeCause(test.cause, false));
     case TruthFreeVerdict::kUndecided:
-      if (std::isnan(test.units_needed)) return fmt::format("undecided: {}; it takes five at least", range);
+      if (std::isnan(test.units_needed)) return fmt::format("undecided: {}", range);
       if (test.units_needed > test.num_units)
         return fmt::format("undecided: {}; some {:.2g} in place of {} would decide it", range,
                            test.units_needed, test.num_units);

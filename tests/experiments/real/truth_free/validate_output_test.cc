@@ -146,7 +146,32 @@ TEST(DescribeVerdict, SaysWhatWouldDecide) {
   test.units_needed = 21.0;
   EXPECT_EQ(DescribeVerdict(test), "undecided: 1.3 [0.9, 1.9]; some 21 in place of 20 would decide it");
   test.units_needed = kNotKnown;
-  EXPECT_EQ(DescribeVerdict(test), "undecided: 1.3 [0.9, 1.9]; it takes five at least");
+  EXPECT_EQ(DescribeVerdict(test), "undecided: 1.3 [0.9, 1.9]");
+}
+
+// An interval from nothing to infinity is said in words, with how many it takes.
+TEST(DescribeVerdict, SaysThatFewPairsHaveNoInterval) {
+  TruthFreeTest test;
+  test.ratio = {75.0, {0.0, std::numeric_limits<double>::infinity()}};
+  test.verdict = TruthFreeVerdict::kTooSmall;
+  test.cause = FaultCause::kData;
+  test.num_units = 3;
+  EXPECT_EQ(
+      DescribeVerdict(test),
+      "too small by the coverage; the variances' ratio, 75 here, cannot be told from 3 pairs or loops: it "
+      "takes 5 at least; the data: in simulation it is not");
+  test.verdict = TruthFreeVerdict::kUndecided;
+  test.units_needed = kNotKnown;
+  EXPECT_EQ(
+      DescribeVerdict(test),
+      "undecided: the variances' ratio, 75 here, cannot be told from 3 pairs or loops: it takes 5 at least");
+  SetReport report = SetReportByHand();
+  report.tests[1] = test;
+  report.tests[1].name = "spatial_halves";
+  report.tests[1].against_twins = test.ratio;
+  const std::string table = TableOfSet(report);
+  EXPECT_EQ(table.find("inf"), std::string::npos) << table;
+  EXPECT_NE(table.find("75: too few for an interval"), std::string::npos) << table;
 }
 
 TEST(MakeValidationTable, HasARowOfEveryTest) {
