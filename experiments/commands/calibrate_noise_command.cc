@@ -66,8 +66,9 @@ motion is needed: everything is learnt from the residuals at the estimated motio
   camera faults      focal length, principal point, distortion k1, rolling shutter (if
                      files state # seconds_between) and key points of the second image,
                      beside each other, until the steps converge; named only if the test
-                     of all faults together says so, removed if more probable than not;
-                     what is left open of them widens covariances
+                     of all faults together says so, removed if more probable than not.
+                     `+-x is left`: root mean square of what the pairs leave open of
+                     a fault, after what is removed; covariances are widened by it
   displacement of    what is left of the lens in all images, over 6x4 cells, tested
   all images         against chance
 

@@ -147,7 +147,9 @@ std::string NoiseCalibrationAsText(const NoiseCalibration& calibration, const st
              "anew in every image, its correlation exp(-d / reach); that of all images is the same in each, "
              "over 6x4 cells. Intervals 95 %, by the scatter of pairs; found: at 5 %. n: matches of the "
              "noise, "
-             "pairs of the rest. Faults: rcme help validate.");
+             "pairs of the rest. is left: root mean square of what the pairs leave open of a fault, "
+             "after "
+             "what is removed; covariances are widened by it. Faults: rcme help validate.");
 }
 
 // A row per quantity, for files.
