@@ -89,6 +89,16 @@ GateReport BeginReport(const ReadableRun& run, const std::vector<GateTest>& test
   return report;
 }
 
+// What the labels of two files stand for: first of the assumptions, and a warning where one label is of two
+// things.
+void DescribeVersions(const RecordedVersion& of_old, const RecordedVersion& of_new, GateReport* report) {
+  const std::string words = CompareVersions(of_old, of_new);
+  report->assumptions.insert(report->assumptions.begin(), "Versions: " + words + ".");
+  if (HasMisleadingLabel(of_old, of_new))
+    PrintMessage("warning: both versions are called {}, but they are not the same: {}\n",
+                 of_old.estimator.label, words);
+}
+
 // For trials that are judged by these terms, from the first look to the last.
 void TakeTerms(const GateTerms& terms, const std::string& path, ResultStore* store) {
   if (store->NumTrials() > 0) RequireSameTerms(terms, store->Description().stopping_rule, path);
@@ -160,11 +170,12 @@ GateReport GateAgainstBaseline(const GateArguments& arguments) {
   const std::string path = TrialsPath(arguments);
   const StudyPlan plan = MakePlan(study, arguments.first);
   ResultStore store = ResultStore::OpenForRun(path, plan);
-  const std::string old_label = baseline.Description().estimators.at(e).label;
-  TakeTerms(MakeGateTerms(tests, old_label, version), path, &store);
+  const RecordedVersion recorded = FindRecordedVersion(baseline.Description(), e);
+  TakeTerms(MakeGateTerms(tests, recorded.estimator.label, version, IdentifyVersion(recorded)), path, &store);
   store.NoteOrigin(ThisProgram());
   const ReadableRun run = JoinRuns(baseline, {e}, store, {0});
   GateReport report = BeginReport(run, tests, true);
+  DescribeVersions(recorded, FindRecordedVersion(store.Description(), 0), &report);
   const std::int64_t max_rounds = std::min(arguments.max_trials, CountRounds(ReadRun(baseline)));
   RunUntilDecided(plan, arguments, max_rounds, run, tests, &store, &report);
   report.show_new = path;
@@ -182,6 +193,8 @@ GateReport GateFiles(const GateArguments& arguments) {
   const std::vector<GateTest> tests = TestsFrom(arguments, true, /*is_same_run=*/false);
   const ReadableRun run = JoinRuns(of_old, {old_e}, of_new, {new_e});
   GateReport report = BeginReport(run, tests, true);
+  DescribeVersions(FindRecordedVersion(of_old.Description(), old_e),
+                   FindRecordedVersion(of_new.Description(), new_e), &report);
   const std::int64_t max_rounds = std::min(arguments.max_trials, CountRounds(run));
   if (max_rounds == 0) throw InputError("gate: a condition has no trial that both result files hold");
   report.look = LookUntilDecided(run, tests, max_rounds, [](std::int64_t) { return true; });
@@ -247,8 +260,9 @@ Times of two runs are judged only if --of names them.
 
 Writes DIR/gate.md (for a pull request), DIR/gate.xml (JUnit), DIR/gate.json and
 DIR/trials.sqlite. If the command is stopped or the time is over, run it again: it goes on.
-Other margins, other quantities or another build of rcme or of a version's program need
-another DIR.
+Other margins, other quantities, another baseline, or another build of rcme or of a
+version's program need another DIR. Of baselines the report says which estimator, options
+and program the labels stand for, and a warning if one label stands for two.
 
 Examples:
   rcme gate study.yaml --old rcme --new rcme_calibrated --out gate

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -44,6 +45,24 @@ std::string FormatBuild(const std::string& name, const std::string& hash) {
 // "build of NAME " without the hash.
 std::string CutHash(const std::string& build) { return build.substr(0, build.rfind(' ') + 1); }
 
+std::string FindOption(const Settings& options, const std::string& name) {
+  const auto found = std::ranges::find(options, name, &Settings::value_type::first);
+  return found == options.end() ? "none" : found->second;
+}
+
+// "num_iterations 200, not 100", of each option that the two do not have alike.
+std::vector<std::string> ListOtherOptions(const DescribedEstimator& of_old,
+                                          const DescribedEstimator& of_new) {
+  std::vector<std::string> others;
+  for (const auto& [name, value] : of_new.options) {
+    const std::string before = FindOption(of_old.options, name);
+    if (before != value) others.push_back(fmt::format("{} {}, not {}", name, value, before));
+  }
+  for (const auto& [name, value] : of_old.options)
+    if (FindOption(of_new.options, name) == "none") others.push_back(fmt::format("no {}", name));
+  return others;
+}
+
 std::string FormatGateTests(const std::vector<GateTest>& tests, const std::string& old_label) {
   std::vector<std::string> parts;
   for (const GateTest& test : tests) parts.push_back(fmt::format("{}={}", test.Name(), test.margin));
@@ -80,13 +99,53 @@ std::string HashFilesOfCommand(const std::string& command) {
 }
 
 GateTerms MakeGateTerms(const std::vector<GateTest>& tests, const std::string& old_label,
-                        const std::vector<EstimatorSpec>& versions) {
+                        const std::vector<EstimatorSpec>& versions, const std::string& baseline) {
   GateTerms terms{FormatGateTests(tests, old_label), {FormatBuild("rcme", HashFile("/proc/self/exe"))}};
   for (const EstimatorSpec& version : versions) {
     const std::string command = FindCommand(version);
     if (!command.empty()) terms.builds.push_back(FormatBuild(version.label, HashFilesOfCommand(command)));
   }
+  if (!baseline.empty()) {
+    Fnv1a hash;
+    hash.Add(baseline);
+    terms.builds.push_back(
+        FormatBuild("the baseline's version " + old_label, fmt::format("{:016x}", hash.value())));
+  }
   return terms;
+}
+
+RecordedVersion FindRecordedVersion(const RunDescription& run, size_t estimator) {
+  return {run.estimators.at(estimator), run.origin, run.stopping_rule};
+}
+
+std::string IdentifyVersion(const RecordedVersion& version) {
+  std::string text =
+      fmt::format("estimator {}\nprogram {} ({})\nstopping rule {}\n", version.estimator.name,
+                  version.origin.program, version.origin.instruction_set, version.stopping_rule);
+  for (const auto& [name, value] : version.estimator.options) text += fmt::format("{} {}\n", name, value);
+  return text;
+}
+
+std::string CompareVersions(const RecordedVersion& of_old, const RecordedVersion& of_new) {
+  const auto program = [](const RecordedVersion& version) {
+    return version.origin.program.empty()
+               ? std::string("an unknown program")
+               : fmt::format("{} ({})", version.origin.program, version.origin.instruction_set);
+  };
+  const std::vector<std::string> options = ListOtherOptions(of_old.estimator, of_new.estimator);
+  const std::string of_estimator =
+      of_old.estimator.name != of_new.estimator.name
+          ? fmt::format("another estimator, {}", of_new.estimator.name)
+      : options.empty() ? "the same estimator with the same options"
+                        : fmt::format("the same estimator with other options ({})", fmt::join(options, ", "));
+  return fmt::format("old: {} of {}; new: {}, of {}", of_old.estimator.name, program(of_old), of_estimator,
+                     program(of_new));
+}
+
+bool HasMisleadingLabel(const RecordedVersion& of_old, const RecordedVersion& of_new) {
+  return of_old.estimator.label == of_new.estimator.label &&
+         (of_old.estimator.name != of_new.estimator.name ||
+          !ListOtherOptions(of_old.estimator, of_new.estimator).empty());
 }
 
 std::string GateTerms::AsStoppingRule() const {

@@ -9,6 +9,7 @@
 
 #include "experiments/gate/gate_quantity.h"
 #include "experiments/study/estimator_spec.h"
+#include "experiments/study/run_description.h"
 
 namespace rcme {
 
@@ -23,8 +24,28 @@ struct GateTerms {
 };
 
 // `old_label` is empty where no old version is judged; `versions` are those that the trials are of.
+// `baseline`: what identifies an old version whose trials are in a file (IdentifyVersion); a verdict against
+// another one needs another folder.
 GateTerms MakeGateTerms(const std::vector<GateTest>& tests, const std::string& old_label,
-                        const std::vector<EstimatorSpec>& versions);
+                        const std::vector<EstimatorSpec>& versions, const std::string& baseline = "");
+
+// A version whose trials a file holds: its label says nothing of what gave them.
+struct RecordedVersion {
+  DescribedEstimator estimator;
+  TrialOrigin origin;
+  std::string stopping_rule;  // of its file; that of a gate has the hashes of its builds
+};
+RecordedVersion FindRecordedVersion(const RunDescription& run, size_t estimator);
+
+// All of it, in a line of text for each: two are equal only if the versions are.
+std::string IdentifyVersion(const RecordedVersion& version);
+
+// "old: five_point of rcme 0.1.0 (avx2); new: the same estimator with other options (num_iterations 200, not
+// 100), of rcme 0.2.0 (avx2)".
+std::string CompareVersions(const RecordedVersion& of_old, const RecordedVersion& of_new);
+
+// One label for what is not the same estimator with the same options.
+bool HasMisleadingLabel(const RecordedVersion& of_old, const RecordedVersion& of_new);
 
 // A hash of the bytes of each regular file that the shell command names, in its order; what it finds by PATH
 // and what these files read are not in it.

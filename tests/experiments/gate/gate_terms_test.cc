@@ -55,5 +55,39 @@ TEST(RequireSameTerms, SaysWhatIsOther) {
       ThrowsInputError([&] { RequireSameTerms(terms, "ci=0.01", "trials.sqlite"); }, {"known margins"}));
 }
 
+// A label says nothing of what gave the trials: the estimator, its options and the program do.
+TEST(RecordedVersions, AreComparedByWhatTheyAre) {
+  const RecordedVersion before{
+      {"ours", "five_point", "", {{"num_iterations", "100"}, {"sigma", "1"}}}, {"rcme 0.1.0", "avx2"}, ""};
+  RecordedVersion after = before;
+  EXPECT_EQ(IdentifyVersion(before), IdentifyVersion(after));
+  EXPECT_FALSE(HasMisleadingLabel(before, after));
+  EXPECT_EQ(
+      CompareVersions(before, after),
+      "old: five_point of rcme 0.1.0 (avx2); new: the same estimator with the same options, of rcme 0.1.0 "
+      "(avx2)");
+  after.origin.program = "rcme 0.2.0";
+  EXPECT_NE(IdentifyVersion(before), IdentifyVersion(after));
+  after.estimator.options[0].second = "200";
+  EXPECT_TRUE(HasMisleadingLabel(before, after));
+  EXPECT_EQ(
+      CompareVersions(before, after),
+      "old: five_point of rcme 0.1.0 (avx2); new: the same estimator with other options (num_iterations "
+      "200, not 100), of rcme 0.2.0 (avx2)");
+  after.estimator.name = "magsac";
+  EXPECT_EQ(CompareVersions(before, after),
+            "old: five_point of rcme 0.1.0 (avx2); new: another estimator, magsac, of rcme 0.2.0 (avx2)");
+  after.estimator.label = "theirs";
+  EXPECT_FALSE(HasMisleadingLabel(before, after));
+
+  const std::vector<GateTest> tests = MakeGateTests({"failure"}, {});
+  const GateTerms terms = MakeGateTerms(tests, "ours", {}, IdentifyVersion(before)),
+                  of_other_baseline = MakeGateTerms(tests, "ours", {}, IdentifyVersion(after));
+  EXPECT_NO_THROW(RequireSameTerms(terms, terms.AsStoppingRule(), "trials.sqlite"));
+  EXPECT_TRUE(
+      ThrowsInputError([&] { RequireSameTerms(of_other_baseline, terms.AsStoppingRule(), "trials.sqlite"); },
+                       {"trials.sqlite", "another build of the baseline's version ours"}));
+}
+
 }  // namespace
 }  // namespace rcme
