@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -25,7 +26,8 @@ constexpr std::string_view kFormatStart = "{\"format\": \"rcme part ", kChecksum
 constexpr int kMaxPieceDepth = 8;        // of lists within lists; the deepest piece has three
 constexpr size_t kMaxRestOfPiece = 256;  // of an item's line beside its result, bytes
 constexpr size_t kMaxFirstValues = 64;   // of the first line, which has ten
-constexpr const char* kAgain = "remove the file and run the command again";
+constexpr const char* kAgain = "run the command that wrote it again: it keeps what is sound";
+constexpr const char* kAllAgain = "remove the file and run the command again";
 
 std::string QuotedAsJson(const std::string& text) {
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -96,9 +98,35 @@ class PartReader {
     return std::move(part_);
   }
 
+  SalvagedPart Salvage() {
+    SalvagedPart salvaged;
+    ReadFirst();
+    const auto note = [&](const InputError& error) {
+      const std::string words = error.what();  // without what to do: that is done
+      if (salvaged.damage.empty()) salvaged.damage = words.substr(0, words.find(std::string("; ") + kAgain));
+    };
+    try {
+      for (std::string_view line; lines_.Next(&line);) {
+        try {
+          ReadPiece(line);
+        } catch (const InputError& error) {
+          note(error);
+        }
+      }
+    } catch (const InputError& error) {  // no line: it is too long, or has a byte that no text has
+      note(error);
+    }
+    if (part_.results.size() != num_pieces_)
+      note(InputError(
+          fmt::format("{}: damaged: it has {} pieces, not {}", name_, part_.results.size(), num_pieces_)));
+    salvaged.num_lost = num_pieces_ - std::min(num_pieces_, part_.results.size());
+    salvaged.part = std::move(part_);
+    return salvaged;
+  }
+
  private:
   [[noreturn]] void FailDamaged(const std::string& what) const {
-    lines_.Fail(fmt::format("damaged: {}; {}", what, kAgain));
+    lines_.Fail(fmt::format("damaged: {}; {}", what, is_first_read_ ? kAgain : kAllAgain));
   }
 
   void RequireChecksum(FixedText* line) {
@@ -129,6 +157,7 @@ class PartReader {
     } catch (const std::invalid_argument& error) {
       FailDamaged(error.what());
     }
+    is_first_read_ = true;
   }
 
   void TakeFirst(const std::string& text) {
@@ -175,6 +204,7 @@ class PartReader {
   Part part_;
   std::string first_checksum_;
   size_t num_pieces_ = 0;
+  bool is_first_read_ = false;
 };
 
 }  // namespace
@@ -262,6 +292,16 @@ Part ReadPart(const std::string& path) {
 
 Part ParsePart(std::string_view text, const std::string& name) {
   return PartReader(name, ReadFrom(text)).Read();
+}
+
+SalvagedPart SalvagePart(const std::string& path) {
+  RegularFile file(path, {"part", "a part that --shard writes"});
+  return PartReader(path, [&](char* buffer, size_t size) { return file.Read(size).copy(buffer, size); })
+      .Salvage();
+}
+
+SalvagedPart ParseSalvagedPart(std::string_view text, const std::string& name) {
+  return PartReader(name, ReadFrom(text)).Salvage();
 }
 
 bool IsPart(const std::string& path) {

@@ -77,6 +77,17 @@ Part ReadPart(const std::string& path);
 // The same of its text; `name` is what messages call it.
 Part ParsePart(std::string_view text, const std::string& name);
 
+// A part of which some lines may be damaged, for who can make their items again. Every line has a checksum of
+// its own, so that the others are as sound as those of a whole part.
+struct SalvagedPart {
+  Part part;            // with the results of the sound lines
+  std::string damage;   // the first: path, line and what is wrong; empty: there is none
+  size_t num_lost = 0;  // items that the first line counts and no sound line has
+};
+// Throws InputError as ReadPart where the first line is damaged: nothing says what the others are of.
+SalvagedPart SalvagePart(const std::string& path);
+SalvagedPart ParseSalvagedPart(std::string_view text, const std::string& name);
+
 // Whether the file begins as a part does, of whatever format; false where it cannot be read.
 bool IsPart(const std::string& path);
 

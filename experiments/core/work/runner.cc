@@ -122,7 +122,8 @@ Runner Runner::FromParts(const WorkPlan& plan, const std::vector<std::string>& p
 // Goes on with what the file holds, if there is one.
 void Runner::OpenFile() {
   if (!std::filesystem::exists(path_)) return CheckCanBeWritten(path_);
-  Part before = ReadPart(path_);
+  SalvagedPart salvaged = SalvagePart(path_);
+  Part& before = salvaged.part;
   try {
     RequireMatchingPart(plan_, path_, before);
     RequireSame(path_, "this command", "another shard", DescribeShard(before.shard),
@@ -133,6 +134,9 @@ void Runner::OpenFile() {
     if (kind_ == Kind::kShard) throw;
     throw InputError(fmt::format("{}; remove the file or choose another --out", error.what()));
   }
+  if (!salvaged.damage.empty())
+    PrintMessage("warning: {}; {} sound {}s are kept, {} of the file are lost and made again\n",
+                 salvaged.damage, before.results.size(), plan_.item_name, salvaged.num_lost);
   results_.results = std::move(before.results);
   results_.kept_in = path_;
   num_written_ = results_.results.size();

@@ -357,10 +357,37 @@ TEST_F(RunnerWithCheckpoint, RefusesOtherWorkAndWhatIsDamaged) {
   EXPECT_TRUE(ThrowsInputError(open(sewing), {path_, "another work, 'knitting' there", "choose another"}));
   EXPECT_EQ(NumKept(), 7u);
   std::string bytes = ReadBytes(path_);
-  bytes[bytes.size() - 5] ^= 1;
+  bytes[60] ^= 1;  // of the first line: nothing says what the others are of
   folder_.Write("unfinished.part", bytes);
   EXPECT_TRUE(
       ThrowsInputError(open(Plan()), {path_, "damaged", "remove the file and run the command again"}));
+}
+
+// One damaged line costs its own item alone, and an end that is cut off what it held.
+TEST_F(RunnerWithCheckpoint, KeepsTheSoundLinesOfADamagedFile) {
+  EXPECT_EQ(Run(1), 31);
+  const std::string all = all_;
+  for (const bool is_cut_off : {false, true}) {
+    Run(1, [](int call) {
+      if (call == 8) throw InputError("no wool");
+    });
+    std::string bytes = ReadBytes(path_);
+    const size_t second_line = bytes.find('\n', bytes.find('\n') + 1) + 1;
+    if (is_cut_off)
+      bytes.resize(second_line + 20);  // one sound line, and a beginning
+    else
+      bytes[second_line + 20] ^= 1;
+    folder_.Write("unfinished.part", bytes);
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(Run(1), is_cut_off ? 30 : 25);
+    const std::string warning = testing::internal::GetCapturedStderr();
+    EXPECT_NE(warning.find(path_), std::string::npos) << warning;
+    EXPECT_NE(warning.find(is_cut_off ? "1 sound rows are kept, 6 of the file are lost and made again"
+                                      : "6 sound rows are kept, 1 of the file are lost and made again"),
+              std::string::npos)
+        << warning;
+    EXPECT_EQ(all_, all);
+  }
 }
 
 TEST_F(RunnerWithCheckpoint, AFileThatCannotBeWrittenIsAnErrorOfItsOwn) {
@@ -418,6 +445,12 @@ TEST(PartFile, EveryByteIsProtected) {
       std::string damaged = text;
       damaged[i] = static_cast<char>(damaged[i] ^ flip);
       num_refused += ThrowsInputError([&] { ParsePart(damaged, "part"); }, {"part"});
+      if (i <= text.find('\n')) continue;  // of the first line
+      const SalvagedPart salvaged = ParseSalvagedPart(damaged, "part");
+      EXPECT_FALSE(salvaged.damage.empty()) << i;
+      EXPECT_EQ(salvaged.num_lost + salvaged.part.results.size(), 2U) << i;
+      for (const auto& [place, result] : salvaged.part.results)
+        EXPECT_EQ(result.json, part.results.at(place).json) << i;
     }
   }
   EXPECT_EQ(num_refused, static_cast<int>(4 * text.size()));
