@@ -5,7 +5,7 @@ import argparse
 import os
 import sys
 
-from common import sheet, style
+from common import sheet
 from common.plot_error import PlotError
 from common.style_file import read_style
 
@@ -125,15 +125,16 @@ def draw_figure(name, parse, draw, arguments):
     return draw_figures(name, parse, lambda options: {"": draw(options)}, arguments)
 
 
-def draw_figures(name, parse, draw, arguments, dpi=style.RC["savefig.dpi"]):
+def draw_figures(name, parse, draw, arguments, dpi=None):
     """The same of a script that draws several: draw(options) is {what its name adds to --out: figure}, all of them
     before the first is written."""
     return run(name, lambda arguments: written_figures(parse(arguments), draw, dpi), arguments)
 
 
-def written_figures(options, draw, dpi=style.RC["savefig.dpi"]):
+def written_figures(options, draw, dpi=None):
     """The paths."""
+    from common import style  # here, so that a script without figures need not load matplotlib, which takes half a second
     with sheet.use(getattr(options, "sheet", sheet.Sheet())):
         figures = draw(options)
         check_names_were_met()
-        return [path for more, figure in figures.items() for path in style.save(figure, options.out + more, dpi)]
+        return [path for more, figure in figures.items() for path in style.save(figure, options.out + more, dpi or style.RC["savefig.dpi"])]

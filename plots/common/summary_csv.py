@@ -23,7 +23,7 @@ COMPARISON_COLUMNS = ("study", "condition", "estimator", "reference", "event", "
 
 def text_of_cell(cell):
     """The text that the program wrote: one that a spreadsheet would take for a formula has an apostrophe in front."""
-    return MARKED.sub("", cell)
+    return MARKED.sub("", cell) if cell.startswith("'") else cell
 
 
 class Table:

@@ -43,7 +43,7 @@ SHORTER = [
     (r"^\$rcme", "rcme"),
     (r"\bSTUDY --until ci=0.01\b", "STUDY --set outlier_ratio=0.1 --until ci=0.3"),
     (r"^rcme (tune|transfer) (STUDY|studies/tune_acceptance.yaml)",
-     r"rcme \1 studies/tune_acceptance.yaml --set outlier_ratio=0.1"),
+     r"rcme \1 studies/tune_acceptance.yaml --set outlier_ratio=0.1 --set num_matches=60"),
     (r"^rcme tune (\S+)", r"rcme tune \1 --set scene=room"),
     (r"\bSTUDY\b", "studies/failure_vs_outliers.yaml"),
     (r"\bPAIRS (.*noise\.yaml)", r"one_camera \1"),

@@ -51,8 +51,8 @@ class WorstTest(unittest.TestCase):
     def command(self, out, *more):
         return [RCME, "worst", str(self.folder / "small.yaml"), "--out", str(self.folder / out), *ARGUMENTS, *more]
 
-    def finish(self, out):
-        end = subprocess.run(self.command(out), capture_output=True, text=True, check=False)
+    def finish(self, out, form):
+        end = subprocess.run(self.command(out, "--format", form), capture_output=True, text=True, check=False)
         self.assertEqual(end.returncode, 0, end.stderr)
         return {name: (self.folder / out / name).read_bytes() for name in FILES}, end
 
@@ -83,18 +83,17 @@ class WorstTest(unittest.TestCase):
             self.assertFalse(is_there(work.pid))
 
     def test_a_killed_search_ends_as_an_undisturbed_one(self):
-        whole, end = self.finish("whole")
-        self.assertIn("trials", end.stderr)  # the cost, beforehand
+        whole, of_whole = self.finish("whole", "json")
+        self.assertIn("trials", of_whole.stderr)  # the cost, beforehand
         self.assertTrue((self.folder / "whole" / "region_1.png").exists())
         self.kill_after_some_trials("killed")
         self.assertFalse((self.folder / "killed" / "worst.csv").exists())
-        self.assertEqual(self.finish("killed")[0], whole)
+        again, of_killed = self.finish("killed", "csv")
+        self.assertEqual(again, whole)
 
-        printed = {form: subprocess.run(self.command("whole", "--format", form), capture_output=True, text=True, check=True).stdout
-                   for form in ("csv", "json")}
-        self.assertEqual(printed["json"], (self.folder / "whole" / "worst.json").read_text())
-        self.assertEqual([float(row["rate"]) for row in csv.DictReader(printed["csv"].splitlines())],
-                         [region["rate"] for region in json.loads(printed["json"])["regions"]])
+        self.assertEqual(of_whole.stdout, whole["worst.json"].decode())
+        self.assertEqual([float(row["rate"]) for row in csv.DictReader(of_killed.stdout.splitlines())],
+                         [region["rate"] for region in json.loads(of_whole.stdout)["regions"]])
 
         row = next(csv.DictReader((self.folder / "whole" / "worst.csv").read_text().splitlines()))
         run = str(self.folder / "again.sqlite")
