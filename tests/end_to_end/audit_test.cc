@@ -95,9 +95,10 @@ TEST(Audit, InShardsGivesTheSameBytes) {
     std::vector<int> counts;
   };
   // More shards than there are claims; on a study a number that divides no batch.
-  const std::vector<Divided> audits = {
-      {{"--only", "sampson.full_rank,mu.rank_aware.separation"}, {3}},
-      {{folder.Path("study.yaml"), "--only", "inlier.true_pose.rank_aware,sigma_f.eight_point", "--seed", "3"}, {3}}};
+  const std::vector<Divided> audits = {{{"--only", "sampson.full_rank,mu.rank_aware.separation"}, {3}},
+                                       {{folder.Path("study.yaml"), "--only",
+                                         "inlier.true_pose.rank_aware,sigma_f.eight_point", "--seed", "3"},
+                                        {3}}};
   for (const auto& [options, counts] : audits) {
     std::vector<std::string> command = {"audit", "--out", folder.Path("whole")};
     command.insert(command.begin() + 1, options.begin(), options.end());

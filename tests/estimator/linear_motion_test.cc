@@ -44,8 +44,8 @@ TEST(EstimateLinearMotion, CovarianceOfFCoversInTheLimitOfSmallNoise) {
       RandomProblem random = MakeRandomProblem(rng, {.num_matches = m});
       AddNoise(1e-4, rng, &random.problem);
       const LinearMotion motion = EstimateLinearMotion(random.problem).value();
-      const Vector8d error = motion.fit.LocalCoordinates(ComputeLinearModel(random.pose_true));
-      const double nees = NormalizedErrorSquared(error, motion.LocalCovarianceOfF());
+      const Eigen::VectorXd error = motion.fit.LocalCoordinates(ComputeLinearModel(random.pose_true));
+      const double nees = NormalizedErrorSquared(error, Eigen::MatrixXd(motion.LocalCovarianceOfF()));
       count.Add(nees <= limit);
       count_larger.Add(nees / 1.25 <= limit);
       count_smaller.Add(nees / 0.8 <= limit);
