@@ -9,7 +9,7 @@ string(REGEX MATCHALL "(^|\n)[^ \n]+[.]" suites "${listing}")
 set(tests)
 foreach(suite ${suites})
   string(REGEX REPLACE "^\n|[.]$" "" suite "${suite}")
-  string(APPEND tests "add_test([=[${PREFIX}${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=] --gtest_brief=1)\n"
+  string(APPEND tests "add_test([=[${PREFIX}${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
                       "set_tests_properties([=[${PREFIX}${suite}]=] PROPERTIES ENVIRONMENT GLOG_minloglevel=3)\n")
 endforeach()
 file(WRITE ${FILE} "${tests}")
