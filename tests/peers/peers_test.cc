@@ -67,7 +67,7 @@ TEST_P(PeerLibraries, FindMostMotionsAmongWrongMatches) {
 }
 
 // The threshold is in standard deviations of the distance: of true matches, 68 % are within one and 95 %
-// within two. That is asked of 10 noisy matches among 590 exact ones, which leave hardly any doubt about the
+// within two. That is asked of 10 noisy matches among 290 exact ones, which leave hardly any doubt about the
 // motion, before any refinement that would draw it to the noisy ones. Standard errors over 1,200 of them are
 // .013 and .006; where the normals of a match's two epipolar lines differ in length by the ratio of the focal
 // lengths, the deviation is up to 2 % wider. A distance that is off by a factor of 1.2 would be seen.
@@ -84,14 +84,14 @@ TEST_P(PeerLibraries, TakeTheirThresholdInStandardDeviations) {
     double num_inliers = 0.0, num_noisy = 0.0;
     for (std::uint32_t trial = 0; trial < 120; ++trial) {
       RelativePose pose_true;
-      MotionProblem problem = TwoCameraProblem(600, 0.0, 0.0, trial, &pose_true);
+      MotionProblem problem = TwoCameraProblem(300, 0.0, 0.0, trial, &pose_true);
       problem.sigma_px = 0.5;
       RandomStream rng({.seed = 1, .trial = trial, .purpose = 2731});
-      for (size_t i = 590; i < 600; ++i) AddNoise(0.5, rng, &problem.matches[i]);
+      for (size_t i = 290; i < 300; ++i) AddNoise(0.5, rng, &problem.matches[i]);
       const MotionEstimate estimate = Estimate(variant, problem, trial);
       if (!IsNear(estimate, pose_true, 2e-4, 2e-3)) continue;  // of other motions, more is in the distance
       num_inliers +=
-          static_cast<double>(std::ranges::count_if(estimate.inliers, [](int i) { return i >= 590; }));
+          static_cast<double>(std::ranges::count_if(estimate.inliers, [](int i) { return i >= 290; }));
       num_noisy += 10.0;
     }
     EXPECT_GE(num_noisy, 300.0) << threshold;
