@@ -67,7 +67,7 @@ bool IsTied(const AskedEstimator& a, const AskedEstimator& b) { return a.success
 
 // Why the best leads those that succeed as often as it.
 std::string DescribeTieBreak(const Answer& a) {
-  if (!a.next || !IsTied(a.best, *a.next) || std::isnan(a.best.median_error_deg)) return "";
+  if (!a.next || !IsTied(a.best, *a.next) || !std::isfinite(a.best.median_error_deg)) return "";
   const double error = RoundToTwoDigits(a.best.median_error_deg);
   const bool needs_time = error == RoundToTwoDigits(a.next->median_error_deg);
   return fmt::format("; {} leads by median error, {:g} deg{}", a.best.label, error,
@@ -77,6 +77,9 @@ std::string DescribeTieBreak(const Answer& a) {
 // The estimators that the trials do not tell from the best, which their order must not hide.
 std::string DescribeTies(const Answer& a) {
   const std::int64_t n = a.best.success.n.value_or(0);
+  if (CountSuccesses(a.best) == 0)
+    return fmt::format("none of the {} succeeds in any of {} trials: the order says nothing",
+                       a.num_estimators, n);
   const size_t num = a.alike.size() + 1;
   const std::string who = static_cast<int>(num) == a.num_estimators
                               ? (num == 2 ? std::string("both") : fmt::format("all {}", num))

@@ -247,6 +247,15 @@ TEST_F(AnswerOfRun, OneFailureMoreMayBeChance) {
     EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
 }
 
+TEST_F(AnswerOfRun, WhereNoneSucceedsTheOrderSaysNothing) {
+  Add(40, {{90.0, 0.9}, {80.0}, {70.0}});
+  const std::string words = JoinWords(Ask());
+  EXPECT_NE(words.find("none of the 3 succeeds in any of 40 trials: the order says nothing"),
+            std::string::npos)
+      << words;
+  EXPECT_EQ(words.find("leads by"), std::string::npos) << words;
+}
+
 // third succeeds in 30 of 40 trials, the others in none.
 TEST_F(AnswerOfRun, ALeadThatIsMoreThanChanceHasNoTies) {
   Add(30, {{90.0, 0.9}, {90.0}, {0.1}});
