@@ -48,10 +48,10 @@ ProtectionLevels ComputeProtectionLevels(const MotionEstimate& estimate, double 
   RequireCovariance(covariance);
   if (risk <= p) return {std::numbers::pi, std::numbers::pi};
   const double tail = (risk - p) / (1.0 - p);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(covariance.topLeftCorner<3, 3>(),
-                                                                Eigen::EigenvaluesOnly);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> direction(covariance.bottomRightCorner<2, 2>(),
-                                                                 Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(
+      Eigen::Matrix3d(covariance.topLeftCorner<3, 3>()), Eigen::EigenvaluesOnly);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> direction(
+      Eigen::Matrix2d(covariance.bottomRightCorner<2, 2>()), Eigen::EigenvaluesOnly);
   const Eigen::Vector2d of_direction = direction.eigenvalues();
   return {ComputeLevel(rotation.eigenvalues(), tail),
           ComputeLevel({of_direction(0), of_direction(1), 0.0}, tail)};
