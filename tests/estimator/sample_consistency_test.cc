@@ -9,7 +9,7 @@
 #include "estimator/solvers/eight_point.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 #include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/random_problem.h"
 

@@ -9,7 +9,7 @@
 
 #include "simulator/noise/noise_laws.h"
 #include "stats/distributions.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {

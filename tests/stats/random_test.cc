@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "stats/distributions.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 
 namespace rcme {
 namespace {

@@ -13,7 +13,7 @@
 #include "simulator/motion_registry.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 #include "tests/test_support/uniform_cdf.h"
 
 namespace rcme {

@@ -6,7 +6,7 @@
 #include "stats/constants.h"
 #include "stats/distributions.h"
 #include "tests/simulator/noise/noise_sample.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 
 namespace rcme {
 namespace {

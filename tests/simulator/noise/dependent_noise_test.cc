@@ -7,7 +7,7 @@
 #include "simulator/observe.h"
 #include "stats/distributions.h"
 #include "tests/simulator/noise/noise_sample.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {

@@ -3,7 +3,7 @@
 #include "simulator/noise/noise_laws.h"
 #include "stats/distributions.h"
 #include "tests/simulator/noise/noise_sample.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 
 namespace rcme {
 namespace {

@@ -8,7 +8,7 @@
 #include "stats/distributions.h"
 #include "tests/simulator/outliers/wrong_matches.h"
 #include "tests/test_support/expect_input_error.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 #include "tests/test_support/uniform_cdf.h"
 
 namespace rcme {

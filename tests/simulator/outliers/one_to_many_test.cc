@@ -5,7 +5,7 @@
 #include "simulator/outliers/outlier_laws.h"
 #include "tests/simulator/outliers/wrong_matches.h"
 #include "tests/test_support/expect_input_error.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 
 namespace rcme {
 namespace {

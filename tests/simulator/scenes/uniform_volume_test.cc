@@ -5,7 +5,7 @@
 #include "simulator/cameras/camera_models.h"
 #include "simulator/motions/motions.h"
 #include "simulator/scene_generator.h"
-#include "tests/test_support/kolmogorov_smirnov.h"
+#include "tests/test_support/goodness_of_fit.h"
 
 namespace rcme {
 namespace {
