@@ -242,11 +242,12 @@ def comparison(run, event):
 
 def stated_sharpness(one):
     """Of a hypothesis about coverage: how wide the regions are, of each estimator (medians)."""
-    for who, stated in ((one["estimator"], one.get("sharpness")), (one["against"], one.get("sharpness_against"))):
+    for who, key in (("estimator", "sharpness"), ("against", "sharpness_against")):
+        stated = one.get(key)
         if stated and stated["sd_over_crb"] is not None:
-            yield f"{who}: stated sd {stated['sd_over_crb']:.3g} times the least possible"
+            yield f"{one[who]}: stated sd {stated['sd_over_crb']:.3g} times the least possible"
         elif stated and stated["rotation_sd_deg"] is not None:
-            yield (f"{who}: stated sd {stated['rotation_sd_deg']:.2g} deg of rotation, "
+            yield (f"{one[who]}: stated sd {stated['rotation_sd_deg']:.2g} deg of rotation, "
                    f"{stated['direction_sd_deg']:.2g} deg of direction")
 
 
