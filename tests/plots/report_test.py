@@ -206,14 +206,17 @@ class Page(ReportTest):
                       "verdict": "holds", "why_open": ""}
         unfinished = hypothesis | {"hypothesis": f"another {EVIL}", "n": 0, "value": None, "interval": [0, 1], "verdict": "open",
                                    "why_open": "5 of 10 trials are done"}
+        of_coverage = hypothesis | {"hypothesis": "nees_coverage of rcme is at least 0.9", "estimator": "rcme", "against": "",
+                                    "sharpness": {"sd_over_crb": 1.3, "rotation_sd_deg": 0.2, "direction_sd_deg": 1.1}}
         decided = {"locked": True, "locked_at": "2026-01-31T12:00:00Z", "program": "rcme 0.1.0", "sha256": "ab12" * 16,
                    "confidence": 0.95, "confidence_each": 0.975, "deviations": ["estimator mine: was added"],
-                   "reasons": ["a reader asked"], "hypotheses": [hypothesis, unfinished]}
+                   "reasons": ["a reader asked"], "hypotheses": [hypothesis, unfinished, of_coverage]}
         self.add_run(run_json=facts(preregistration=decided))
         page = self.page()
         text = "".join(Structure(page).text)
         for part in ("Decided before the run", "ab12" * 16, "failure of rcme is at most 0.1", "5.00 %[1.00, 9.00]", "1,200", "holds",
-                     "5 of 10 trials are done", "each with 97.50 %", "estimator mine: was added", "Reason: a reader asked",
+                     "rcme: stated sd 1.3 times the least possible", "5 of 10 trials are done", "each with 97.50 %",
+                     "estimator mine: was added", "Reason: a reader asked",
                      "Decided after"):
             self.assertIn(part, text)
         self.assertNotIn(EVIL, page)
