@@ -51,8 +51,8 @@ Parameter BudgetParameter(double* budget_ms) {
 // Throws InputError unless there is such an estimator.
 void CheckEstimatorName(const std::string& name) {
   if (IsNameOfEstimatorFile(name)) {
-    throw InputError(
-        fmt::format("{} is an estimator file, not an estimator: write {{file: {}}}", Quoted(name), name));
+    throw InputError(fmt::format("unknown estimator {0}; {0} is an estimator file: write {{file: {1}}}",
+                                 Quoted(name), name));
   }
   FindEstimator(name);
 }
