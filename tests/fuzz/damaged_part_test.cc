@@ -291,7 +291,9 @@ TEST_F(DamagedParts, NoneChangesATableInSilence) {
     fmt::print("{}: {} damages: {} refused, {} named and mended, {} without effect\n", work.work,
                NumDamages(), num_refused, num_named, num_same);
     EXPECT_GT(num_refused + num_named, NumDamages() * 9 / 10) << work.work;
-    if (work.parts.size() > 1) EXPECT_EQ(num_named, 0) << work.work;
+    if (work.parts.size() > 1) {
+      EXPECT_EQ(num_named, 0) << work.work;
+    }
   }
 }
 
