@@ -1,21 +1,23 @@
-// Is a new version of an estimator worse than an old one by more than a margin? Both answer the same
-// problems, and each trial gives a bounded difference per quantity, on which a gambler bets
-// (stats/score_mean.h):
+// Tests whether a new version of an estimator is worse than an old one by more than a margin. Both versions
+// answer the same problems. Each trial gives one bounded difference per quantity; a betting test examines the
+// mean difference (stats/score_mean.h). The verdict is
 //
-//   worse         one test at level alpha, Holm-adjusted for all of them, rejects "the difference is at most
-//                 the margin"
-//   not worse     every test at level alpha rejects "the difference is at least the margin"
-//   undecided     neither, within the budget
+//   worse         if, for some quantity, the Holm-adjusted test at level alpha rejects "the difference is at
+//                 most the margin"
+//   not worse     if, for every quantity, the test at level alpha rejects "the difference is at least the
+//                 margin"
+//   undecided     if neither happens within the budget
 //
-// P(worse is said at any look | no difference exceeds its margin) <= alpha, and P(not worse is said at any
-// look | one does) <= alpha: that one has to be rejected itself, so that this needs no adjustment.
+// P(verdict "worse" at any look | no difference exceeds its margin) <= alpha. P(verdict "not worse" at any
+// look | some difference exceeds its margin) <= alpha without adjustment, because the hypothesis of that very
+// quantity has to be rejected.
 //
-// A difference is of the mean over the conditions of the study, as they are. A look is at the same number of
-// trials of every condition, a round being one of each. The trials of a round are independent with means
-// mu_c, so that the expected growth of the capital, prod_c (1 + f (mu_c / m - 1)), is at most 1 where the
-// mean of mu_c is at most m (arithmetic and geometric mean): the capital is a supermartingale over rounds.
-// Trials that give no pair leave it as it is; the mean is then that over the trials that give one. Where
-// trials share a scene they count as one, by their mean.
+// A round is one trial of every condition; a look uses a whole number of rounds. The difference under test is
+// the mean over the conditions of the study, equally weighted. The trials of a round are independent with
+// means mu_c. The expected growth of the bettor's capital in a round is prod_c (1 + f (mu_c / m - 1)). By the
+// inequality of arithmetic and geometric means it is at most 1 if the mean of mu_c is at most m, so the
+// capital is a supermartingale over rounds. Trials without a pair leave the capital unchanged; the mean is
+// then that of the trials with a pair. Trials that share a scene count as one, by their mean.
 #pragma once
 
 #include <cstdint>
@@ -38,44 +40,45 @@ std::string Name(GateVerdict verdict);  // "not worse", ...
 // One test at a look.
 struct GateRow {
   GateTest test;
-  std::int64_t n = 0;                 // pairs, of scenes where trials share them; of a limit trials
-  double of_old = 0.0, of_new = 0.0;  // of these pairs: rates, mean scores, medians; NaN: not known
-  double difference = 0.0;            // as people read it; of a limit the rate
+  std::int64_t n = 0;                 // pairs (for a limit: trials), or scenes if trials share them
+  double of_old = 0.0, of_new = 0.0;  // rate, mean score or median over the pairs; NaN: unknown
+  double difference = 0.0;            // in the units of the margin; for a limit: the rate
   Interval interval;         // each end holds at every look with probability 1 - alpha, both with 1 - 2 alpha
-  double size_ratio = kNaN;  // of miscoverage: the regions' size over the old ones', pair by pair
-  double p_worse = 1.0, p_not_worse = 1.0;  // the first is Holm-adjusted
+  double size_ratio = kNaN;  // for miscoverage: geometric mean over pairs of new / old region size
+  double p_worse = 1.0, p_not_worse = 1.0;  // p_worse is Holm-adjusted
   GateVerdict verdict = GateVerdict::kUndecided;
 };
 
 struct GateLook {
   std::int64_t num_rounds = 0;  // trials of every condition
-  std::vector<GateRow> rows;    // as the tests
+  std::vector<GateRow> rows;    // one per test, in their order
   GateVerdict verdict = GateVerdict::kUndecided;
 };
 
-// What the first `num_rounds` trials of every condition say. The new version is the run's last estimator, the
-// old one its first; of a run of one estimator only limits can be tested. Throws InputError where trials are
-// weighted, or only one of the versions gives what a test needs.
+// Tests the first `num_rounds` trials of every condition. The old version is the run's first estimator, the
+// new version its last; a run of one estimator allows only limits. Throws InputError if trials are weighted,
+// or if no trial gives a pair for a test although some give a number of one version.
 GateLook TakeGateLook(const ReadableRun& run, const std::vector<GateTest>& tests, std::int64_t num_rounds);
 
-// Sees to it that the run has so many trials of every condition; false: the time is over.
+// Extends the run to `num_rounds` trials of every condition; false: the time limit was reached.
 using GrowRun = std::function<bool(std::int64_t num_rounds)>;
 
-// Looks after about 200 trials and then after a quarter more each time, until the verdict is decided or
-// `max_rounds` is reached. The numbers of trials depend on the study alone. If the time is over before the
-// first look, every test is undecided after no trial.
+// Looks after about 200 trials, at least 20 of every condition, and then each time after a quarter more,
+// until the verdict is decided, `max_rounds` is reached or `grow` returns false. If it does so before the
+// first look, every test is undecided after 0 trials.
 GateLook LookUntilDecided(const ReadableRun& run, const std::vector<GateTest>& tests, std::int64_t max_rounds,
                           const GrowRun& grow);
 
-// How many trials every condition has without a gap.
+// The largest n such that every condition has the trials 0, ..., n - 1.
 std::int64_t CountRounds(const ReadableRun& run);
 
-// A trial that ended otherwise with the new version.
+// A trial with different outcomes for the two versions.
 struct ChangedTrial {
   std::uint32_t condition = 0, trial = 0;
   std::string of_old, of_new;  // outcomes (trial_outcome.h)
-  bool is_for_worse = false;   // a success was lost, or a failure came for a refusal
+  bool is_for_worse = false;   // success became refusal or failure, or refusal became failure
 };
+// Trials that changed for the worse come first.
 std::vector<ChangedTrial> FindChangedTrials(const ReadableRun& run, std::int64_t num_rounds);
 
 }  // namespace rcme

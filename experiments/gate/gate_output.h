@@ -8,33 +8,34 @@
 
 namespace rcme {
 
-// What a gate found, with what a reader has to know of how.
+// The result of a gate with what its reader needs to judge it.
 struct GateReport {
-  std::string study, old_label, new_label;  // the second is empty where only limits are tested
+  std::string study, old_label, new_label;  // old_label is empty if only limits are tested
   std::int64_t num_conditions = 0;
   GateLook look;
   bool is_out_of_time = false;
-  std::vector<std::string> assumptions;  // sentences: what the guarantee needs, what it is for
-  std::vector<ChangedTrial> changed;     // those for the worse first
-  // A result file or a study with its options, as `rcme show` takes them; that of the old version is empty
-  // where one shows both.
+  std::vector<std::string> assumptions;  // sentences: what the guarantee assumes, and its scope
+  std::vector<ChangedTrial> changed;     // changes for the worse first
+  // Arguments of `rcme show`: a result file, or a study with its options. show_old is empty if show_new shows
+  // both versions.
   std::string show_new, show_old;
 };
 
-// Assumptions that every gate has, with those of its tests.
+// The assumptions common to all gates, followed by those of these tests.
 std::vector<std::string> ListAssumptions(const ReadableRun& run, const std::vector<GateTest>& tests);
 
-// One sentence: the verdict, of what, after how many trials.
+// One sentence: the verdict, what was compared, and the number of trials.
 std::string GateSentence(const GateReport& report);
 
-// The command that computes and draws a changed trial again; of the old version if it has one of its own.
+// The `rcme show` command that recomputes and draws a changed trial. `of_old`: with the old version, if that
+// has a command of its own.
 std::string ShowCommand(const GateReport& report, const ChangedTrial& trial, bool of_old = false);
 
 std::string GateAsText(const GateReport& report);
-// For the page of a pull request.
+// For a comment on a pull request.
 std::string GateAsMarkdown(const GateReport& report);
 std::string GateAsJson(const GateReport& report);
-// A test case per test: worse is a failure, undecided an error, what was not measured is skipped.
+// One test case per test: "worse" is a failure, "undecided" an error, "not measured" is skipped.
 std::string GateAsJUnit(const GateReport& report);
 
 CommandResult MakeGateResult(const GateReport& report);

@@ -1,5 +1,5 @@
-// What a gate judges: numbers of a trial that a new version of an estimator may not raise by more than a
-// margin.
+// The quantities that a gate tests. Each is a number of a trial, smaller is better, and a new version of an
+// estimator may not raise its mean by more than a margin.
 #pragma once
 
 #include <functional>
@@ -12,25 +12,25 @@
 namespace rcme {
 
 enum class GateScale {
-  kRate,   // 0 or 1 of a trial: differences are of rates
+  kRate,   // 0 or 1 per trial; a difference of means is one of rates
   kScore,  // in [0, 1]
-  kRatio,  // positive: differences are of logarithms, cut off at e times as much and as little
+  kRatio,  // positive; differences are of natural logarithms, clamped to [-1, 1]
 };
 
-// Of each the less is the better.
 struct GateQuantity {
   std::string name, doc;
   GateScale scale = GateScale::kRate;
-  double usual_margin = 0.0;    // in the units of a margin: of kRatio the share by which a number may grow
-  bool needs_same_run = false;  // numbers of two runs cannot be compared
-  // What a trial gives; nothing where it says nothing about the estimator.
+  double usual_margin = 0.0;    // for kRatio: the relative growth allowed, 0.05 for 5 %
+  bool needs_same_run = false;  // numbers of two separate runs are not comparable
+  // The number of a trial; std::nullopt if the trial has none.
   std::function<std::optional<double>(const TrialRecord&, const FailureBounds&)> of;
-  // Of what regions decide: the logarithm of their size, the geometric mean of the semi-axes; NaN: unknown.
+  // For a quantity that depends on the stated region: the logarithm of the region's size, which is the
+  // geometric mean of its semi-axes; NaN: unknown.
   std::function<double(const TrialRecord&)> log_size = {};
 
-  // Of a new and an old number, in [-1, 1]; 0 for equal ones, infinite ones too.
+  // New minus old on this scale, in [-1, 1]; 0 for equal numbers, also for two infinite ones.
   double Difference(double of_new, double of_old) const;
-  // A margin on the scale of these differences, and a difference as people read it: of kRatio a share.
+  // Convert between a margin in the units of usual_margin and the scale of Difference.
   double ToDifference(double margin) const;
   double FromDifference(double difference) const;
 };
@@ -39,18 +39,17 @@ struct GateQuantity {
 const std::vector<GateQuantity>& GateQuantities();
 std::vector<std::string> GateQuantityNames();
 
-// One thing that a gate tests: a quantity of the new version less that of the old one against a margin, or of
-// the new version alone against a limit.
+// One test of a gate. It compares new minus old version with a margin, or the new version alone with a limit.
 struct GateTest {
   GateQuantity quantity;
-  double margin = 0.0;  // or the limit
+  double margin = 0.0;  // or the limit, if is_limit
   bool is_limit = false;
 
   std::string Name() const { return is_limit ? quantity.name + "_at_most" : quantity.name; }
 };
 
-// The tests of these quantities with their usual margins, or those of "name=margin". Throws InputError for a
-// name that is not among the quantities and a margin that is not allowed.
+// One test for each of the quantities `names`, with its usual margin unless `margins` has a "name=margin" for
+// it. Throws InputError if a margin's name is not among `names`, or a margin is not between 0 and 1.
 std::vector<GateTest> MakeGateTests(const std::vector<std::string>& names,
                                     const std::vector<std::string>& margins);
 
