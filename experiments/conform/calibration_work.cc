@@ -27,7 +27,7 @@ double LogDeterminant(const Matrix5d& covariance) {
   return ldlt.vectorD().array().max(0.0).log().sum();
 }
 
-// What the truth's own error may change (answer_row.h).
+// Sets the two fields for the error of the truth (answer_row.h).
 void AddTruthError(const FailureBounds& bounds, const TrialRecord& record, const Truth& truth,
                    AnswerRow* row) {
   if (!truth.sd) return;
@@ -40,7 +40,7 @@ void AddTruthError(const FailureBounds& bounds, const TrialRecord& record, const
   row->is_wrong_by_truth = is_wrong(-1.0) != is_wrong(1.0);
 }
 
-// Nothing where the trial has no answer, or nobody knows how wrong it is.
+// Fills `row` if the trial has an answer with a known error (kAnswer).
 enum class AnswerKind { kAnswer, kRefusal, kUnscored };
 AnswerKind MakeRow(const FailureBounds& bounds, const TrialResult& result, AnswerRow* row) {
   const TrialRecord& record = result.records.front();

@@ -12,10 +12,10 @@ namespace rcme {
 // `plan` has one estimator.
 WorkPlan PlanCalibration(const StudyPlan& plan);
 void GetCalibration(const StudyPlan& plan, Runner* runner);
-// In the order of conditions and trials. Of one group are at least the trials of one scene, of one real pair
-// (it comes again in each pass over a folder), and, where conditions are new, of one draw or real scene. A
-// truth that has an error of its own is taken as it is. Throws InputError where conditions share their scenes
-// and are to be new.
+// Returns the answers in the order of conditions and trials. Trials are in one group if they have the same
+// scene or the same real pair, which comes again in each pass over a folder. With NewProblem::kCondition
+// trials of the same draw or real scene are in one group too. A truth with an error of its own is taken as
+// exact. Throws InputError for NewProblem::kCondition if conditions share their scenes.
 AnswerRows ReadCalibration(const StudyPlan& plan, NewProblem new_problem, const Runner& runner);
 
 }  // namespace rcme

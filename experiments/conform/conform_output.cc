@@ -95,7 +95,7 @@ bool IsAcceptedInUse(const JudgedAnswer& answer) {
   return answer.verdict.is_accepted && answer.verdict.familiarity > kStrangeLevel;
 }
 
-// Of all problems, also the refused ones, as it is promised.
+// A share of all problems, refused ones included, as in the promise.
 Estimate MeasureWrongAndAccepted(const ConformReport& report,
                                  const std::function<bool(const JudgedAnswer&)>& accepts) {
   std::vector<std::int64_t> refused;
@@ -259,7 +259,7 @@ std::string DescribeTruth(const ConformReport& report) {
       Counted(num_open, "answer is within", "answers are within"), kTruthErrorSds));
 }
 
-// What is refuted first; where nothing is, that.
+// Begins with what is refuted, or says that nothing is.
 std::vector<std::string> DescribeKept(const ConformReport& report) {
   const PromiseFinding& kept = *report.kept;
   const ConformRule& rule = report.rule;

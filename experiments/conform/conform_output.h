@@ -8,13 +8,13 @@
 
 namespace rcme {
 
-// Sentences: what the rule promises, what for, and what it needs for more.
+// Sentences: the rule's promises, their scope, and what a stronger promise needs.
 std::vector<std::string> DescribePromises(const ConformRule& rule);
 
-// How many answers and groups a promise needs.
+// A sentence: the numbers of answers and groups that a promise needs.
 std::string DescribeNeeds(const ConformPromise& promise);
 
-// `by_strata`: also by what is visible of an answer (conform_strata.h).
+// `by_strata`: with coverage and size by visible strata (conform_strata.h).
 std::string ConformAsText(const ConformReport& report, bool by_strata = false);
 std::string ConformAsJson(const ConformReport& report, bool by_strata = false);
 

@@ -18,9 +18,9 @@
 namespace rcme {
 namespace {
 
-constexpr size_t kMostRefusals = 2000;  // of the reference, thinned beyond
+constexpr size_t kMostRefusals = 2000;  // a longer reference is thinned to about so many
 
-// In an order of their own: conditions one after the other would be a shift.
+// Shuffled: the test would take the order by conditions for a shift.
 template <typename T>
 std::vector<T> Mixed(std::vector<T> items) {
   RandomStream order({.seed = 1, .condition = 0, .trial = 0, .purpose = 3});
@@ -54,7 +54,7 @@ void LookForStrangeAnswers(const ConformRule& rule, const std::vector<AnswerRow>
   finding->num_looked_at = static_cast<std::int64_t>(test.n());
   finding->p_value = std::min(1.0, 2.0 * test.PValue());
   finding->feature = VisibleFeatureNames()[rule.familiar_features[test.StrongestFeature()]];
-  // Each answer multiplies the capital of a gambler by at most half the root of how many it is compared with.
+  // Each answer multiplies the bettor's capital by at most sqrt(n) / 2, n: familiar answers and itself.
   const double num_familiar = static_cast<double>(rule.familiar.size() / width);
   const double greatest = std::pow(0.5 * std::sqrt(num_familiar + 1.0), finding->num_looked_at);
   finding->could_notice = greatest >= 2.0 / kShiftLevel;
@@ -82,8 +82,8 @@ void LookForRefusals(const ConformRule& rule, const std::vector<AskedProblem>& p
   if (noticed_after) finding->noticed_after = noticed_after;
 }
 
-// What the problems of a plan depend on, whatever is asked of them: its seed, and what its conditions are.
-// What simulated draws of a population are their settings decide; whether they can be simulated shows later.
+// Identifies the problems of a plan: its seed, and the stream key and identity of each condition. A simulated
+// draw of a population is determined by its stream key alone, so its identity is left out.
 std::string DescribeProblems(const StudyPlan& plan) {
   std::string text = fmt::format("seed {}\n", plan.study.seed);
   for (const Condition& condition : plan.conditions) {

@@ -1,4 +1,4 @@
-// A calibration, or the check of an earlier one by new problems: from the answers of a plan to a report.
+// Calibrates an estimator with the answers of a plan, or checks an earlier calibration on new problems.
 #pragma once
 
 #include <optional>
@@ -12,43 +12,44 @@
 
 namespace rcme {
 
-// What new answers say about whether their problems are like those of the calibration.
+// Whether new problems differ from those of the calibration.
 struct ShiftFinding {
-  std::int64_t num_looked_at = 0;             // answers in random order, one of each group
-  bool could_notice = false;                  // so many that the greatest shift would be noticed
+  std::int64_t num_looked_at = 0;             // answers tested, in random order, one of each group
+  bool could_notice = false;                  // enough answers to notice the greatest possible shift
   double p_value = 1.0;                       // valid at every look
-  std::optional<std::int64_t> noticed_after;  // answers (problems, of refusals), at level kShiftLevel
-  std::string feature;                        // that differs most, or "refusals"
-  double strange_share = 0.0;  // of all answers: those called strange, kStrangeLevel if none differ
+  std::optional<std::int64_t> noticed_after;  // answers (for refusals: problems), at level kShiftLevel
+  std::string feature;                        // the one that differs most, or "refusals"
+  double strange_share = 0.0;  // share of the answers called strange; about kStrangeLevel without a shift
 };
 inline constexpr double kShiftLevel = 0.05;
 
 struct ConformReport {
   ConformRule rule;
   std::string label;                   // of the estimator
-  std::vector<JudgedAnswer> judged;    // by cross-validation, or new ones
+  std::vector<JudgedAnswer> judged;    // calibration: by cross-validation; check: new answers
   std::vector<AskedProblem> problems;  // answered and refused ones
   std::int64_t num_unscored = 0;
-  bool is_check = false;        // of a rule that is there, by new answers
-  bool has_real_truth = false;  // a measured one, of real pairs
-  bool shares_images = false;   // real pairs counted as if they were independent
+  bool is_check = false;        // checks an existing rule with new answers
+  bool has_real_truth = false;  // real pairs, whose truth is measured
+  bool shares_images = false;   // calibration with real pairs that are counted as independent
   std::optional<ShiftFinding> shift;
-  std::optional<PromiseFinding> kept;  // are the promises kept; of a check
+  std::optional<PromiseFinding> kept;  // of a check
 };
 
-// By two tests, each at half the level: of what is seen of answers, and of how often there is none.
+// Runs two tests, each at half the level: one of the visible features, one of the refusal rate.
 ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers);
 
-// The rule of a file that is to be checked, or to lend its models (nothing for an empty path). Throw
-// InputError as ReadConformFile, if it is of the plan's own problems, and, of models, if it is of another
-// estimator.
+// LoadToCheck reads a rule to check; LoadModels reads a rule whose models are to be used again (nothing for
+// an empty path). Both throw InputError as ReadConformFile does, and if the rule was calibrated with the
+// plan's own problems. LoadModels also throws it if the rule is for another estimator.
 ConformRule LoadToCheck(const StudyPlan& plan, const std::string& path);
 std::optional<ConformRule> LoadModels(const StudyPlan& plan, const std::string& path);
 
-// Of the plan's one estimator. `models`: as FitConformRule; may be null. Throws InputError as that.
+// Calibrates the plan's one estimator. `models` may be null, see FitConformRule. Throws InputError as
+// FitConformRule does.
 ConformReport CalibrateConform(const StudyPlan& plan, NewProblem new_problem, const ConformPromise& promise,
                                const ConformRule* models, const AnswerRows& answers);
-// Of a rule whose estimator is the plan's.
+// Checks a rule for the plan's estimator.
 ConformReport CheckConform(const StudyPlan& plan, const ConformRule& rule, const AnswerRows& answers);
 
 }  // namespace rcme

@@ -9,9 +9,9 @@
 
 namespace rcme {
 
-// By matches, agreeing matches, parallax over its noise, planarity, stated standard deviations and stated
-// probability, in their own units (visible_features.h has logarithms); sharpness: the size of the region
-// (deg). The label is the region's name.
+// Strata of: matches, agreeing matches, parallax over its noise, planarity, stated standard deviations (deg)
+// and stated probability of failure. These are in natural units, unlike the logarithms of visible_features.h.
+// Sharpness is the size of the region (deg). The label is the region's name.
 std::vector<CoverageStratum> MeasureConformStrata(const ConformReport& report);
 
 }  // namespace rcme

@@ -1,21 +1,21 @@
-// From answers with truth to a rule (estimator/conform/conform_rule.h).
+// Fits a rule (estimator/conform/conform_rule.h) to answers with known truth.
 //
-// Of n groups (answers that depend on each other are of one), three tenths train what may be chosen freely:
-// the difficulty, a logistic model of "the normalised error is among the greatest fifth", and the odds of a
-// wrong motion, a logistic model of "the motion is wrong"; both of what can be seen of an answer. On the
-// others, which the models have not seen, everything that is promised is set:
+// Answers that depend on each other form a group. Three tenths of the groups train two logistic models of the
+// visible features: the difficulty, P(the normalised error is among the greatest fifth), and the odds of a
+// wrong motion. The models may be chosen freely. The other groups set everything that is promised:
 //
-//   factors      in each stratum of difficulty the conformal bound of the normalised errors
-//                (stats/conformal.h); as many strata, at most ten, as have three times the groups each that a
-//                bound needs
-//   log odds     their correction a + b x, by logistic regression with a prior at (0, 1)
-//   accept rule  thresholds of the odds, from strict to lax and fixed beforehand, certified one by one until
-//                one is not (stats/risk_control.h): of P(a problem is answered wrongly and accepted), the
-//                exact binomial test, or, where problems share groups, the bound for the groups' mean losses
+//   factors      for each stratum of difficulty, the conformal bound of its normalised errors
+//                (stats/conformal.h). There are at most ten strata, and each has at least three times the
+//                groups that a bound needs.
+//   log odds     the correction a + b x of the log odds x, by logistic regression with a prior at (0, 1)
+//   accept rule  thresholds of the odds in a fixed order, from strict to lax, are certified one by one until
+//                one fails (stats/risk_control.h). The certified quantity is P(a problem is answered wrongly
+//                and accepted); the test is the exact binomial one or, if problems share groups, the bound
+//                for the groups' mean losses.
 //
-// Nothing is trained with fewer than 150 answers or 40 groups, nor where the groups would be enough for the
-// accept rule but seven tenths of them are not: one stratum, the stated odds or, where the estimator states
-// none, the fewer agreeing matches the worse.
+// No model is trained with fewer than 150 answers or 40 groups, or if all groups suffice for the accept rule
+// but seven tenths of them do not. The rule then has one stratum, and its odds are those that the estimator
+// states or, if it states none, decrease with the number of agreeing matches.
 #pragma once
 
 #include <cstdint>
@@ -27,12 +27,12 @@
 namespace rcme {
 
 inline constexpr double kTrainedShare = 0.3;
-inline constexpr size_t kLeastAnswers = 150;  // to train a model
+inline constexpr size_t kLeastAnswers = 150;  // to train models, as is kLeastGroups
 inline constexpr std::int64_t kLeastGroups = 40;
 
-// Everything but what it was made for (estimator, options, origin, bounds). With `models` nothing is trained:
-// difficulty and odds are those of that rule, of other answers, and all of these set promises. Throws
-// InputError without answers.
+// Sets every field of the rule except estimator, options, origin and failure bounds. With `models`,
+// difficulty and odds are taken from that rule, which was fitted to other answers, and all of `answers` set
+// the promises. Throws InputError if there are no answers.
 ConformRule FitConformRule(const AnswerRows& answers, const ConformPromise& promise,
                            const ConformRule* models = nullptr);
 

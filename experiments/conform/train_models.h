@@ -1,5 +1,5 @@
-// The part of a rule that may be chosen freely: models of what can be seen of an answer, trained by answers
-// that set no promise (fit_rule.h).
+// Trains the models of a rule, which predict difficulty and failure from the visible features of an answer.
+// The answers used here must not set promises (fit_rule.h).
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,19 @@ namespace rcme {
 // Whether at most one in twenty answers lacks the feature.
 bool HasFeature(const std::vector<AnswerRow>& rows, size_t feature);
 
-// Of each row by the model, log odds.
+// The model's log odds for each row.
 std::vector<double> ComputeLogOdds(const FeatureModel& model, const std::vector<AnswerRow>& rows);
 
 // Sets the rule's models of difficulty and failure.
 void TrainModels(const std::vector<AnswerRow>& rows, ConformRule* rule);
 
-// Without training: no difficulty, and the failure by the stated odds or, where the estimator states none, by
+// Sets untrained models: none of difficulty; failure by the stated odds or, if the estimator states none, by
 // the number of agreeing matches.
 void UseNoModel(const std::vector<AnswerRow>& rows, ConformRule* rule);
 
-// Edges of strata of difficulty, with equally many of these answers between two; as many strata as leave each
-// of them groups enough, counted by the shares of its answers, once `factor` times as many answers set its
-// factor.
+// Edges between strata of difficulty that have equally many of `rows` each. Chooses the most strata, at most
+// ten, for which each has enough groups to set its factor, counted by the shares of its answers. The factors
+// are set by `factor` times as many groups as `rows` have.
 std::vector<double> ChooseEdges(const FeatureModel& difficulty, const std::vector<AnswerRow>& rows,
                                 double factor, double level);
 
