@@ -5,10 +5,10 @@
 namespace rcme {
 namespace {
 
-// Of which the accept rule takes one; chosen before any trial.
+// The rules to try; fixed before any trial.
 constexpr double kProbabilities[] = {0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0};
 
-// Of one rule of one estimator.
+// The level for one rule of one estimator.
 double ComputeDelta(int num_estimators) {
   return 0.05 / (static_cast<double>(std::size(kProbabilities)) * num_estimators);
 }

@@ -19,7 +19,7 @@
 namespace rcme {
 namespace {
 
-// A quantity of an estimator, with its n; not known where the summary does not have it.
+// A quantity of an estimator with its n; an empty Estimate if the summary lacks it.
 Estimate FindEstimate(const Summary& summary, const std::string& label, const std::string& quantity) {
   for (const SummaryRow& row : summary.rows) {
     if (row.estimator == label && row.quantity == quantity) return MakeEstimate(row, /*num_trials=*/-1);
@@ -27,8 +27,8 @@ Estimate FindEstimate(const Summary& summary, const std::string& label, const st
   return {};
 }
 
-// A share of n, with the exact interval that holds together with those of all estimators (Bonferroni); a
-// verdict by a narrower one is left out.
+// Gives a share of n the exact interval that holds jointly with those of all estimators (Bonferroni), and
+// removes its note, which is from a narrower interval.
 Estimate WidenForChoice(Estimate share, int num_estimators) {
   const std::int64_t n = share.n.value_or(0);
   if (n == 0 || std::isnan(share.value)) return share;
@@ -55,7 +55,7 @@ std::vector<AskedEstimator> ListRanked(const RunDescription& run, const Summary&
 
 bool IsMoreThanChance(const ComparisonRow& row) { return row.n > 0 && row.holm_p_value < 0.05; }
 
-// Those that the comparison with the best, by failure or refusal, does not tell from it.
+// The estimators whose rate of failure or refusal does not differ significantly from that of the best.
 std::vector<AskedEstimator> FindAlike(const std::vector<AskedEstimator>& ranked,
                                       const Comparison& comparison) {
   std::vector<AskedEstimator> alike(ranked.begin() + 1, ranked.end());
@@ -67,7 +67,7 @@ std::vector<AskedEstimator> FindAlike(const std::vector<AskedEstimator>& ranked,
   return alike;
 }
 
-// Failure or refusal of the best and of `other`, turned into success. Holm's step-down tests the least
+// The difference in success, from the comparison of failures and refusals. Holm's step-down tests the least
 // p-value of `num_undecided` at 0.05 / num_undecided, so trials are planned at that level.
 std::optional<AskedDifference> DescribeDifference(const Comparison& comparison, const std::string& other,
                                                   size_t num_undecided) {
@@ -104,7 +104,7 @@ Estimate EstimateFailed(const std::vector<StatedAnswer>& answers) {
   return {.value = static_cast<double>(failed) / static_cast<double>(n), .n = n};
 }
 
-// What the best, or the first alike that states any, states of its failures.
+// Sets `stating`, `rule`, `stated` and `failed`.
 void AddStated(const ResultStore& run, const Summary& summary, Answer* answer) {
   std::vector<std::string> labels = {answer->best.label};
   for (const AskedEstimator& estimator : answer->alike) labels.push_back(estimator.label);
@@ -120,7 +120,7 @@ void AddStated(const ResultStore& run, const Summary& summary, Answer* answer) {
   }
 }
 
-// Whether the region of the best covers, by the interval that holds although it was chosen.
+// Judges the coverage of the best estimator's region by the interval that allows for the choice.
 CoverageVerdict JudgeChosenCoverage(const Estimate& coverage, const Answer& answer) {
   const std::int64_t n = coverage.n.value_or(0);
   CoverageVerdict judged =

@@ -1,5 +1,5 @@
-// What a run of the study of a question (question.h) says: which estimator, from which stated probability on,
-// how far it can be trusted, how many trials.
+// Answers a question (question.h) from the run of its study: the best estimator, the stated probability above
+// which to refuse its answers, how far it can be trusted, and how many trials that needs.
 #pragma once
 
 #include <cstdint>
@@ -19,51 +19,51 @@ namespace rcme {
 
 struct AskedEstimator {
   std::string label;
-  Estimate success;                // of all trials; the intervals of all estimators hold together
+  Estimate success;                // share of all trials; the intervals of all estimators hold jointly
   double time_ms = 0.0;            // mean of a call
-  double median_error_deg = kNaN;  // of the greater of rotation and direction error; NaN: not known
-  std::string inlier_threshold;    // in words; empty: not known
+  double median_error_deg = kNaN;  // median of max(rotation error, direction error); NaN: unknown
+  std::string inlier_threshold;    // DescribeInlierThreshold; empty: unknown
 };
 
-// How often two estimators end otherwise in the same trials.
+// The difference between the two best estimators, from the same trials.
 struct AskedDifference {
-  Estimate difference;              // of the rates of success, best minus next
+  Estimate difference;              // success rate of the best minus that of the next
   double p_value = 1.0;             // McNemar's, adjusted for all estimators that the best was chosen among
-  std::int64_t trials_to_tell = 0;  // about so many tell them apart with probability 0.8
-  // The same for a difference of kPlainDifference, where the two end otherwise as often as here.
+  std::int64_t trials_to_tell = 0;  // about so many trials tell the two apart with probability 0.8
+  // The same if the success rates differed by kPlainDifference and the outcomes disagreed as often as here.
   std::int64_t trials_of_plain_difference = 0;
 };
 inline constexpr double kPlainDifference = 0.01;
 
-// Intervals hold for the best although the same trials chose it: those of all estimators hold together with
-// probability 0.95 (Bonferroni).
+// The intervals of all estimators hold jointly with probability 0.95 (Bonferroni). They therefore hold for
+// the best estimator although the same trials chose it.
 struct Answer {
   std::int64_t num_trials = 0;
   int num_estimators = 0;
   FailureBounds failure;
   AskedEstimator best;
-  std::vector<AskedEstimator> alike;   // the others whose success these trials cannot tell from its own
-  std::optional<AskedEstimator> next;  // the second
+  std::vector<AskedEstimator> alike;   // others whose success is not significantly below that of the best
+  std::optional<AskedEstimator> next;  // the second in rank
   std::optional<AskedDifference> difference;
-  double at_most = 0.0;  // the rate of failure that is asked for
-  // The label of the estimator of which the next three are: the best, or, if that states no probability of
-  // failure, the first alike that does. Empty: none does.
+  double at_most = 0.0;  // the greatest failure rate of accepted answers, from the question
+  // The label of the estimator that `rule`, `stated` and `failed` describe: the best if it states a
+  // probability of failure, else the first in `alike` that does; empty if none does.
   std::string stating;
-  std::optional<AcceptRule> rule;  // certified; nothing: none is
-  Estimate stated, failed;         // mean stated probability, and rate of failure of the same answers
-  Estimate coverage;               // of the 95 % region
+  std::optional<AcceptRule> rule;  // std::nullopt: no rule is certified
+  Estimate stated, failed;         // mean stated probability of failure; failure rate of the same answers
+  Estimate coverage;               // of the best estimator's 95 % region, as the next two
   CoverageVerdict coverage_verdict;
   StatedSharpness sharpness;
 };
 
-// The best first: by success, then by the median error in two digits (not known: last), then by the time of
-// a call.
+// Sorts the best first: by success, then by the median error rounded to two digits (unknown: last), then by
+// the time of a call.
 void RankEstimators(std::vector<AskedEstimator>* estimators);
 
-// To two digits: 0.1234 -> 0.12, 2994 -> 3000.
+// Rounds to two significant digits: 0.1234 -> 0.12, 2994 -> 3000.
 double RoundToTwoDigits(double value);
 
-// Throws InputError for a run of several conditions, and for a trial that is not sound.
+// Throws InputError if the run has several conditions or a damaged trial.
 Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px);
 
 }  // namespace rcme

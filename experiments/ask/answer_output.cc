@@ -20,7 +20,7 @@
 namespace rcme {
 namespace {
 
-// The rate of failure that one would like to see shown where nothing failed.
+// The failure rate to demonstrate if no trial failed.
 constexpr double kRareRate = 0.001;
 
 // The parts of the answer: what a line is about, and what it says.
@@ -65,7 +65,7 @@ std::int64_t CountSuccesses(const AskedEstimator& estimator) {
 
 bool IsTied(const AskedEstimator& a, const AskedEstimator& b) { return a.success.value == b.success.value; }
 
-// Why the best leads those that succeed as often as it.
+// Why the best ranks before estimators with the same success rate.
 std::string DescribeTieBreak(const Answer& a) {
   if (!a.next || !IsTied(a.best, *a.next) || !std::isfinite(a.best.median_error_deg)) return "";
   const double error = RoundToTwoDigits(a.best.median_error_deg);
@@ -74,7 +74,7 @@ std::string DescribeTieBreak(const Answer& a) {
                      needs_time ? ", then by time" : "");
 }
 
-// The estimators that the trials do not tell from the best, which their order must not hide.
+// Names the estimators that are not significantly worse than the best.
 std::string DescribeTies(const Answer& a) {
   const std::int64_t n = a.best.success.n.value_or(0);
   if (CountSuccesses(a.best) == 0)
@@ -99,7 +99,7 @@ std::int64_t RoundTrials(std::int64_t trials) {
   return std::llround(RoundToTwoDigits(static_cast<double>(trials)));
 }
 
-// How many trials tell the first two apart, and how many a difference that one would call one.
+// The numbers of trials that tell the first two apart, and that show a difference of kPlainDifference.
 std::string DescribeTrialsToTell(const Answer& a) {
   if (!a.difference) return "";
   const AskedDifference& d = *a.difference;

@@ -8,7 +8,7 @@
 
 namespace rcme {
 
-// For people: a line per part of the answer; `folder` holds study.yaml and run.sqlite.
+// For people: each part of the answer on a line of its own. `folder` holds study.yaml and run.sqlite.
 std::string AnswerAsText(const Answer& answer, const std::string& question, const std::string& folder);
 std::string AnswerAsJson(const Answer& answer, const std::string& question);
 

@@ -1,4 +1,4 @@
-// Which matches an estimator takes for inliers, in words and with the unit of the number.
+// Describes in words, with units, which matches an estimator takes for inliers.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// Of the estimator `name` of the program with these options, for noise of sigma_px:
-// "1.37 px of Sampson distance (1.96 sigma: ...)", "none in px: ...". Empty: not known of this estimator.
+// Describes the threshold of the built-in estimator `name` with these options, for noise of sigma_px:
+// "1.37 px of Sampson distance (1.96 sigma: ...)", "none in px: ...". Empty if it is unknown.
 std::string DescribeInlierThreshold(const std::string& name, const Settings& options, double sigma_px);
 
 }  // namespace rcme

@@ -1,4 +1,5 @@
-// The question of somebody with a camera: which estimator, how far can it be trusted, how many trials?
+// The question of a user with a given camera: which estimator to use, how far to trust it, and how many
+// trials are needed to know.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +9,12 @@
 
 namespace rcme {
 
-// What the question needs, as text; empty: not said yet.
+// The user's input as text; empty: not given yet.
 struct AskedTexts {
   std::string image;     // "1280x720" or "1280 720", px
-  std::string focal_px;  // of fx and fy
-  std::string sigma_px;  // noise per coordinate
-  std::string scene;     // of `rcme list scenes`
+  std::string focal_px;  // focal length, for fx and fy
+  std::string sigma_px;  // standard deviation of the noise per coordinate
+  std::string scene;     // see `rcme list scenes`
   std::string wrong;     // share of wrong matches, "0.4" or "40%"
 };
 
@@ -23,27 +24,27 @@ struct Question {
   std::string scene;
   std::string motion;  // empty: the scene's usual one
   double outlier_ratio = 0.0;
-  std::string outliers = "uniform";  // of `rcme list outliers`
+  std::string outliers = "uniform";  // see `rcme list outliers`
   int num_matches = 500;
   double max_rotation_error_deg = 3.0, max_direction_error_deg = 15.0;
   std::uint64_t seed = 1;
 };
 
-// Asks on `out` for each text that is missing and reads a line of `in` for it. Throws InputError that names
-// the options if `in` ends before.
+// Asks on `out` for each missing text and reads it as a line of `in`. Throws InputError that names the
+// options of the missing texts if `in` ends early.
 void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts);
 
-// Those of the options that are missing: {"--focal"}.
+// The options of the missing texts: {"--focal"}.
 std::vector<std::string> MissingOptions(const AskedTexts& texts);
 
-// A share, also of a text in percent: 0.4 of "0.4", "40%" and "40 %". False: the text is none.
+// Parses a share, also in percent: 0.4 for "0.4", "40%" and "40 %". Returns false if the text is not a share.
 bool ParseShare(const std::string& text, double* share);
 
-// Fills in what the texts say. Throws InputError that names the option and what is allowed.
+// Parses the texts into `question`. Throws InputError that names the option and the allowed values.
 void ReadTexts(const AskedTexts& texts, Question* question);
 
-// The study of so many trials that answers the question, as YAML: its one condition, rcme_calibrated and
-// those one would take instead. Names that the program does not have are refused by whoever reads it.
+// The study that answers the question, as YAML: one condition with `trials` trials, for rcme_calibrated and
+// its usual alternatives. Unknown names of scenes and outliers are refused when the study is read.
 std::string MakeStudyText(const Question& question, int trials);
 
 // "1280 x 720, f 900 px, noise 0.7 px; corridor; 40 % wrong (clustered_both), 500 matches".

@@ -53,7 +53,7 @@ IntegrityTally TallyFrom(const Json& json, std::int64_t most) {
   return tally;
 }
 
-// Of each quantity [answers whose truth is not exact, misleading from, to, hazardous from, to].
+// For each quantity: [answers with inexact truth, misleading least, most, hazardous least, most].
 Json SensitivityAsJson(const TruthSensitivity& sensitivity) {
   Json json = Json::array();
   for (size_t q = 0; q < kNumIntegrityQuantities; ++q)

@@ -234,7 +234,7 @@ Json RenderTallyCells(const std::map<int, std::int64_t>& cells) {
   return json;
 }
 
-// Counts, were each truth off towards the answer, and away from it.
+// The counts with each truth moved towards the answer, and away from it.
 Json RangeAsJson(const TruthSensitivity::Range& range) { return Json::array({range.least, range.most}); }
 
 Json DiagramAsJson(const IntegrityReport& report, const IntegrityCounts& all, size_t quantity) {

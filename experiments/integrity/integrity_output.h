@@ -14,36 +14,36 @@ struct IntegrityReport {
   std::string study, estimator;
   IntegrityTerms terms;
   NewProblem new_problem = NewProblem::kTrial;
-  bool has_common_scenes = false;  // a number is the same scene in all conditions
+  bool has_common_scenes = false;  // a scene number means the same scene in all conditions
   std::vector<std::string> factors;
   std::vector<ConditionIntegrity> conditions;
-  bool has_real_truth = false;  // a measured one, of real pairs
+  bool has_real_truth = false;  // real pairs, whose truth is measured
 };
 
-// Whether errors are beyond their level as seldom as the risk says, by the 95 % interval of how often.
+// Whether P(error > level) is at most the risk, by the 95 % interval of the misleading rate.
 enum class RiskVerdict { kKept, kExceeded, kUndecided };
 const char* Name(RiskVerdict verdict);
 
-// What a row says of one quantity, or of either (kEither). Intervals are exact binomial ones; where trials
-// depend on each other, by clusters (stats/clustered_estimate.h).
+// The rates of one quantity, or of kEither. Intervals are exact binomial ones, or by clusters if trials
+// depend on each other (stats/clustered_estimate.h).
 struct IntegrityRates {
-  Estimate available;   // of all trials: level within the alert limit
-  Estimate misleading;  // of the answers: error beyond the level
-  Estimate hazardous;   // of all trials: error beyond the alert limit, level within
+  Estimate available;   // share of all trials: level <= alert limit
+  Estimate misleading;  // share of the answers: error > level
+  Estimate hazardous;   // share of all trials: level <= alert limit < error
   RiskVerdict verdict =
-      RiskVerdict::kUndecided;  // of rotation and of direction: the risk is promised for each
+      RiskVerdict::kUndecided;  // for rotation or direction only: the risk is promised for each
 };
-// `clusters` are independent; where each is to be taken as trials that are independent themselves,
-// `by_trial`.
+// `clusters` are independent of each other. `by_trial`: so are the trials within each.
 IntegrityRates MeasureIntegrity(const std::vector<IntegrityTally>& clusters, bool by_trial, size_t quantity,
                                 double risk);
 
-// Over all conditions, each trial with the same weight. Of a new problem from another condition, conditions
-// are the clusters; otherwise scenes or trials.
+// Over all conditions, each trial with the same weight. The clusters are conditions with
+// NewProblem::kCondition, otherwise scenes or trials.
 IntegrityRates MeasureIntegrity(const IntegrityReport& report, size_t quantity);
 
-// Over all conditions: exceeded in rotation or in direction, kept in both, or undecided. If the risk is kept,
-// "exceeded" is said with probability at most 5 %: 2.5 % for each, as the lower end of an interval has it.
+// The verdict over all conditions: exceeded in rotation or in direction, kept in both, or undecided. If the
+// risk is kept in truth, the verdict is kExceeded with probability at most 5 %: 2.5 % for each quantity, by
+// the lower end of its interval.
 RiskVerdict JudgeRisk(const IntegrityReport& report);
 
 std::string IntegrityAsText(const IntegrityReport& report);

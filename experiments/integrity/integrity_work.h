@@ -17,11 +17,11 @@ void GetIntegrity(const StudyPlan& plan, const IntegrityTerms& terms, Runner* ru
 struct ConditionIntegrity {
   std::vector<std::string> levels;
   IntegrityCounts counts;
-  // By number. Trials of a scene depend on each other, also those of other conditions where the study has
-  // common scenes. Empty: every trial has its own.
+  // By scene number; empty if every trial has its own scene. Trials of a scene depend on each other, also
+  // across conditions if the study has common scenes.
   std::map<std::int64_t, IntegrityTally> scenes;
 };
-// One per condition of the plan.
+// Returns one entry per condition of the plan, in its order.
 std::vector<ConditionIntegrity> ReadIntegrity(const StudyPlan& plan, const Runner& runner);
 
 }  // namespace rcme
