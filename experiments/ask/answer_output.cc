@@ -26,8 +26,8 @@ constexpr double kRareRate = 0.001;
 // The parts of the answer: what a line is about, and what it says.
 using Lines = std::vector<std::pair<std::string, std::string>>;
 
-// Of a measured rate, whether it is what is stated: another one if the interval does not hold the stated
-// one, right if it lies within `margin` of it.
+// Compares a measured rate with the stated one: wrong if the interval excludes the stated rate, right if the
+// whole interval lies within `margin` of it.
 std::string JudgeStated(const Estimate& measured, double stated, double margin) {
   const Interval& interval = measured.interval;
   if (interval.upper < stated) return "too pessimistic";

@@ -66,7 +66,7 @@ void ReadSize(const std::string& text, int* width, int* height) {
       Quoted(text)));
 }
 
-// A line without its end; false: there is none.
+// Reads a line without its end; false at the end of input.
 bool ReadTypedLine(std::istream& in, std::string* line) {
   bool is_there = false;
   for (char c = 0; in.get(c); *line += c) {

@@ -47,7 +47,7 @@ void ReadTexts(const AskedTexts& texts, Question* question);
 // its usual alternatives. Unknown names of scenes and outliers are refused when the study is read.
 std::string MakeStudyText(const Question& question, int trials);
 
-// "1280 x 720, f 900 px, noise 0.7 px; corridor; 40 % wrong (clustered_both), 500 matches".
+// "1280 x 720 px, f 900 px, noise 0.7 px; corridor; 40 % wrong (clustered_both) of 500 matches".
 std::string DescribeQuestion(const Question& question);
 
 }  // namespace rcme

@@ -1,5 +1,5 @@
-// The loop of all long work, whatever its items give and wherever that is kept: threads, progress, requests
-// to stop (core/work/stop_request.h) and errors.
+// The loop of all long work. It handles threads, progress, requests to stop (core/work/stop_request.h) and
+// errors, for any kind of items and any place that keeps their results.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,24 @@
 
 namespace rcme {
 
-// Where finished items are kept: in memory, in a part (core/work/runner.h), in a result file
+// Keeps finished items: in memory or in a part (core/work/runner.h), or in a result file
 // (run/trial_keeper.h).
 class ItemKeeper {
  public:
   virtual ~ItemKeeper() = default;
 
-  // Writes what is finished and not written yet.
+  // Writes the finished items that are not yet written.
   virtual void Flush() = 0;
-  // What a stopped command says after that; `num_done`: what its progress shows.
+  // The message of a stopped command, after Flush; `num_done`: the count that its progress shows.
   virtual std::string DescribeKept(std::int64_t num_done) const = 0;
 };
 
-// Computes and keeps one item; gives by how much progress advances. Called from several threads.
+// Computes and keeps one item; returns the amount by which progress advances. Called from several threads.
 using FinishItem = std::function<std::int64_t(std::int64_t index)>;
 
-// Items 0, ..., num_items - 1, on `num_threads` threads (0: one per core). A request to stop or the first
-// error ends it: what is finished is flushed, then Stopped says what is kept, or the error is thrown on.
-// `progress` may be null.
+// Finishes the items 0, ..., num_items - 1 on `num_threads` threads (0: one per core). A request to stop or
+// the first error ends the loop: it flushes the finished items, then throws Stopped, whose message is
+// DescribeKept, or rethrows the error. `progress` may be null.
 void FinishItems(std::int64_t num_items, int num_threads, Progress* progress, ItemKeeper* keeper,
                  const FinishItem& finish);
 

@@ -1,5 +1,5 @@
-// Work of steps, one after the other, where what a step is depends on what those before it gave. The runner
-// keeps what each step gives by its number: the same command takes the same steps.
+// Sequential work in which each step depends on the results of those before it. The runner keeps the result
+// of each step by its number, which identifies it because the same command takes the same steps.
 #pragma once
 
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace rcme {
 
-// How what a step gives is kept: the text of a JSON value on one line, to the last bit of what is used of it.
-// `read` throws std::exception for what no step gives.
+// Converts a step's result to and from the text of a JSON value on one line. No bit of the values used may be
+// lost. `read` throws std::exception for a text that no step can have given.
 template <typename T>
 struct StepForm {
   std::function<std::string(const T&)> write;
@@ -19,10 +19,11 @@ struct StepForm {
 
 class KeptSteps {
  public:
-  // The runner's plan is open; it outlives this. Says how many steps are there already.
+  // The runner's plan must be open; the runner must outlive this object. Prints the number of steps kept
+  // already.
   explicit KeptSteps(Runner* runner);
 
-  // What the next step gives, computed or kept. Throws Stopped and KeptResultsError.
+  // Returns the result of the next step, kept or newly computed. Throws Stopped and KeptResultsError.
   template <typename T>
   T Next(const std::function<T()>& compute, const StepForm<T>& form) {
     const ItemPlace place = {0, num_taken_++};
@@ -38,10 +39,10 @@ class KeptSteps {
   size_t num_taken_ = 0;
 };
 
-// Throws Stopped if a request has come.
+// Throws Stopped if a stop was requested.
 void StopBeforeStep();
 
-// The next of the steps; without `steps` it is computed and kept nowhere.
+// Takes the next step. `steps` may be null: the step is then computed and not kept.
 template <typename T>
 T TakeStep(KeptSteps* steps, const std::function<T()>& compute, const StepForm<T>& form) {
   if (steps != nullptr) return steps->Next(compute, form);

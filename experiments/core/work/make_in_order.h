@@ -1,4 +1,4 @@
-// Values that several threads make, taken in their order.
+// Makes values on several threads and takes them in the order of their indices.
 #pragma once
 
 #include <chrono>
@@ -13,22 +13,22 @@
 
 namespace rcme {
 
-// Calls make(i) for i = 0, ..., n - 1 on `num_threads` threads (0: one per core), and take(value) for each in
-// that order, one at a time, as soon as those before it are taken; a thread that is far ahead waits. Ends as
-// ForEachIndex does.
+// Calls make(i) for i = 0, ..., n - 1 on `num_threads` threads (0: one per core). Calls take(value) for the
+// values in the order of i, one at a time, as soon as all earlier values are taken. A thread that is far
+// ahead waits. Exceptions and requests to stop end it as they end ForEachIndex.
 template <typename Make, typename Take>
 void MakeInOrder(std::int64_t n, int num_threads, Make make, Take take) {
   using Made = decltype(make(std::int64_t{}));
   const std::int64_t most_ahead = 16 * std::int64_t{NumThreads(num_threads)};
   std::mutex mutex;
   std::condition_variable changed;
-  std::map<std::int64_t, Made> waiting;  // for one before them
+  std::map<std::int64_t, Made> waiting;  // made, but an earlier value is not
   std::int64_t num_taken = 0;
   bool has_failed = false;
 
   const auto wait_for_turn = [&](std::int64_t i) {
     std::unique_lock lock(mutex);
-    // A request to stop says nothing to the condition variable.
+    // A request to stop does not notify the condition variable.
     while (i - num_taken > most_ahead && !has_failed && !IsStopRequested())
       changed.wait_for(lock, std::chrono::milliseconds(50));
   };

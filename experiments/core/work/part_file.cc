@@ -24,7 +24,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormatStart = "{\"format\": \"rcme part ", kChecksumKey = "\"checksum\": \"";
 constexpr int kMaxPieceDepth = 8;        // of lists within lists; the deepest piece has three
-constexpr size_t kMaxRestOfPiece = 256;  // of an item's line beside its result, bytes
+constexpr size_t kMaxRestOfPiece = 256;  // bytes of an item's line besides its result
 constexpr size_t kMaxFirstValues = 64;   // of the first line, which has ten
 constexpr const char* kAgain = "run the command that wrote it again: it keeps what is sound";
 constexpr const char* kAllAgain = "remove the file and run the command again";
@@ -50,12 +50,13 @@ std::string DescribeLongPiece() {
   return fmt::format("the piece is too long; at most {} bytes are allowed", kMaxPieceBytes);
 }
 
-// Of a line's text behind its checksum; `of_first`: the first line's checksum, empty for that itself.
+// The checksum of a line, from its text after the checksum. `of_first`: the first line's checksum; empty for
+// the first line itself.
 std::string LineChecksum(const std::string& of_first, std::string_view text) {
   return fmt::format("{:08x}", ComputeChecksum({of_first, std::string(text)}));
 }
 
-// What stands in a text in a fixed order, bit by bit.
+// Reads the fields of a text in a fixed order.
 class FixedText {
  public:
   explicit FixedText(std::string_view rest) : rest_(rest) {}

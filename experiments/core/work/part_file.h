@@ -22,73 +22,72 @@
 namespace rcme {
 
 struct ItemResult {
-  std::string json;  // what the item gave: the text of a JSON value on one line, equal where the results are
-  double seconds = 0.0;  // of processor time; what the item gave does not depend on it
+  std::string json;      // a JSON value on one line; equal results have equal texts
+  double seconds = 0.0;  // processor time
 };
 using ItemResults = std::map<ItemPlace, ItemResult>;
 
 struct Part {
-  std::string work, identity;  // as WorkPlan, the latter as DescribeIdentity
-  Shard shard;                 // number 0: of several
+  std::string work, identity;  // WorkPlan::work and DescribeIdentity
+  Shard shard;                 // number 0: joined from several shards
   TrialOrigin origin;
-  ItemResults results;  // of the items that are done
+  ItemResults results;  // of the finished items
 };
 
-// Of a file. The first line of the largest study (100,000 conditions) has some 60 MB, the largest piece (a
-// tuning of 20,000 settings) 300 kB, the outcomes of a whole audit 100 MB.
+// Limits of a file. For comparison: the first line of the largest study (100,000 conditions) has about 60 MB,
+// the largest piece (a tuning of 20,000 settings) 300 kB, and the outcomes of a whole audit 100 MB.
 inline constexpr size_t kMaxPartBytes = size_t{1} << 30;
 inline constexpr size_t kMaxPartLineBytes = size_t{64} << 20;
 inline constexpr size_t kMaxPieceBytes = size_t{8} << 20;
 
-// A text as the file holds it: what is no UTF-8 is replaced.
+// The text as the file stores it: bytes that are not UTF-8 are replaced.
 std::string AsStored(const std::string& text);
 
-// JSON has finite numbers alone; these come back to their last bit whatever they are. NaN has a sign: tables
-// print it. NumberFrom throws std::invalid_argument for what is no number.
+// JSON has finite numbers only. These functions also store infinities and NaN, with its sign since tables
+// print it; finite numbers come back to their last bit. NumberFrom throws std::exception for other values.
 nlohmann::ordered_json NumberAsJson(double x);
 double NumberFrom(const nlohmann::ordered_json& json);
 nlohmann::ordered_json NumbersAsJson(std::span<const double> numbers);
 std::vector<double> NumbersFrom(const nlohmann::ordered_json& json);
 
-// What a piece gave, for who counts it. Throws std::exception for what is no JSON, or lists within lists
-// deeper than any piece has them.
+// Parses the result of a piece. Throws std::exception if it is not JSON or is nested deeper than any piece.
 nlohmann::ordered_json ParsePiece(const std::string& json);
-// One of the whole numbers in it. Throws std::exception for what is none in 0, ..., most.
+// Reads a count. Throws std::exception if it is not a whole number in 0, ..., most.
 std::int64_t CountFrom(const nlohmann::ordered_json& json, std::int64_t most);
-// Throws std::invalid_argument where `json` is no list of so many.
+// Throws std::invalid_argument unless `json` is a list with `size` elements.
 void RequireSize(const nlohmann::ordered_json& json, size_t size);
-// What no trials can have given is damage, whatever the checksums say: throws std::invalid_argument "its
-// counts cannot be: ...", where `of` is "counts".
+// Throws std::invalid_argument "its counts cannot be: ...", with "counts" for `of`, unless is_possible.
+// Values that no trials can give are damage even if the checksums match.
 void RequirePossible(bool is_possible, const char* of, const char* what);
 
-// With these results in place of its own.
+// The text of the part with `results` in place of its own.
 std::string PartAsText(const Part& part, const ItemResults& results);
 
-// Throws InputError where it cannot be written, PartIsTooLong where it could not be read again: the file, or
-// the result of one item, is too long.
+// WritePart throws InputError if the file cannot be written. It throws PartIsTooLong if the file or the
+// result of one item exceeds the limits of reading.
 class PartIsTooLong : public InputError {
   using InputError::InputError;
 };
 void WritePart(const std::string& path, const Part& part, const ItemResults& results);
 
-// Throws InputError that names the path, the line and what is wrong for a file that is no such part, is
-// damaged, or is longer than a part can be. Memory is that of what is kept, and a line.
+// Throws InputError with the path, the line and the error if the file is not a part of this format, is
+// damaged, or is too long. Needs memory for the results and one line.
 Part ReadPart(const std::string& path);
-// The same of its text; `name` is what messages call it.
+// The same for the text of a part; messages call it `name`.
 Part ParsePart(std::string_view text, const std::string& name);
 
-// A part of which some lines may be damaged, for who can make their items again. Every line has a checksum of
-// its own, so that the others are as sound as those of a whole part.
+// A part some lines of which may be damaged, for callers that can compute the lost items again. Every line
+// has its own checksum, so the other lines are as reliable as those of an undamaged part.
 struct SalvagedPart {
   Part part;            // with the results of the sound lines
-  std::string damage;   // the first: path, line and what is wrong; empty: there is none
-  size_t num_lost = 0;  // items that the first line counts and no sound line has
+  std::string damage;   // path, line and error of the first damage; empty: no damage
+  size_t num_lost = 0;  // the items counted by the first line minus the sound ones
 };
-// Throws InputError as ReadPart where the first line is damaged: nothing says what the others are of.
+// Throws InputError as ReadPart does if the first line is damaged: the work is then unknown.
 SalvagedPart SalvagePart(const std::string& path);
 SalvagedPart ParseSalvagedPart(std::string_view text, const std::string& name);
 
-// Whether the file begins as a part does, of whatever format; false where it cannot be read.
+// Whether the file begins like a part of any format version; false if it cannot be read.
 bool IsPart(const std::string& path);
 
 }  // namespace rcme

@@ -12,7 +12,7 @@ namespace rcme {
 // plain line every five seconds. Says nothing for work that ends within a second.
 class Progress {
  public:
-  // `num_done_before` of the total have been done at some other time: they say nothing about the rate.
+  // `num_done_before` of the total were done by an earlier run; the rate does not count them.
   Progress(std::string unit, std::int64_t total, std::int64_t num_done_before = 0);
   ~Progress();  // ends the line
 
