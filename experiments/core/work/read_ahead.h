@@ -1,4 +1,4 @@
-// Items that one thread reads while another visits those before.
+// Reads items on one thread while another thread visits the items already read.
 #pragma once
 
 #include <condition_variable>
@@ -12,9 +12,10 @@
 
 namespace rcme {
 
-// Calls visit(item) for every item that read(&item) gives until it returns false, in their order. `visit`
-// runs on the calling thread, `read` on one of its own, a few batches ahead. What `read` throws is thrown
-// here, after the visits of the items before; what `visit` throws ends the reading.
+// Calls read(&item) until it returns false, and visit(item) for each item, in order. `visit` runs on the
+// calling thread, `read` on a thread of its own, a few batches ahead. An exception from `read` is rethrown
+// here after the items of earlier calls are visited. An exception from `visit` ends the reading and is passed
+// on.
 template <typename Item, typename Read, typename Visit>
 void ReadAhead(Read read, Visit visit) {
   using Batch = std::vector<Item>;
@@ -53,7 +54,7 @@ void ReadAhead(Read read, Visit visit) {
     }
   };
   std::thread reader(read_all);
-  // Joined however the visits end.
+  // Joins the reader also if `visit` throws.
   struct Joining {
     std::mutex& mutex;
     std::condition_variable& changed;

@@ -33,7 +33,7 @@ void RequireSame(const std::string& path, const std::string& other, const std::s
       fmt::format("{}: does not belong to {}: {}, {}", path, other, what, FirstDifference(there, here)));
 }
 
-// What every part of the work has in common with its plan.
+// Throws InputError unless the part is of the plan's work and its items are of its shard.
 void RequireMatchingPart(const WorkPlan& plan, const std::string& path, const Part& part) {
   const std::string here = "this " + plan.work;
   RequireSame(path, here, "another work", part.work, plan.work);
@@ -50,7 +50,7 @@ void RequireMatchingPart(const WorkPlan& plan, const std::string& path, const Pa
 
 std::string DescribeShard(const Shard& shard) { return fmt::format("{}/{}", shard.number, shard.count); }
 
-// What two parts have to have in common.
+// Throws InputError unless the part can be merged with the first one.
 void RequireTogether(const std::string& path, const Part& part, const std::string& first_path,
                      const Part& first) {
   RequireSame(path, first_path, "another work", part.work, first.work);
@@ -119,7 +119,7 @@ Runner Runner::FromParts(const WorkPlan& plan, const std::vector<std::string>& p
   return runner;
 }
 
-// Goes on with what the file holds, if there is one.
+// Continues from the file, if it exists.
 void Runner::OpenFile() {
   if (!std::filesystem::exists(path_)) return CheckCanBeWritten(path_);
   SalvagedPart salvaged = SalvagePart(path_);
@@ -204,7 +204,7 @@ void Runner::Flush() {
   } catch (const InputError& error) {
     throw KeptResultsError(error.what());
   }
-  // The largest takes a second: not more than a tenth of the time.
+  // Writing takes at most about a tenth of the time; the largest file takes a second.
   const auto pause = 10 * (Clock::now() - begin);
   next_write_ = Clock::now() + std::max<Clock::duration>(kWriteInterval, pause);
 }
@@ -280,7 +280,7 @@ void ReadResult(const WorkPlan& plan, const WorkResults& results, const ItemPlac
   try {
     read(place, results.results.at(place).json);
   } catch (const std::bad_alloc&) {
-    throw;  // no damage of the part's
+    throw;  // the part is not damaged
   } catch (const std::exception& error) {
     const auto path = results.paths.find(place);
     throw KeptResultsError(fmt::format("{}: damaged: {}: {}",

@@ -24,7 +24,7 @@ std::optional<long long> Number(const std::string& text) {
   return ParseInteger(text, &number) ? std::optional(number) : std::nullopt;
 }
 
-// A whole number that the scheduler sets; nothing where it does not.
+// A whole number that the scheduler sets; std::nullopt if the variable is not set.
 std::optional<long long> NumberIn(const Environment& environment, const std::string& name) {
   const std::optional<std::string> text = environment(name);
   if (!text) return std::nullopt;
@@ -34,15 +34,15 @@ std::optional<long long> NumberIn(const Environment& environment, const std::str
   return number;
 }
 
-// Of "auto/N": which task this is, from 1.
+// For "auto/N": the number of this task, from 1.
 long long TaskNumber(const std::string& text, const Environment& environment) {
   if (const auto task = NumberIn(environment, "SLURM_ARRAY_TASK_ID")) return *task;
   if (const auto index = NumberIn(environment, "JOB_COMPLETION_INDEX")) return *index + 1;
   ThrowForShard(text, "is not known here: neither SLURM_ARRAY_TASK_ID nor JOB_COMPLETION_INDEX is set");
 }
 
-// Of "auto": the array itself says how many there are. One that was submitted again in part does not: its
-// count is that of the part.
+// For "auto": the array's task count is the number of shards. An array submitted again in part is refused,
+// because its count is that of the part.
 Shard ShardOfArray(const std::string& text, const Environment& environment) {
   const auto task = NumberIn(environment, "SLURM_ARRAY_TASK_ID");
   const auto count = NumberIn(environment, "SLURM_ARRAY_TASK_COUNT");

@@ -1,6 +1,6 @@
-// Treats Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request: the items in progress are
-// finished and kept, then the program ends. A signal also cuts off a wait for an estimator outside the
-// program (parameters/stop_signal.h). The same signal a second time ends the program at once.
+// Treats Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request to stop: the program finishes and
+// keeps the items in progress, then ends. A signal also interrupts a wait for an external estimator
+// (parameters/stop_signal.h). The same signal a second time ends the program at once.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,9 @@
 
 namespace rcme {
 
-// While one lives, the two signals are requests, and a reader of the messages that goes away (SIGPIPE) is no
-// reason to end. A signal that was ignored before (nohup) stays so. One at a time.
+// During its lifetime SIGINT and SIGTERM are requests to stop, and SIGPIPE is ignored: a reader of the
+// messages that goes away does not end the program. SIGINT or SIGTERM stays ignored if it was before (nohup).
+// At most one object may exist at a time.
 class StopOnSignals {
  public:
   StopOnSignals();
@@ -23,14 +24,14 @@ class StopOnSignals {
   struct sigaction interrupt_before_, terminate_before_, pipe_before_;
 };
 
-// From now on, while the StopOnSignals lives that there is: the request comes by itself after this time.
+// Requests a stop after this time from now, if the present StopOnSignals still exists then.
 void StopAfter(std::chrono::duration<double> time);
 
-// Whether one has come; the work looks between one piece and the next.
+// Whether a stop was requested; to be called between items of work.
 bool IsStopRequested();
 
-// 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM. 75, "try again" (EX_TEMPFAIL), after a time
-// limit.
+// 128 + the signal's number: 130 after Ctrl-C, 143 after SIGTERM. After a time limit 75, "try again"
+// (EX_TEMPFAIL).
 inline constexpr int kTryAgain = 75;
 int StopExitCode();
 

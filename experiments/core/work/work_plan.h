@@ -1,5 +1,6 @@
-// Long work as a list of items, each a pure function of the plan, in groups of items with similar cost. The
-// runner (core/work/runner.h) computes them; a shard (core/work/shard.h) has a fixed share of them.
+// Describes long work as a list of items. Each item is a pure function of the plan; the items of a group have
+// similar cost. The runner (core/work/runner.h) computes the items; a shard (core/work/shard.h) is a fixed
+// share of them.
 #pragma once
 
 #include <compare>
@@ -23,24 +24,24 @@ struct ItemGroup {
 };
 
 struct WorkPlan {
-  std::string work;       // what the command makes: "audit"
+  std::string work;       // the command's product: "audit"
   std::string item_name;  // "block"
-  std::string identity;   // what the results depend on, a line for each thing
+  std::string identity;   // everything that the results depend on, one thing a line
   std::vector<ItemGroup> groups;
-  bool is_open = false;  // how many items there are shows as they are computed: there are no groups
+  bool is_open = false;  // the number of items is not known in advance; groups is empty
 
   bool Has(const ItemPlace& place) const;
   size_t NumItems() const;
 };
 
-// Equal for the parts of one work: its identity, then its groups.
+// The plan's identity followed by its groups; equal for the parts of one work.
 std::string DescribeIdentity(const WorkPlan& plan);
 
-// The shard that has the item: FindShard (core/work/shard.h) of group and item, so that the items of every
-// group, cheap or dear, are divided evenly to within one.
+// The shard of an item: FindShard (core/work/shard.h) of its group and item. The items of every group, cheap
+// or expensive, are thus divided evenly to within one.
 std::uint32_t FindShardOfItem(const ItemPlace& place, std::uint32_t count);
 
-// Those of the shard in the groups first, ..., end - 1, in their order.
+// The shard's items, in order: those of the groups first, ..., end - 1, or of all groups.
 std::vector<ItemPlace> ListItems(const WorkPlan& plan, const Shard& shard, size_t first, size_t end);
 std::vector<ItemPlace> ListItems(const WorkPlan& plan, const Shard& shard);
 
