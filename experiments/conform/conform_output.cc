@@ -32,12 +32,12 @@ namespace {
 
 using Judged = std::vector<JudgedAnswer>;
 
-constexpr std::int64_t kFewAnswers = 30;  // show no moderate shift
+constexpr std::int64_t kFewAnswers = 30;  // fewer answers cannot show a moderate shift
 
 const NumberFormat kShare{100.0, "%", ".1f", ".2g"};
 
-// The share of the answers, with its interval by groups; `more`: groups of problems for which it does not
-// hold.
+// The share of answers for which `holds` is true, with an interval by groups. `more`: the groups of further
+// problems, which count as false.
 Estimate MeasureShare(const Judged& judged, const std::function<bool(const JudgedAnswer&)>& holds,
                       const std::vector<std::int64_t>& more = {}) {
   std::vector<bool> numbers(more.size(), false);
@@ -57,8 +57,8 @@ double MedianSize(const Judged& judged, const RegionKind& kind) {
   return ComputeMedian(std::move(sizes));
 }
 
-// The quarter of the answers that looks hardest at run time: by difficulty, where the rule has none by the
-// number of agreeing matches.
+// The quarter of the answers that is hardest by its visible features: by difficulty, then by the number of
+// agreeing matches.
 Judged HardestQuarter(Judged judged) {
   const auto hardness = [](const JudgedAnswer& a) {
     const double agreeing = a.row.features[static_cast<size_t>(VisibleFeature::kAgreeing)];
@@ -90,7 +90,7 @@ Table MakeRegionTable(const ConformReport& report) {
 
 bool IsAcceptedByRule(const JudgedAnswer& answer) { return answer.verdict.is_accepted; }
 
-// What the estimator of the file does: strange answers are refused too.
+// As the estimator of a conform file decides: it refuses strange answers too.
 bool IsAcceptedInUse(const JudgedAnswer& answer) {
   return answer.verdict.is_accepted && answer.verdict.familiarity > kStrangeLevel;
 }
@@ -181,7 +181,7 @@ Table MakeProbabilityTable(const ConformReport& report) {
   return MakeTable(columns, kinds);
 }
 
-// What the intervals of a cross-validation are of (cross_validate.h); of a check they are of the file's rule.
+// Explains what the intervals of a cross-validation estimate (cross_validate.h); empty for a check.
 std::string DescribeRules(const ConformReport& report) {
   if (report.is_check || report.judged.empty()) return "";
   const auto [least, greatest] = std::ranges::minmax_element(report.judged, {}, &JudgedAnswer::rule_accepts);
@@ -228,7 +228,7 @@ std::string ShareAsText(const Estimate& share) {
                      100.0 * share.interval.upper);
 }
 
-// Coverage of the stated and the conformed region, were the truth's own error in the covariance.
+// Coverage of the stated and the conformed region if the covariance includes the error of the truth.
 std::string DescribeCoverageByTruth(const Judged& judged) {
   Judged moved = judged;
   for (JudgedAnswer& answer : moved) {
@@ -288,7 +288,7 @@ std::vector<std::string> DescribeKept(const ConformReport& report) {
   return sentences;
 }
 
-// The promises that are refuted, and the shift.
+// The findings on promises and shift.
 std::string DescribeVerdicts(const ConformReport& report) {
   std::string text;
   if (report.kept)

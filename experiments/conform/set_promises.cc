@@ -12,10 +12,10 @@
 namespace rcme {
 namespace {
 
-constexpr double kSlopePenalty = 5.0;  // of the slope of the log odds, from 1
-constexpr double kEverything = 1e9;    // log odds that every answer keeps
+constexpr double kSlopePenalty = 5.0;  // on the deviation of the log odds' slope from 1
+constexpr double kEverything = 1e9;    // a threshold that accepts every answer
 
-// From strict to lax, fixed beforehand, whatever the answers are.
+// From strict to lax; fixed in advance, independently of the answers.
 std::vector<double> Thresholds() {
   std::vector<double> thresholds;
   for (int k = -120; k <= 120; ++k) thresholds.push_back(0.1 * k);
@@ -60,14 +60,14 @@ void CorrectLogOdds(const std::vector<AnswerRow>& rows, ConformRule* rule) {
   rule->log_odds_intercept =
       fit.weights.front() > 0.0
           ? fit.intercept
-          : FitLogistic({}, is_wrong, {}, kSlopePenalty).intercept;  // the odds say nothing
+          : FitLogistic({}, is_wrong, {}, kSlopePenalty).intercept;  // the odds are uninformative
 }
 
 std::optional<double> CertifyThreshold(const AnswerRows& answers, const std::vector<double>& scores,
                                        const ConformPromise& promise) {
   const bool shares_groups = answers.HasSharedGroups();
   const std::int64_t n = answers.CountGroups();
-  std::vector<std::pair<double, double>> losses;  // score and loss of the wrong answers, rising
+  std::vector<std::pair<double, double>> losses;  // score and loss of the wrong answers, ascending
   for (size_t i = 0; i < scores.size(); ++i)
     if (answers.rows[i].is_wrong) losses.emplace_back(scores[i], answers.rows[i].share);
   std::ranges::sort(losses);

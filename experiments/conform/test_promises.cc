@@ -17,7 +17,7 @@ bool IsCovered(const JudgedAnswer& answer) {
   return answer.row.nees <= answer.verdict.factor * ChiSquareQuantile(5, answer.level);
 }
 
-// Of each group one problem at random; those of them that are answered.
+// Draws one problem of each group at random and returns those that have an answer.
 std::vector<const JudgedAnswer*> DrawOneOfEachGroup(const std::vector<JudgedAnswer>& judged) {
   std::map<std::int64_t, std::vector<const JudgedAnswer*>> groups;
   for (const JudgedAnswer& answer : judged) groups[answer.row.group].push_back(&answer);
@@ -39,7 +39,7 @@ double ComputeCoveragePValue(const ConformRule& rule, const std::vector<const Ju
   return BetaBinomialCdf(covered, std::ssize(drawn), rule.level * (n + 1.0), (1.0 - rule.level) * (n + 1.0));
 }
 
-// "The rate is at most r" is "that of the other problems is at least 1 - r".
+// Tests the equivalent hypothesis "the rate of all other problems is at least 1 - r".
 double ComputeAcceptPValue(const ConformRule& rule, const AnswerRows& answers,
                            const std::vector<JudgedAnswer>& judged, std::int64_t num_groups) {
   double loss = 0.0;

@@ -13,13 +13,13 @@ namespace {
 using Rows = std::vector<AnswerRow>;
 
 constexpr double kHardShare = 0.2;
-constexpr double kPenalty = 2.0;  // of weights of standardised features
+constexpr double kPenalty = 2.0;  // on the weights of standardised features
 constexpr size_t kMostStrata = 10;
 constexpr size_t kStatedOdds = static_cast<size_t>(VisibleFeature::kStatedOdds),
                  kAgreeing = static_cast<size_t>(VisibleFeature::kAgreeing);
 
-// Centre and scale: mean and standard deviation of what is there; no term for a feature that is always the
-// same.
+// Terms with the mean and standard deviation of each feature's known values as centre and scale. Constant
+// features get no term.
 std::vector<FeatureModel::Term> StandardTerms(const Rows& rows) {
   std::vector<FeatureModel::Term> terms;
   for (size_t feature = 0; feature < kNumVisibleFeatures; ++feature) {
@@ -35,8 +35,7 @@ std::vector<FeatureModel::Term> StandardTerms(const Rows& rows) {
   return terms;
 }
 
-// Log odds of an event by all features; `has_prior`: the stated odds are right unless the answers say
-// otherwise.
+// Fits the log odds of an event to all features. `has_prior`: the prior takes the stated odds as right.
 FeatureModel FitModel(const Rows& rows, const std::vector<bool>& happened, bool has_prior) {
   FeatureModel model{0.0, StandardTerms(rows)};
   std::vector<double> prior;
@@ -61,7 +60,7 @@ FeatureModel FitModel(const Rows& rows, const std::vector<bool>& happened, bool 
   return model;
 }
 
-// Of log odds x themselves, over the whole range that a probability has.
+// The log odds are sign * x of one feature x, up to the limits of ScoreOfFeature.
 FeatureModel OneFeature(size_t feature, double sign) {
   constexpr double kScale = 4.0;
   return {0.0, {{feature, 0.0, kScale, sign * kScale, 0.0}}};

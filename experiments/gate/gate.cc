@@ -20,13 +20,13 @@ namespace {
 
 constexpr std::int64_t kTrialsOfFirstLook = 200, kLeastRounds = 20;
 
-// What the trials of a run give for one test.
+// Collects the numbers of a run's trials for one test.
 class GateEvidence {
  public:
   explicit GateEvidence(const GateTest& test)
       : test_(test), differences_(test.is_limit ? Interval{0.0, 1.0} : Interval{-1.0, 1.0}) {}
 
-  // `scene` is counted from 0 where trials share scenes, else negative.
+  // `scene`: its number from 0 if trials share scenes, else negative.
   void Add(const std::optional<double>& of_old, const std::optional<double>& of_new, std::int64_t scene) {
     num_old_ += of_old.has_value();
     num_new_ += of_new.has_value();
@@ -39,7 +39,7 @@ class GateEvidence {
     scenes_[static_cast<size_t>(scene)].Add(difference);
   }
 
-  // Of both regions of a pair.
+  // Adds the growth from the old to the new region of a pair.
   void AddSizes(const TrialRecord& of_old, const TrialRecord& of_new) {
     if (!test_.quantity.log_size) return;
     const double growth = test_.quantity.log_size(of_new) - test_.quantity.log_size(of_old);
@@ -96,13 +96,13 @@ class GateEvidence {
 
   GateTest test_;
   std::int64_t num_old_ = 0, num_new_ = 0;  // trials that give a number, paired or not
-  Numbers old_, new_;                       // of the pairs
+  Numbers old_, new_;                       // the numbers of the pairs
   ScoreMean differences_;
   Moments log_growth_;
   std::vector<SceneMean> scenes_;
 };
 
-// The number of a trial's scene where trials share them: with their repeats, or with all conditions.
+// Numbers the scenes of a run if trials share them: repeats of a scene, or scenes common to all conditions.
 class SceneNumbers {
  public:
   SceneNumbers(const RunDescription& run, std::int64_t num_rounds)
@@ -146,7 +146,7 @@ std::int64_t FirstLook(const ReadableRun& run) {
   return std::max(kLeastRounds, (kTrialsOfFirstLook + num_conditions - 1) / num_conditions);
 }
 
-// Of no trial: everything is open.
+// A look at 0 trials: every test is undecided.
 GateLook BeforeFirstLook(const std::vector<GateTest>& tests) {
   GateLook look;
   for (const GateTest& test : tests) {
@@ -156,7 +156,7 @@ GateLook BeforeFirstLook(const std::vector<GateTest>& tests) {
   return look;
 }
 
-// Worse ones rise.
+// Greater is worse.
 int RankOutcome(TrialOutcome outcome) {
   return outcome == TrialOutcome::kSuccess ? 0 : outcome == TrialOutcome::kRefusal ? 1 : 2;
 }

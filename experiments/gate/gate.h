@@ -64,8 +64,8 @@ GateLook TakeGateLook(const ReadableRun& run, const std::vector<GateTest>& tests
 using GrowRun = std::function<bool(std::int64_t num_rounds)>;
 
 // Looks after about 200 trials, at least 20 of every condition, and then each time after a quarter more,
-// until the verdict is decided, `max_rounds` is reached or `grow` returns false. If it does so before the
-// first look, every test is undecided after 0 trials.
+// until the verdict is decided, `max_rounds` is reached or `grow` returns false. Without a first look every
+// test is undecided after 0 trials.
 GateLook LookUntilDecided(const ReadableRun& run, const std::vector<GateTest>& tests, std::int64_t max_rounds,
                           const GrowRun& grow);
 

@@ -16,8 +16,7 @@ namespace {
 
 constexpr size_t kMaxListed = 10;  // changed trials; JSON has all of them
 
-// A number of a row as people read it: rates, scores and shares in percent, an error in degrees, a time in
-// ms.
+// The format for people: rates, scores and shares in percent, errors in degrees, times in ms.
 NumberFormat LevelFormat(const GateQuantity& quantity) {
   if (quantity.name == "time") return {1e3, "ms", ".3g"};
   if (quantity.name == "error") return {1.0, "deg", ".3g"};
@@ -133,7 +132,7 @@ std::string ListQuantities(const GateReport& report, GateVerdict verdict) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// "; not judged: error, time": what a verdict says nothing about; empty if there is nothing of the kind.
+// "; not judged: error, time": the quantities that the verdict does not cover; empty if it covers all.
 std::string ListNotJudged(const GateReport& report) {
   std::vector<std::string> left_out = GateQuantityNames();
   for (const GateRow& row : report.look.rows) std::erase(left_out, row.test.quantity.name);

@@ -17,10 +17,10 @@ namespace {
 
 using GatedNumber = std::function<std::optional<double>(const TrialRecord&, const FailureBounds&)>;
 
-// As `rcme compare` has it.
+// The number that `rcme compare` uses under this name.
 GatedNumber FindNumber(const std::string& compared) { return ComparedByName({compared}).front().of; }
 
-// Whether the stated 95 % region of an answer lacks the truth.
+// 1 if the stated 95 % region of an answer does not contain the truth, else 0.
 std::optional<double> Miscoverage(const TrialRecord& record, const FailureBounds&) {
   static const double bound = ChiSquareQuantile(5, 0.95);
   if (std::isnan(record.nees)) return std::nullopt;

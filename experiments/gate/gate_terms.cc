@@ -21,7 +21,7 @@ namespace {
 constexpr const char* kGateRule = "the verdict of a gate is decided: ";
 constexpr const char* kBetweenTerms = "; ";
 
-// Piece by piece: a command may name a file of any size.
+// Reads the file in pieces, because a command may name a file of any size.
 std::string HashFile(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 1 << 16> piece;
@@ -50,7 +50,7 @@ std::string FindOption(const Settings& options, const std::string& name) {
   return found == options.end() ? "none" : found->second;
 }
 
-// "num_iterations 200, not 100", of each option that the two do not have alike.
+// "num_iterations 200, not 100" for each option in which the two differ.
 std::vector<std::string> ListOtherOptions(const DescribedEstimator& of_old,
                                           const DescribedEstimator& of_new) {
   std::vector<std::string> others;

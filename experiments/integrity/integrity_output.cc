@@ -50,7 +50,7 @@ Estimate MeasureTallies(const std::vector<IntegrityTally>& clusters, bool by_tri
       .interval = by_trial ? ExactBinomialInterval(k, n) : FindClusteredInterval(clusters, happened, among)};
 }
 
-// The clusters of a condition alone, or of all.
+// The clusters of one condition or of all conditions, as for MeasureIntegrity.
 struct TallyClusters {
   std::vector<IntegrityTally> tallies;
   bool by_trial = true;
