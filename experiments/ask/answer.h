@@ -1,5 +1,5 @@
 // Answers a question (question.h) from the run of its study: the best estimator, the stated probability above
-// which to refuse its answers, how far it can be trusted, and how many trials that needs.
+// which to refuse its answers, how far it can be trusted, and how many trials were and would be needed.
 #pragma once
 
 #include <cstdint>

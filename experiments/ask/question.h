@@ -44,7 +44,7 @@ bool ParseShare(const std::string& text, double* share);
 void ReadTexts(const AskedTexts& texts, Question* question);
 
 // The study that answers the question, as YAML: one condition with `trials` trials, for rcme_calibrated and
-// its usual alternatives. Unknown names of scenes and outliers are refused when the study is read.
+// its usual alternatives. Unknown names are refused when the study is read.
 std::string MakeStudyText(const Question& question, int trials);
 
 // "1280 x 720 px, f 900 px, noise 0.7 px; corridor; 40 % wrong (clustered_both) of 500 matches".

@@ -5,8 +5,8 @@
 // wrong motion. The models may be chosen freely. The other groups set everything that is promised:
 //
 //   factors      for each stratum of difficulty, the conformal bound of its normalised errors
-//                (stats/conformal.h). There are at most ten strata, and each has at least three times the
-//                groups that a bound needs.
+//                (stats/conformal.h). There are at most ten strata, so few that each should have three times
+//                the groups that a bound needs.
 //   log odds     the correction a + b x of the log odds x, by logistic regression with a prior at (0, 1)
 //   accept rule  thresholds of the odds in a fixed order, from strict to lax, are certified one by one until
 //                one fails (stats/risk_control.h). The certified quantity is P(a problem is answered wrongly
@@ -14,8 +14,8 @@
 //                for the groups' mean losses.
 //
 // No model is trained with fewer than 150 answers or 40 groups, or if all groups suffice for the accept rule
-// but seven tenths of them do not. The rule then has one stratum, and its odds are those that the estimator
-// states or, if it states none, decrease with the number of agreeing matches.
+// but seven tenths of them do not. The rule then has one stratum. Its odds are those that the estimator
+// states; if it states none, more agreeing matches mean lower odds.
 #pragma once
 
 #include <cstdint>

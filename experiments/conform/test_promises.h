@@ -5,13 +5,11 @@
 // m new answers is therefore beta-binomial. The p-value is P(X <= covered) with the parameters
 // level (n + 1) and (1 - level) (n + 1). Over calibrations and checks it is at most p with probability at
 // most p, since a greater k covers more.
-//   - Strata have a bound each but are treated as one stratum of n answers. In a stratum of n_s answers P_s
-//   has
-//     the variance level (1 - level) / (n_s + 2); the mean of P_s weighted by n_s has at most the variance of
-//     the single stratum.
-//   - The file does not say how many answers trained the models. n is the number left after training, which
-//   is
-//     too small for a rule without training; this widens the distribution of P.
+//   - Each stratum has its own bound, but all are treated as one stratum of n answers. In a stratum of n_s
+//     answers P_s has the variance level (1 - level) / (n_s + 2). The mean of P_s weighted by n_s has at most
+//     the variance of the single stratum.
+//   - The file does not say how many answers trained the models. n is the number left after training. It is
+//     too small for a rule without training, which widens the distribution of P.
 //   - If problems share groups, one random problem of each group is tested, as in the promise, and n counts
 //     groups.
 //
