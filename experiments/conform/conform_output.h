@@ -8,10 +8,10 @@
 
 namespace rcme {
 
-// Sentences: the rule's promises, their scope, and what a stronger promise needs.
+// Sentences: the rule's promises, their scope, and what could not be promised.
 std::vector<std::string> DescribePromises(const ConformRule& rule);
 
-// A sentence: the numbers of answers and groups that a promise needs.
+// Paragraphs: the numbers of answers and groups that a promise needs.
 std::string DescribeNeeds(const ConformPromise& promise);
 
 // `by_strata`: with coverage and size by visible strata (conform_strata.h).
