@@ -10,7 +10,8 @@
 
 namespace rcme {
 
-// What a report shows, and what it may come from, in words. To be looked at; nothing here can be tried.
+// Findings of a report and their possible causes, in words. These are hints for the user: ValidateAndAdvise
+// cannot try them.
 std::vector<std::string> FindReasons(const SetReport& report);
 
 // An estimator that can be made again with further options.
@@ -20,14 +21,13 @@ struct AdvisedEstimator {
   double factor = 1.0;     // covariance_factor
 };
 
-// Validate, and what to change, each with what came of it: every change is made, with those that were taken
-// before, and the set is validated again.
-//   the assumed sigma     where the residuals say another one
-//   the camera            where a fault is named
-//   the covariance        where it is too small or too large: covariance=robust, then with a
-//   covariance_factor
-//                         measured on that
-// A change after which its own fault is still found is withdrawn, and the advice says so.
+// Validates the set, tries changes one after the other and reports the outcome of each as advice. Each trial
+// includes the changes accepted before and validates the set again:
+//   assumed sigma   if the residuals give another one: that one, in up to three rounds
+//   camera          if a fault is named: the pairs corrected for it
+//   covariance      if too small or too large: covariance=robust, then also a covariance_factor that is
+//                   measured with covariance=robust
+// A change of camera or covariance that does not remove its fault is dropped, and the report says so.
 SetReport ValidateAndAdvise(const PairSet& set, const AdvisedEstimator& estimator,
                             const ValidationOptions& options, KeptSteps* steps = nullptr);
 

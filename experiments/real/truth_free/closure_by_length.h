@@ -1,4 +1,4 @@
-// Whether two-view covariances predict how well rotations close around longer and longer loops.
+// Tests whether two-view covariances predict the rotation closure errors of loops of growing length.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,21 @@ namespace rcme {
 
 inline constexpr size_t kMostLoopImages = 50;
 
-// What loops of one length say. The squared distances of the rotations' closures, under covariances that are
-// propagated around the loop, are chi-square with three degrees of freedom where the covariances hold.
+// Result for loops of one length. If the covariances hold, the squared rotation closure error, normalised by
+// the covariance propagated around the loop, is chi-square with three degrees of freedom.
 struct LengthClosure {
   size_t num_images = 0;
   bool is_of_twins = false;  // of the simulated twins of the pairs
   SharedErrors shared = SharedErrors::kAllowedFor;
-  std::int64_t num_loops = 0;  // that are closed; of twins: times their number
-  std::int64_t num_apart = 0;  // of which no two share an image
+  std::int64_t num_loops = 0;  // evaluated; for twins one per loop and twin
+  std::int64_t num_apart = 0;  // loops among these of which no two share an image
   Estimate covered;            // share within the 95 % region
-  Estimate rms_over_sd;        // root of the mean of the squared distance over three: 1 is right
+  Estimate rms_over_sd;        // sqrt(mean squared distance / 3); 1 if the covariances hold
 };
 
-// Of lengths 3 to `longest` that have a loop (FindLoopsOfLength) whose pairs are all answered: four entries
-// each, of the pairs and of their twins (none where there are none), shared errors allowed for and ignored.
-// 95 % intervals that allow for loops that share an image (MeasureSharedGroupMean).
+// Entries for each length from 3 to `longest` that has a loop (FindLoopsOfLength) with an estimate for every
+// pair: pairs and twins (if there are any), each with shared errors allowed for and ignored. The 95 %
+// intervals account for loops that share an image (MeasureSharedGroupMean).
 std::vector<LengthClosure> MeasureClosureByLength(const std::vector<PairAnswers>& answers, size_t longest);
 
 }  // namespace rcme

@@ -8,9 +8,9 @@
 
 namespace rcme {
 
-// Of each set that has loops a table for people; empty where none has.
+// One table for people for each set that has loops; empty if none has.
 std::string ClosuresAsTable(const std::vector<SetReport>& reports);
-// A row per set and entry of its closures; `estimator`, which may be empty, tells several files apart.
+// One row for each set and entry of its closures. `estimator` labels the rows and may be empty.
 Table MakeClosureTable(const std::vector<SetReport>& reports, const std::string& estimator = "");
 
 }  // namespace rcme
