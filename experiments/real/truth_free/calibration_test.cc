@@ -104,7 +104,7 @@ std::string RangeIn(const CameraFaultText& text, const PooledParameter& of, bool
                      std::min(one, other), std::max(one, other));
 }
 
-// "too long by 0.52 % [0.45, 0.60]"
+// "0.52 % [0.45, 0.6] too long"
 std::string DescribeFound(CameraFault fault, const PooledParameter& of) {
   const CameraFaultText& text = FindFaultText(fault);
   const bool is_less = of.value < 0.0;

@@ -1,4 +1,4 @@
-// What `rcme twin` and `rcme validate` keep of their steps (core/work/kept_steps.h).
+// Stored form of the steps of `rcme twin` and `rcme validate` (core/work/kept_steps.h).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,9 +12,9 @@
 
 namespace rcme {
 
-// Of an answer what is used here: status, motion, covariance, inliers, estimated noise, probabilities.
+// The fields that are used here: status, motion, covariance, inliers, estimated noise, probabilities.
 nlohmann::ordered_json AnswerAsJson(const MotionEstimate& estimate);
-// Throws std::exception for what no estimator answers to so many matches.
+// Throws std::exception if no estimator can return this estimate for `num_matches` matches.
 MotionEstimate AnswerFrom(const nlohmann::ordered_json& json, size_t num_matches);
 
 nlohmann::ordered_json ProductsAsJson(const ResidualProducts& products);
@@ -25,7 +25,7 @@ MotionEstimate TakeAnswer(const MotionProblem& problem, const MotionEstimator& e
                           const StreamName& name, KeptSteps* steps);
 ResidualPattern TakePattern(const std::function<ResidualPattern()>& compute, KeptSteps* steps);
 
-// What is asked about a set, for the identity of a plan: "kitti00: 30 pairs, checksum 1f2e3d4c".
+// Identifies a set in the identity of a plan: "kitti00: 30 pairs, checksum 1f2e3d4c".
 std::string DescribePairs(const PairSet& set);
 
 }  // namespace rcme

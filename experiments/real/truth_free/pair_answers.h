@@ -1,4 +1,4 @@
-// The pairs of a set and their twins, answered by an estimator.
+// An estimator's answers to the pairs of a set and to their twins.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ struct Answered {
 
 struct PairAnswers {
   Answered whole;
-  std::vector<Answered> twins;  // none of a pair that is not answered
+  std::vector<Answered> twins;  // empty if the pair itself has no motion
 };
 
-// The images of each pair as numbers, for stats/shared_members.h; a pair that does not name its images has a
-// number of its own, twice.
+// Numbers the images of each pair for stats/shared_members.h. A pair that does not name its images has one
+// number of its own for both.
 struct ImageNumbers {
   std::int64_t image1 = 0, image2 = 0;
 };

@@ -1,4 +1,4 @@
-// The image pairs that are validated without a truth.
+// Image pairs that are validated without ground truth.
 #pragma once
 
 #include <limits>
@@ -12,9 +12,9 @@ namespace rcme {
 
 struct NamedPair {
   std::string name;
-  std::string image1, image2;  // equal names: the same image; empty: not known
+  std::string image1, image2;  // equal names are the same image; empty: not known
   MotionProblem problem;
-  double seconds_between = std::numeric_limits<double>::quiet_NaN();  // of one video; NaN: not said
+  double seconds_between = std::numeric_limits<double>::quiet_NaN();  // between the images; NaN: not known
 };
 
 // Pairs of one scene, or of one condition of a study.
@@ -23,13 +23,13 @@ struct PairSet {
   std::vector<NamedPair> pairs;
 };
 
-// Every match file of a folder, by the scenes of their headers; the assumed noise level is sigma_px. Throws
-// InputError (match_folder.h, match_file.h).
+// One set for each scene named in the headers of a folder's match files. sigma_px: the assumed noise level.
+// Throws InputError (match_folder.h, match_file.h).
 std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px);
-// Every trial of every condition of a study.
+// One set for each condition of a study, one pair for each trial.
 std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan);
-// Each trial a sequence of images (experiments/data/simulated_sequence.h), whose pairs name them. Throws
-// InputError for a study of real pairs.
+// One set for each condition. Each trial is a sequence of images (experiments/data/simulated_sequence.h), and
+// its pairs name their images. Throws InputError for a study of real pairs.
 std::vector<PairSet> SequencesOfStudy(const StudyPlan& plan, int num_images);
 
 }  // namespace rcme
