@@ -1,4 +1,4 @@
-// Faults put into pairs or into an estimator on purpose: would these pairs show them?
+// Puts known faults into pairs or an estimator, to check whether a validation of these pairs detects them.
 #pragma once
 
 #include <memory>
@@ -12,18 +12,18 @@
 namespace rcme {
 
 struct PlantedFaults {
-  double covariance = 1.0;  // the estimator's, times this
-  double sigma = 1.0;       // what is assumed, times this
+  double covariance = 1.0;  // factor on the estimator's covariances
+  double sigma = 1.0;       // factor on the assumed sigma
   FaultVector camera = FaultVector::Zero();
 };
 
-// Of NAME=VALUE each. Throws InputError that lists the names.
+// `settings`: NAME=VALUE each. Throws InputError that lists the allowed names.
 PlantedFaults ParsePlantedFaults(const std::vector<std::string>& settings);
 std::string PlantableFaults();  // "covariance, sigma, focal_length, ..."
 
 PairSet PlantFaultsIn(PairSet set, const PlantedFaults& faults);
 
-// The estimator with its covariances times a factor.
+// Wraps an estimator so that its covariances are multiplied by `factor`.
 std::unique_ptr<MotionEstimator> ScaleCovariances(std::unique_ptr<MotionEstimator> estimator, double factor);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// How alike the residuals of neighbouring matches are.
+// Correlation of the residuals of neighbouring matches.
 #pragma once
 
 #include <array>
@@ -13,14 +13,15 @@ namespace rcme {
 inline constexpr std::array<double, 5> kDistanceEdgesPx = {0.0, 1.0, 4.0, 16.0, 64.0};
 inline constexpr size_t kNumDistances = kDistanceEdgesPx.size() - 1;
 
-// Of the inliers of one pair: sums over pairs of matches at each distance of the product of their residuals
-// r = g / |J|, which have the same sign on the same side of their epipolar lines, over the mean of r^2.
+// Sums over the pairs of inliers at each distance, for one image pair: the product of their residuals over
+// the mean of r^2. Residuals are r = g / |J|, which have the same sign on the same side of the epipolar
+// lines.
 struct ResidualProducts {
   std::array<double, kNumDistances> sums{};
   std::array<double, kNumDistances> counts{};
 
   ResidualProducts& operator+=(const ResidualProducts& other);
-  // Mean product: the correlation; NaN without any.
+  // Mean product; NaN without any.
   double Correlation(size_t distance) const { return sums[distance] / counts[distance]; }
 };
 ResidualProducts SumProducts(const MotionProblem& problem, const MotionEstimate& estimate);

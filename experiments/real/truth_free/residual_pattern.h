@@ -1,4 +1,4 @@
-// What the residuals of some pairs have in common: their size, their tails, their correlation.
+// Size, tails and correlation of the residuals of several pairs.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,15 @@
 namespace rcme {
 
 struct ResidualPattern {
-  double sigma_px = 0.0;    // geometric mean; NaN without an answer
+  double sigma_px = 0.0;    // geometric mean of the estimated noise; NaN if no pair has a motion
   double tail_ratio = 0.0;  // 95 % point over the median of |r| / sigma, all pairs together
   ResidualProducts products;
 };
 
-// Of the inliers: Sampson distance over the noise of the answer (EstimateNoise) and over the match's own
-// noise scale.
+// Sampson distances of the inliers, divided by the noise (EstimateNoise) and by each match's noise scale.
 std::vector<double> ResidualSizes(const MotionProblem& problem, const MotionEstimate& estimate);
 
-// Of the answers to some pairs, one after the other; refusals are skipped.
+// Accumulates the pattern over pairs; refusals are skipped.
 class PatternSum {
  public:
   void Add(const MotionProblem& problem, const MotionEstimate& estimate);

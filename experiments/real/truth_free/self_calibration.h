@@ -1,5 +1,5 @@
-// The faults of a camera by self-calibration to convergence: what is named is corrected, and the test of all
-// faults holds then.
+// Estimates camera faults by self-calibration to convergence. A fault is named only if the pairs, corrected
+// for the named faults, pass the test of all faults.
 #pragma once
 
 #include <cstdint>
@@ -14,20 +14,19 @@ namespace rcme {
 
 inline constexpr int kMostSteps = 10;
 
-// TestCalibration, and where that names a fault: steps, each at cameras and key points from which the faults
-// of before are removed and with motions estimated anew, until every step is less than a tenth of its own
-// interval's half. Nothing is named where
-//   - that takes more than kMostSteps or leaves what is physically possible;
-//   - the residuals that are left go with a fault that is never named (FindOtherFault): a further kind of
-//     fault looks like one of those that are;
-//   - the faults that are named, corrected alone, leave something: `p_corrected` < 0.05. What is left decides
-//     then whether further ones are taken with them, the most certain first.
-// Every answer is a step. Pure in the seed and the pairs' names.
+// Runs TestCalibration. If that names a fault, it iterates: each iteration removes the faults estimated so
+// far from cameras and key points and estimates the motions again, until every change is at most a tenth of
+// the half-width of its interval. Then it corrects the named faults only; while the test of all faults still
+// rejects (p < 0.05), it adds the most significant other fault. No fault is named if
+//   - the iteration takes more than kMostSteps or leaves the physically possible range;
+//   - the test still rejects and no other fault is significant; or
+//   - the remaining residuals show a fault that is never named (FindOtherFault), which may have looked like a
+//     named one.
+// Every estimate is a step. Depends only on the pairs, the estimator and the seed.
 CalibrationReport Calibrate(const std::vector<PairAnswers>& answers, const MotionEstimator& estimator,
                             std::uint64_t seed, KeptSteps* steps = nullptr);
 
-// The pairs without the faults that a report names; a readout is removed along the motions that are
-// estimated.
+// Corrects the pairs for the faults that a report names. The readout is corrected for the estimated motions.
 PairSet CorrectPairs(const PairSet& set, const CalibrationReport& report, const MotionEstimator& estimator,
                      std::uint64_t seed, KeptSteps* steps = nullptr);
 

@@ -1,4 +1,4 @@
-// Do residuals grow as the matches' stated noise says?
+// Tests whether residuals grow with the matches' stated noise.
 #pragma once
 
 #include <string>
@@ -15,23 +15,24 @@ inline constexpr double kNominalSlope = 0.25;
 
 struct SizeReport {
   int num_pairs = 0;  // whose matches have a noise_scale
-  // Slope of log r^2 on log noise_scale^2 over that of the twins, whose noise is as stated.
+  // Slope of log r^2 on log noise_scale^2, divided by that of the twins, whose noise is as stated.
   PooledParameter slope;
-  TruthFreeVerdict verdict = TruthFreeVerdict::kNoData;  // too small, too large: of the slope
+  TruthFreeVerdict verdict = TruthFreeVerdict::kNoData;  // too small or too large refers to the slope
 };
 
-// Within each pair y_i = a + b x_i + noise over its inliers, x = log noise_scale^2, y = log (r^2 / (1 - h)),
-// r the Sampson distance and h its leverage; the noise is the logarithm of a chi-square, whose variance pi^2
-// / 2 no gross residual moves. Least squares: score S = sum (x - mean x) y, information sum (x - mean x)^2.
-// What an estimator takes for an inlier cuts great residuals off, and so the slope; the twins lose as much,
-// so that the ratio sum S / sum S_twins, one unit a pair (its twins' mean), is one where the noise is as
-// stated and zero where it does not depend on the scale. Interval: stats/pooled_scores.h, 95 %.
+// The model for the inliers of a pair is y_i = a + b x_i + noise with x = log noise_scale^2 and
+// y = log (r^2 / (1 - h)), r the Sampson distance and h its leverage. The noise is the logarithm of a
+// chi-square, so its variance is pi^2 / 2 and gross residuals have little influence. Least squares gives the
+// score S = sum (x - mean x) y. An estimator's inlier test cuts off large residuals and so reduces the slope,
+// on twins by the same amount. The result is therefore the ratio sum S / sum S_twins, where each pair counts
+// the mean of its twins. It is one if the noise is as stated and zero if it does not depend on the scale.
+// Interval: 95 %, stats/pooled_scores.h.
 SizeReport TestKeyPointSizes(const std::vector<PairAnswers>& answers);
 
 // "grows by 0.4 [0.3, 0.5] of what is stated", "holds: 1 [0.9, 1.1]", ...
 std::string DescribeSizeTest(const SizeReport& report);
 
-// S of one pair; NaN where its matches have no scale, or all the same.
+// S of one pair. NaN if its matches have no scale or nearly the same one, or with fewer than 20 inliers.
 double SlopeScore(const MotionProblem& problem, const MotionEstimate& estimate);
 
 }  // namespace rcme

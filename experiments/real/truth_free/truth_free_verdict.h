@@ -23,8 +23,8 @@ inline const char* VerdictName(TruthFreeVerdict verdict) {
   return "no data";
 }
 
-// The verdict that an interval of a quantity allows whose right value is `right`: "holds" if it lies within
-// `nominal`, one of too small and too large if it does not hold `right`.
+// The verdict from the interval of a quantity whose correct value is `right`: holds if the interval lies
+// within `nominal`, else too small or too large if it excludes `right`, else undecided.
 inline TruthFreeVerdict VerdictOnInterval(const Interval& interval, double right, const Interval& nominal) {
   if (interval.lower >= nominal.lower && interval.upper <= nominal.upper) return TruthFreeVerdict::kHolds;
   if (interval.lower > right) return TruthFreeVerdict::kTooLarge;

@@ -1,4 +1,4 @@
-// What a simulated twin is fitted to: the noise, the layout and the motion of a scene.
+// The noise, layout and motion of a scene to which its simulated twin is fitted.
 #pragma once
 
 #include "experiments/data/redraw.h"
@@ -6,23 +6,23 @@
 
 namespace rcme {
 
-// What is measured on a scene. Medians over pairs, where nothing else is said.
+// Measurements on a scene; medians over pairs unless stated otherwise.
 struct TwinFit {
   int num_templates = 0;
   RedrawSettings noise;            // of the semi-real twin (noise_fit.h)
-  RedrawSettings simulated_noise;  // of the simulated one: size, tails and correlation of neighbours
+  RedrawSettings simulated_noise;  // of the simulated twin: size, tails and correlation of neighbours
   Camera camera1, camera2;         // of the first pair
   int num_matches = 0;
   double wrong_share = 0.0;           // mean over pairs
-  double wrong_agreeing_share = 0.0;  // of the wrong: another one within 30 px moves alike, to 10 px
+  double wrong_agreeing_share = 0.0;  // of wrong matches with another within 30 px that moves alike to 10 px
   double rotation_deg = 0.0, parallax_deg = 0.0;
   double forwardness = 0.0;              // |t_z|
   double nearest = 0.0, farthest = 0.0;  // 5 % and 95 % points of all depths, in baselines
-  double homography_share = 0.0;         // of the right matches: one homography explains them
-  double clark_evans = 0.0;              // of the right key points in image 1: 1 random, less: clustered
-  double twice_share = 0.0;              // of the right matches: another is within 1 px in image 1
+  double homography_share = 0.0;         // of right matches that one homography explains
+  double clark_evans = 0.0;  // index of the right key points in image 1; 1: random, less: clustered
+  double twice_share = 0.0;  // of right matches with another within 1 px in image 1
 };
-// The noise in steps (noise_fit.h). Throws InputError where no pair of the scene has a template.
+// The noise is fitted in steps (noise_fit.h). Throws InputError if no pair of the scene has a template.
 TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed,
                 KeptSteps* steps = nullptr);
 

@@ -8,7 +8,7 @@
 
 namespace rcme {
 
-// Tables for people; a row per scene, twin and quantity for programs; in JSON also the data blocks.
+// Tables for people; for programs one row for each scene, twin and quantity. JSON also has the data blocks.
 CommandResult MakeTwinsResult(const std::vector<TwinReport>& reports);
 
 }  // namespace rcme

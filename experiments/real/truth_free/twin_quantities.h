@@ -1,4 +1,4 @@
-// What is compared between pairs and their twins.
+// Quantities that are compared between pairs and their twins.
 #pragma once
 
 #include <array>
@@ -29,15 +29,15 @@ enum Quantity : size_t {
 struct QuantityText {
   const char* name;
   bool is_rate;
-  bool is_fitted;  // a twin is made to agree in it: no evidence where it does
+  bool is_fitted;  // a twin is fitted to it, so that agreement is no evidence
   const char* words;
-  const char* missing;  // what simulation may lack where it is not met
+  const char* missing;  // what the simulation may lack if the twins differ
 };
 extern const std::array<QuantityText, kNumQuantities> kQuantityTexts;
 
-// The values of one pair, or of one twin: none, one or several of each quantity.
+// The values of one pair or one twin: none, one or several of each quantity.
 using Values = std::array<std::vector<double>, kNumQuantities>;
-// Halves are estimated with samples of the streams after `name`.
+// The halves use the random streams of the trials after `name`.
 Values ComputeValues(const TrialData& trial, const MotionEstimate& estimate, const MotionEstimator& estimator,
                      const StreamName& name);
 

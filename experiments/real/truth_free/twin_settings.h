@@ -8,13 +8,13 @@
 
 namespace rcme {
 
-// The real layout, noise and wrong matches drawn anew; `folder`: that of the templates.
+// The real layout with noise and wrong matches drawn anew. `folder`: folder of the templates.
 Settings SemiRealData(const TwinFit& fit, const std::string& folder, double assumed_sigma_px);
 
-// A simulated scene whose keys are fitted to the same numbers, with that share of its points in clusters.
+// A simulated scene whose keys are fitted to the measurements, with a given share of its points in clusters.
 Settings SimulatedTwinData(const TwinFit& fit, double clustered_share, double assumed_sigma_px);
-// The share of points in clusters that resembles the pairs. Throws InputError where no scene of its kind has
-// the parallax that was measured.
+// The share of points in clusters whose Clark-Evans index is nearest to that of the pairs. Throws InputError
+// if no scene of its kind has the measured parallax.
 double FitClusteredShare(const TwinFit& fit);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// Real pairs with the answers to them and the exact geometry that their twins get.
+// Real pairs with an estimator's answers and the exact geometry from which their twins are made.
 #pragma once
 
 #include <optional>
@@ -12,32 +12,32 @@
 
 namespace rcme {
 
-// A real pair with an answer to it and, where its geometry is known well enough, its exact template: the
-// right matches (those that the answer accepts, or that are near) moved onto the reference motion, which is
-// the template's truth; the wrong ones as they are. The reference is the answer, or, where that fails by the
-// given truth or there is none, the given truth.
+// A real pair, its estimate and, if its geometry is known well enough, its exact template. In the template
+// the right matches (inliers of the estimate, or near the reference motion) are moved onto the reference
+// motion, which is the template's truth; wrong matches stay as they are. The reference is the estimate. If
+// there is none, or if it fails by the given truth, the reference is the given truth.
 struct AnsweredTrial {
   TrialData pair;
   std::string image1, image2;  // empty: not known
   MotionEstimate estimate;
   std::optional<TrialData> exact;
-  double noise_level = 1.0;  // of the template: the noise of its pair over the median of the scene
+  double noise_level = 1.0;  // noise of the pair over the median of the scene
 
-  bool HasAnsweredTemplate() const;  // whose reference is the answer
+  bool HasAnsweredTemplate() const;  // has a template whose reference is the estimate
 };
 // Matches within this many standard deviations of the reference count as right.
 inline constexpr double kRightWithin = 4.0;
-inline constexpr size_t kLeastRight = 20;  // of a template
+inline constexpr size_t kLeastRight = 20;  // right matches of a template
 
 struct TwinSource {
   std::string scene;
   std::vector<AnsweredTrial> pairs;
 };
-// Of every pair of a real scene, each answer a step. Pure in the seed and the pairs' names.
+// Estimates every pair of a real scene; each estimate is a step. Depends only on the arguments.
 TwinSource AnswerScene(const std::string& scene, const DataSource& data, const ImageNames& images,
                        const MotionEstimator& estimator, std::uint64_t seed, KeptSteps* steps = nullptr);
 
-// The answer of an estimator to a problem, judged; its samples are of that stream.
+// Runs the estimator with the random stream of `name` and checks its answer (Judged in answer_check.h).
 MotionEstimate AnswerTo(const MotionProblem& problem, const MotionEstimator& estimator,
                         const StreamName& name);
 

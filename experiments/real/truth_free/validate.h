@@ -1,4 +1,4 @@
-// Whether an estimator's covariances hold on pairs whose true motions nobody knows.
+// Tests an estimator's covariances on pairs whose true motions are not known.
 #pragma once
 
 #include <map>
@@ -19,12 +19,12 @@
 
 namespace rcme {
 
-// A correlation of residuals below it is nominal.
+// A smaller correlation of residuals is nominal.
 inline constexpr double kNominalCorrelation = 0.05;
-// An assumed sigma is nominal if the estimated one lies within this of it.
+// An assumed sigma is nominal if the ratio of the estimated one to it lies in this range.
 inline constexpr Interval kNominalSigma = {0.8, 1.25};
 
-// How alike residuals are at a distance, beyond what they are in the twins.
+// Correlation of residuals at a distance, and its difference from that in the twins.
 struct DistanceCorrelation {
   double from_px = 0.0, to_px = 0.0;
   double num_products = 0.0;
@@ -35,34 +35,34 @@ struct DistanceCorrelation {
 struct SetReport {
   std::string name;
   int num_pairs = 0, num_answered = 0;
-  std::map<size_t, int> num_loops;  // whose pairs are all answered, by the number of images
+  std::map<size_t, int> num_loops;  // loops whose pairs all have a motion, by the number of images
   std::vector<TruthFreeTest> tests;
   CovarianceVerdict covariances;  // of all tests
-  // How sharp the covariances are: medians over the answered pairs of what is stated, the root of the trace
-  // of the rotation's and of the direction's block. NaN: none is answered.
+  // Sharpness: medians over the answered pairs of sqrt(trace) of the rotation block and of the direction
+  // block of the covariance. NaN: no pair is answered.
   double rotation_sd_deg = kNaN, direction_sd_deg = kNaN;
   double assumed_sigma_px = 0.0;
   ComparedMedians sigma_px;                                    // estimated from residuals, median over pairs
-  TruthFreeVerdict sigma_verdict = TruthFreeVerdict::kNoData;  // of the assumed one
+  TruthFreeVerdict sigma_verdict = TruthFreeVerdict::kNoData;  // on the assumed sigma
   std::vector<DistanceCorrelation> correlations;
   CalibrationReport calibration;
   SizeReport sizes;
-  std::vector<LengthClosure> closures;  // where they are asked for
+  std::vector<LengthClosure> closures;  // only with ValidationOptions::longest_loop
   std::vector<std::string> advice;      // what to change, in words
 };
 
 struct ValidationOptions {
   std::uint64_t seed = 1;
   int num_twins = 3;        // of each pair
-  size_t longest_loop = 0;  // images, of the closure by length; 0: it is not asked for
+  size_t longest_loop = 0;  // images, for the closure by length; 0: skip it
   TwinField field = {};     // of the twins' noise
 };
 
-// What is computed of a pair is a step. Pure in the options' seed and the pairs' names. The random numbers of
-// a pair are named by it.
+// Runs all tests on a set. The results of each pair are a step. The random stream of a pair depends only on
+// the seed and the pair's name.
 //
-// Tests: `simulation`, the answers to the twins against the motion that these were made of, is of the
-// estimator alone; the others are of the pairs, with the same of their twins.
+// The test `simulation` compares the estimates on twins with the motion from which these were made, so it
+// tests the estimator alone. The other tests are on the pairs and, for comparison, on their twins.
 SetReport Validate(const PairSet& set, const MotionEstimator& estimator, const ValidationOptions& options,
                    KeptSteps* steps = nullptr);
 

@@ -12,10 +12,10 @@ namespace rcme {
 std::string DescribeVerdict(const TruthFreeTest& test);
 
 std::string ValidationAsTable(const std::vector<SetReport>& reports);
-// A row per set and test, sigma and correlations among them.
+// One row for each set and test, including sigma and the correlations.
 Table MakeValidationTable(const std::vector<SetReport>& reports);
-// These rows, in JSON also a table of the sets, and one of their loops, tests, correlations, camera faults
-// and advice each.
+// The rows of MakeValidationTable. JSON also has a table of the sets and one each of their loops, tests,
+// correlations, camera faults and advice.
 CommandResult MakeValidationResult(const std::vector<SetReport>& reports);
 
 }  // namespace rcme
