@@ -1,4 +1,4 @@
-// The errors of a camera and its front end, learnt from the pairs that it took.
+// Estimates the errors of a camera and its front end from pairs of its images.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace rcme {
 
-// Noise of the matches whose stated size lies in a range, over the median size of their pair.
+// Noise of the matches whose stated size over the median size of their pair lies in [from, to).
 struct SigmaOfSize {
   double from = 0.0, to = 0.0;
   PooledParameter variance;  // px^2
@@ -21,20 +21,21 @@ struct SigmaOfSize {
 };
 
 struct NoiseCalibration {
-  CameraNoise noise;                                             // what the file says
+  CameraNoise noise;                                             // content of the noise file
   int num_given = 0, num_other_cameras = 0, num_unanswered = 0;  // pairs; the last two are left out
   PooledParameter variance;                                      // sigma_px^2
   PooledParameter size_exponent;
   std::vector<SigmaOfSize> sizes;
   SharedVariance shared;
   CalibrationReport faults;
-  DisplacementCells systematic;  // tested; in `noise` where p < 0.05
+  DisplacementCells systematic;  // as tested; also in `noise` if p < kSystematicLevel
 };
 
-// In this order, each on pairs without what was found before: faults of the camera (truth_free/
-// self_calibration.h), the displacement that all images share, the noise, its growth with the size and what
-// is shared of it. The camera is that of the first pair. Throws InputError with fewer than five pairs that
-// are answered and of one camera. Pure in the seed and the pairs' names.
+// Estimates, each on pairs corrected for the previous ones: first the faults of the camera
+// (truth_free/self_calibration.h), then the displacement that all images share, then the noise, its growth
+// with the stated size and its shared part. The camera is that of the first pair. Throws InputError with
+// fewer than five pairs of this camera that have a motion. The random stream of a pair depends only on the
+// seed and the pair's name.
 NoiseCalibration CalibrateNoise(const PairSet& set, const MotionEstimator& estimator,
                                 const std::string& estimator_name, std::uint64_t seed);
 

@@ -7,7 +7,8 @@
 
 namespace rcme {
 
-// `name`: of the set of pairs. A row per quantity; in JSON also the variance of the field by its reach.
+// One row for each quantity; JSON also has the variance of the field by its reach. `name`: of the set of
+// pairs.
 CommandResult MakeNoiseCalibrationResult(const NoiseCalibration& calibration, const std::string& name);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// How probable the faults of a camera are, what to take out, and how uncertain the camera is then.
+// Posterior of a camera's faults: how probable each is, which to remove and how uncertain the camera is then.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,9 +6,8 @@
 
 namespace rcme {
 
-// Of k faults: least-squares estimates beside each other, their covariance, and how large each may be. A
-// fault of less than `nominal` is none that matters, one of more than `greatest` is none of a camera that
-// somebody calibrated.
+// Joint least-squares estimates of k faults, their covariance, and the size each may have. A fault below
+// `nominal` does not matter; one above `greatest` is not plausible for a camera that has been calibrated.
 struct FaultEvidence {
   Eigen::VectorXd estimates;   // k x 1
   Eigen::MatrixXd covariance;  // k x k
@@ -16,31 +15,31 @@ struct FaultEvidence {
 };
 
 struct FaultPosterior {
-  std::vector<double> probabilities;  // of each fault being there
+  std::vector<double> probabilities;  // that each fault exists
   Eigen::VectorXd mean;               // k x 1
   Eigen::MatrixXd covariance;         // k x k
 };
 
-// Bayesian model averaging. A model says which faults there are, S, and how large, s: the estimates are
-// N(theta, V), theta_j ~ N(0, t_j^2) for j in S with t_j from three times the nominal to the greatest size in
-// seven steps of equal ratio (six times s), and theta_j = 0 for the others. With T = diag(t^2)
+// Bayesian model averaging. A model states which faults exist, S, and how large they are, s. The estimates
+// are N(theta, V), theta_j ~ N(0, t_j^2) for j in S with t_j from three times the nominal to the greatest
+// size in seven steps of equal ratio (six times s), and theta_j = 0 for the others. With T = diag(t^2)
 //
 //   p(estimates | S, s) = N(0, V + T),   E[theta] = T (V + T)^-1 estimates,   Cov[theta] = T - T (V + T)^-1 T
 //
-// The prior probability is 1/2 of no fault at all; the other half is shared evenly by the numbers |S| = 1 ...
-// k, each of these by its sets (Scott and Berger 2010: searching among more faults makes none more probable),
-// and each of these by its sizes in proportion to 1 / t^2, the tails of Student's law of two degrees of
-// freedom: large faults are rare and, where the pairs show one, not drawn towards zero. Where the evidence is
-// strong nothing else matters: the posterior is then that of the estimates, the faults that are not there
-// taken to be zero. Where there is none the stated camera is believed but for the prior, whose root mean
-// square is some four times the nominal.
+// The prior probability of no fault at all is 1/2. The other half is divided evenly among the numbers |S| = 1
+// ... k, each share evenly among the sets of that number (Scott and Berger 2010: a search among more faults
+// makes none more probable), and each of these among the sizes in proportion to 1 / t^2. These are the tails
+// of Student's law with two degrees of freedom: large faults are rare, but not shrunk towards zero if the
+// pairs show them. With strong evidence the prior does not matter: the posterior is that of the estimates,
+// with the absent faults zero. Without evidence the stated camera is kept, with the prior's uncertainty,
+// whose root mean square is some four times the nominal.
 FaultPosterior InferFaults(const FaultEvidence& evidence);
 
-// What to take out, k x 1: of faults that are more probable than not (the median probability model, Barbieri
-// and Berger 2004) the posterior mean, 0 of the others.
+// The correction to apply, k x 1: the posterior mean for faults with probability above 1/2 (the median
+// probability model, Barbieri and Berger 2004), 0 for the others.
 Eigen::VectorXd ChooseRemoved(const FaultPosterior& posterior);
 
-// E[(theta - removed) (theta - removed)'], k x k: what is uncertain of the camera once that is taken out.
+// E[(theta - removed) (theta - removed)'], k x k: the uncertainty of the camera after the correction.
 Eigen::MatrixXd ComputeUncertainty(const FaultPosterior& posterior, const Eigen::VectorXd& removed);
 
 }  // namespace rcme

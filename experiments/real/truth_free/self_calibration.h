@@ -22,7 +22,7 @@ inline constexpr int kMostSteps = 10;
 //   - the test still rejects and no other fault is significant; or
 //   - the remaining residuals show a fault that is never named (FindOtherFault), which may have looked like a
 //     named one.
-// Every estimate is a step. Depends only on the pairs, the estimator and the seed.
+// Every estimate is a step. The random stream of a pair depends only on the seed and the pair's name.
 CalibrationReport Calibrate(const std::vector<PairAnswers>& answers, const MotionEstimator& estimator,
                             std::uint64_t seed, KeptSteps* steps = nullptr);
 

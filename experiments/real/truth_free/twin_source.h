@@ -33,7 +33,8 @@ struct TwinSource {
   std::string scene;
   std::vector<AnsweredTrial> pairs;
 };
-// Estimates every pair of a real scene; each estimate is a step. Depends only on the arguments.
+// Estimates every pair of a real scene; each estimate is a step. The random stream of a pair depends only on
+// the seed and the pair's name.
 TwinSource AnswerScene(const std::string& scene, const DataSource& data, const ImageNames& images,
                        const MotionEstimator& estimator, std::uint64_t seed, KeptSteps* steps = nullptr);
 
