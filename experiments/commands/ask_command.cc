@@ -26,7 +26,7 @@
 namespace rcme {
 namespace {
 
-constexpr int kPilotTrials = 20;  // which say how long one takes
+constexpr int kPilotTrials = 20;  // to measure the time per trial
 constexpr int kFewestTrials = 50;
 
 struct AskArguments {
@@ -47,8 +47,8 @@ std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
 
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
 
-// Runs so many trials of the question's study into the file; those that are there already are kept. Nothing
-// is written, study.yaml included, if the file is one of another question.
+// Runs the question's study up to `trials` trials and keeps those that the result file already has. If the
+// file belongs to another question, nothing is written, not even study.yaml.
 RunReport RunTrialsOf(const AskArguments& arguments, int trials) {
   const std::string path = arguments.out + "/study.yaml";
   const std::string text = MakeStudyText(arguments.question, trials);
@@ -58,8 +58,8 @@ RunReport RunTrialsOf(const AskArguments& arguments, int trials) {
   return RunStudy(plan, arguments.threads, &store);
 }
 
-// The greatest of a few round numbers that the time is enough for, judged by the first trials; the least of
-// them, if these were there already. It depends on no outcome, so that the intervals hold.
+// The greatest of a few round numbers of trials for which the time suffices, by the time of the pilot trials;
+// the smallest if the pilot ran none now. It does not depend on any outcome, so the intervals stay valid.
 int ChooseTrials(const RunReport& pilot, double seconds) {
   if (pilot.num_run_now == 0) return kFewestTrials;
   const double seconds_per_trial = pilot.seconds / static_cast<double>(pilot.num_run_now);
@@ -70,13 +70,13 @@ int ChooseTrials(const RunReport& pilot, double seconds) {
   return chosen;
 }
 
-// How many trials the result file that is there was last asked for; 0: there is none.
+// The number of trials last requested for the existing result file; 0: there is no file.
 int FindTrialsAskedBefore(const AskArguments& arguments) {
   if (!std::filesystem::exists(ResultPath(arguments))) return 0;
   return ResultStore::OpenForReading(ResultPath(arguments)).Description().trials;
 }
 
-// As many trials as are asked for, were asked for before, or fit into the time.
+// Runs the requested number of trials, else the number requested before, else as many as fit into the time.
 void RunQuestion(const AskArguments& arguments) {
   const int before = FindTrialsAskedBefore(arguments);
   if (arguments.trials > 0) {

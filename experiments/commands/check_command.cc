@@ -26,7 +26,7 @@ struct CheckArguments {
   StudyChanges changes;  // of that study
 };
 
-// "3, 17-23, ...": the trials of a condition that are not sound, to the last that is known of.
+// "3, 17-23, ...": the trials of a condition that are not sound, up to the last known one.
 std::string NotSoundText(const SalvagedCondition& condition, std::int64_t num_planned) {
   const std::int64_t last = condition.sound.empty() ? 0 : condition.sound.back().end;
   const std::int64_t end = std::max({last, condition.num_counted.value_or(0), num_planned});
@@ -47,7 +47,7 @@ std::string NotSoundText(const SalvagedCondition& condition, std::int64_t num_pl
                      num_more > 0 ? fmt::format(" and {} more", num_more) : "");
 }
 
-// The conditions of which something is damaged, lost or not run.
+// The conditions with trials that are damaged, lost or not run.
 Table MakeDamageTable(const RunDescription& run, const std::vector<SalvagedCondition>& conditions) {
   Table table{{Column::Key("condition"),
                Column::Text("sound"),
@@ -71,7 +71,7 @@ std::string DamageAsText(Table damage) {
   return RenderText(damage) + (num_more > 0 ? fmt::format("... and {} more conditions\n", num_more) : "");
 }
 
-// What is said of a file.
+// The report on a file.
 struct FileCheck {
   std::string text;                           // for people
   std::string state = "sound", kept = "all";  // kept: trials or counts, as `rcme run --keep` names them

@@ -30,14 +30,14 @@ std::vector<std::string> CheckNames() {
   return names;
 }
 
-// A word of a command line as a shell takes it.
+// Quotes a word for a shell.
 std::string InQuotes(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
 }
 
-// The command that finds the same again.
+// The command that repeats this check.
 std::string Again(const EstimatorCheckArguments& arguments, const std::string& check,
                   const std::string& problem) {
   const EstimatorChoice& choice = arguments.estimator;

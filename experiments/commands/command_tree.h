@@ -1,4 +1,4 @@
-// The program's commands and options as plain data, for completion scripts and manual pages.
+// Describes the program's commands and options as plain data, for completion scripts and manual pages.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,13 +8,13 @@
 namespace rcme {
 
 struct DescribedOption {
-  std::vector<std::string> names;  // "-o", "--out"; a positional argument has its name alone
+  std::vector<std::string> names;  // "-o", "--out"; for a positional argument its name only
   std::string description;
   std::string default_value;  // empty: none
   bool is_positional = false;
   bool is_required = false;
   bool takes_value = true;
-  std::vector<std::string> values;  // what it may be, where that is a short list
+  std::vector<std::string> values;  // candidate values, if there is a list of them
 };
 
 struct DescribedCommand {
@@ -28,9 +28,9 @@ DescribedCommand Described(const CLI::App& command);
 std::vector<DescribedCommand> DescribedTree(const CLI::App& app);
 std::vector<std::string> CommandNames(const CLI::App& app);
 
-// What the words that the parser did not expect may have meant, a sentence each: of commands and options.
+// Suggests a command or option for each word that the parser did not expect; one sentence each.
 std::string SuggestionsFor(const CLI::App& app);
-// The same with the words themselves, in the order in which they were given.
+// An error message that lists the unexpected words in the order given, with these suggestions.
 std::string DescribeUnexpected(const CLI::App& app);
 
 }  // namespace rcme

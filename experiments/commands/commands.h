@@ -6,7 +6,7 @@
 
 namespace rcme {
 
-// Thrown by a command that has said all there is to say and ends with an exit code of its own.
+// Thrown by a command that has printed its messages and ends the program with its own exit code.
 struct EndWith {
   int exit_code;
 };
@@ -47,7 +47,7 @@ void AddValidateCommand(CLI::App& app);
 void AddCalibrateNoiseCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);
 void AddListCommand(CLI::App& app);
-// Of all commands that were added before.
+// These three describe the commands added before them.
 void AddHelpCommand(CLI::App& app);
 void AddCompletionCommand(CLI::App& app);
 void AddManCommand(CLI::App& app);

@@ -1,4 +1,4 @@
-// Options that several commands have.
+// Options shared by several commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,7 +14,7 @@ CLI::Option* AddStudyArgument(CLI::App* command, std::string* study);
 CLI::Option* AddThreadsOption(CLI::App* command, int* threads,
                               const std::string& what = "Results do not depend on it");
 
-// --seed, at least 0, with its default in the help. `of`: "the random samples"
+// --seed, at least 0, with its default in the help. `of` says what it seeds: "the random samples".
 CLI::Option* AddSeedOption(CLI::App* command, std::int64_t* seed,
                            const std::string& of = "the random samples");
 

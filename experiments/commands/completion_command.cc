@@ -13,7 +13,7 @@ namespace {
 
 std::string Joined(const std::vector<std::string>& words) { return fmt::format("{}", fmt::join(words, " ")); }
 
-// The first sentence of a description, without what a shell's quotes would stumble over.
+// The first sentence of a description, without characters that break quoting in a shell.
 std::string InShort(const std::string& text) {
   std::string words = text.substr(0, std::min(text.find('\n'), text.find("; ")));
   std::ranges::replace(words, ':', ',');
@@ -30,7 +30,7 @@ std::vector<std::string> NamesOfOptions(const DescribedCommand& command) {
   return names;
 }
 
-// What its positional arguments may be, beside files.
+// Candidate values of its positional arguments besides files.
 std::vector<std::string> PositionalValues(const DescribedCommand& command) {
   std::vector<std::string> values;
   for (const DescribedOption& option : command.options) {

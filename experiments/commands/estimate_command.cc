@@ -82,7 +82,7 @@ Lens ParseNamedCamera(const std::string& text) {
   return LensWithoutSizeFromWords(words, fmt::format("--camera {}", Quoted(text)));
 }
 
-// Of both images, or one each.
+// One camera for both images, or one for each.
 GivenCameras ParseCameras(const EstimateArguments& arguments) {
   if (!arguments.intrinsics.empty() && !arguments.cameras.empty())
     throw InputError("--K and --camera say the same; give one of them");
@@ -96,7 +96,7 @@ GivenCameras ParseCameras(const EstimateArguments& arguments) {
   return std::array<Lens, 2>{parse(texts.front()), parse(texts.back())};
 }
 
-// What the arguments name, folders opened.
+// The files that the arguments name, with folders replaced by their files.
 std::vector<std::string> ListFiles(const std::vector<std::string>& arguments) {
   std::vector<std::string> files;
   for (const std::string& argument : arguments) {
@@ -111,7 +111,7 @@ std::vector<std::string> ListFiles(const std::vector<std::string>& arguments) {
   return files;
 }
 
-// Reads pairs and answers them.
+// Reads pairs and estimates their motions.
 class Answerer {
  public:
   explicit Answerer(const EstimateArguments& arguments)
@@ -207,7 +207,7 @@ FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
   return file;
 }
 
-// One line of JSON, at once: whoever reads along gets each when it is there.
+// Prints one line of JSON and flushes it, so that a reader gets each answer at once.
 void PrintJsonLine(const FileAnswer& file, const AnswerTerms& terms) {
   nlohmann::ordered_json line = {{"format", kEstimateFormat}, {"file", file.path}};
   line.update(FileAnswerAsJson(file, terms));
@@ -240,7 +240,7 @@ void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, con
     throw InputError(fmt::format("{}: {}", data.origin, file.answer.estimate.message));
 }
 
-// Every file is answered, whatever becomes of the others; in the end the program fails if one could not be.
+// Processes every file even if others fail; the program fails at the end if any file did.
 void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
                 const std::vector<std::string>& files) {
   const StopOnSignals stop;

@@ -19,12 +19,12 @@ struct EstimatorRunArguments {
   ShardArguments shards;
 };
 
-// The positional option of the study, which is returned, and --estimator.
+// Adds the positional argument of the study, which is returned, and --estimator.
 CLI::Option* AddStudyAndEstimator(CLI::App* command, EstimatorRunArguments* arguments);
 
 void AddTrialsOption(CLI::App* command, EstimatorRunArguments* arguments);
 
-// The options of study_source.h, shard_options.h and process_option.h, then --threads.
+// Adds the options of study_source.h, shard_options.h and process_option.h, then --threads.
 void AddRunOptions(CLI::App* command, EstimatorRunArguments* arguments);
 
 }  // namespace rcme

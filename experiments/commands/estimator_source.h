@@ -14,23 +14,24 @@ struct EstimatorChoice {
   std::string name = "rcme_calibrated";
   std::optional<std::string> file, conform;
   std::vector<std::string> overrides;  // option=value each
-  bool allow_process = false;          // the command of the file
+  bool allow_process = false;          // allow the command that the file names
 };
 
-// The options --estimator, --estimator-file, --conform, --set and --allow-process.
+// Adds the options --estimator, --estimator-file, --conform, --set and --allow-process.
 void AddEstimatorOptions(CLI::App* command, EstimatorChoice* choice);
-// The same where `name`, the command's own option or argument, stands in the place of --estimator.
+// Adds the same, but with the command's own option or argument `name` in place of --estimator.
 void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* choice);
 
-// Throws InputError (estimator_file.h, estimator_spec.h). Says which command it allows.
+// The chosen estimator. Prints which command it allows. Throws InputError (estimator_file.h,
+// estimator_spec.h).
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice);
 
-// The estimator of the study with this label, or one by its name or estimator file. Throws InputError as
-// ChosenEstimator.
+// The study's estimator with the label `name`, else an estimator by name or by estimator file. Throws
+// InputError as ChosenEstimator does.
 EstimatorSpec FindStudyEstimator(const Study& study, const std::string& name, bool allow_process);
 
-// The same, or without a name the study's only one. Throws InputError that begins with `command` if it has
-// several.
+// FindStudyEstimator, or with an empty name the study's only estimator. Throws InputError that begins with
+// `command` if the study has several.
 EstimatorSpec FindOnlyEstimator(const Study& study, const std::string& command, const std::string& name,
                                 bool allow_process);
 

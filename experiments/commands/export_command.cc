@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file each, in a folder each: more than any file system likes.
+// Every trial writes one file into the same folder; more would strain file systems.
 constexpr std::int64_t kMaxTrials = 1'000'000;
 
 struct ExportArguments {

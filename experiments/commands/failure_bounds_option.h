@@ -7,8 +7,8 @@
 
 namespace rcme {
 
-// "1,5": deg, of the rotation and of the direction. Throws InputError that names --bounds and what is
-// allowed.
+// Parses "1,5": the bounds on the rotation and direction errors, deg. Throws InputError that names --bounds
+// and the allowed values.
 FailureBounds ParseFailureBounds(const std::string& text);
 
 }  // namespace rcme

@@ -8,13 +8,13 @@
 
 namespace rcme {
 
-// `format` has the default.
+// Adds --format; the initial value of `format` is the default.
 CLI::Option* AddFormatOption(CLI::App* command, std::string* format);
 
-// In the format, to standard output or into the file `out`.
+// Prints the result in the format to standard output, or writes it to the file `out` if that is not empty.
 void PrintResult(const CommandResult& result, const std::string& format, const std::string& out = "");
 
-// `stem`.txt, .csv and .json.
+// Writes `stem`.txt, .csv and .json.
 void WriteResultFiles(const CommandResult& result, const std::string& stem);
 
 }  // namespace rcme

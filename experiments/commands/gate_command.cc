@@ -57,7 +57,7 @@ std::vector<GateTest> TestsFrom(const GateArguments& arguments, bool has_old, bo
   return tests;
 }
 
-// Trials of match files are the same pairs again and again.
+// Refuses studies of match files: their trials repeat the same pairs.
 void RequireSimulated(const Study& study) {
   for (const std::vector<std::string>& levels : DesignRows(study)) {
     for (const auto& [key, value] : CombineSettings(study, levels)) {
@@ -89,8 +89,8 @@ GateReport BeginReport(const ReadableRun& run, const std::vector<GateTest>& test
   return report;
 }
 
-// What the labels of two files stand for: first of the assumptions, and a warning where one label is of two
-// things.
+// Puts a description of both versions first among the assumptions, and warns if different versions have the
+// same label.
 void DescribeVersions(const RecordedVersion& of_old, const RecordedVersion& of_new, GateReport* report) {
   const std::string words = CompareVersions(of_old, of_new);
   report->assumptions.insert(report->assumptions.begin(), "Versions: " + words + ".");
@@ -99,13 +99,13 @@ void DescribeVersions(const RecordedVersion& of_old, const RecordedVersion& of_n
                  of_old.estimator.label, words);
 }
 
-// For trials that are judged by these terms, from the first look to the last.
+// Binds a result file to the terms of the test, which must stay the same from the first look to the last.
 void TakeTerms(const GateTerms& terms, const std::string& path, ResultStore* store) {
   if (store->NumTrials() > 0) RequireSameTerms(terms, store->Description().stopping_rule, path);
   store->NoteStoppingRule(terms.AsStoppingRule());
 }
 
-// Runs the plan's trials as far as the verdict needs them.
+// Runs the plan's trials until the verdict is decided.
 void RunUntilDecided(StudyPlan plan, const GateArguments& arguments, std::int64_t max_rounds,
                      const ReadableRun& run, const std::vector<GateTest>& tests, ResultStore* store,
                      GateReport* report) {

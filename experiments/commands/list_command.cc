@@ -35,7 +35,7 @@ Rows ListEstimators() {
   return rows;
 }
 
-// What the list of estimators lacks, and how to get it; empty: nothing.
+// Which estimators the build lacks and how to get them; empty if none.
 std::string DescribeLeftOut() {
   const bool has_poselib = std::ranges::count(EstimatorRegistry(), "poselib", &EstimatorEntry::name) > 0;
   return has_poselib ? ""

@@ -8,22 +8,23 @@
 
 namespace rcme {
 
-// The options of a command that runs a study, or hands it on, about its lock (study/study_lock.h).
+// Lock options (study/study_lock.h) of a command that runs a study or passes it on.
 struct LockArguments {
-  std::string file;     // empty: the one beside the study, if there is one
-  std::string despite;  // why the study departs from it; empty: it does not
+  std::string file;     // empty: the lock beside the study, if there is one
+  std::string despite;  // reason for departing from the lock; empty: departures are refused
 };
 void AddLockOptions(CLI::App* command, LockArguments* arguments);
 
-// Puts the lock into the plan of the study of a file, and says so; does nothing where there is none.
-// Throws InputError where the study departs from the lock and no reason was given.
+// Reads the study's lock into its plan and prints a message. Without a lock it does nothing. Throws
+// InputError if the study departs from the lock and no reason is given, or a reason is given but there is no
+// lock.
 void TakeLock(const std::string& study, const LockArguments& arguments, const std::string& stopping_rule,
               StudyPlan* plan);
 
-// The path of a study that somebody names (core/files/shared_files.h).
+// Resolves a study by path or by name (core/files/shared_files.h).
 std::string FindStudyFile(const std::string& study);
 
-// The path of the lock that TakeLock takes; empty: none.
+// The path of the lock that TakeLock reads; empty: none.
 std::string FindLock(const std::string& study, const LockArguments& arguments);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-// Checks of options: words, and numbers with the same syntax as in files (whole text, decimal, finite).
+// Validators of options: words, and numbers with the same syntax as in files (whole text, decimal, finite).
 #pragma once
 
 #include <fmt/format.h>
@@ -15,8 +15,8 @@
 
 namespace rcme {
 
-// `parse` reads a whole text into a Number; false: the text is not a number. `allowed` says what is, in
-// words.
+// `parse` reads a whole text into a Number and returns false if it is not a number. `allowed` describes the
+// allowed values in words.
 template <typename Number>
 CLI::Validator NumberValidator(bool (*parse)(const std::string&, Number*), Number min, Number max,
                                const std::string& allowed) {
@@ -30,14 +30,14 @@ CLI::Validator NumberValidator(bool (*parse)(const std::string&, Number*), Numbe
   return {check, allowed};
 }
 
-// These are for Option::transform: the option's variable gets the number in plain decimal, 10 for 010.
+// The validators of numbers are for Option::transform: they pass the number on in plain decimal, 10 for 010.
 inline CLI::Validator WholeNumberIn(std::int64_t min,
                                     std::int64_t max = std::numeric_limits<std::int64_t>::max()) {
   return NumberValidator<long long>(ParseInteger, min, max,
                                     fmt::format("a whole number in [{}, {}]", min, max));
 }
 
-// For Option::check: one of some words.
+// For Option::check: the value must be one of `words`.
 inline CLI::Validator MakeChoiceValidator(const std::vector<std::string>& words) {
   const std::string allowed = fmt::format("{}", fmt::join(words, ", "));
   const auto check = [=](const std::string& text) -> std::string {

@@ -6,8 +6,8 @@
 
 namespace rcme {
 
-// The plan of the study of a YAML file, changed, that can give cases (audit/claims/study_cases.h). Throws
-// InputError as LoadChangedStudy and RequireCases.
+// The plan of a study file with the changes applied, checked to provide cases (audit/claims/study_cases.h).
+// Throws InputError as LoadChangedStudy and RequireCases do.
 StudyPlan LoadPlanOfCases(const std::string& path, const StudyChanges& changes, PlanEstimators estimators);
 
 }  // namespace rcme

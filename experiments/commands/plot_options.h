@@ -8,11 +8,11 @@ namespace rcme {
 
 std::vector<std::string> PlotKinds();
 
-// Of one kind or more.
+// An option of the script of one or more kinds.
 struct PlotOption {
   std::string name, doc;
   bool takes_value = true;
-  std::vector<std::string> values = {};  // what it may be, where that is a short list
+  std::vector<std::string> values = {};  // the allowed values, if they are a short list
 };
 const std::vector<PlotOption>& PlotOptions();
 

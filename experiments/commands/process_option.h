@@ -10,7 +10,7 @@ namespace rcme {
 
 void AddProcessOption(CLI::App* command, bool* is_allowed);
 
-// Allows the commands that files brought, and says on standard error which they are.
+// Allows the commands that estimators from files name, and prints them on standard error.
 void AllowAndSay(std::vector<EstimatorSpec>* estimators);
 
 }  // namespace rcme

@@ -22,7 +22,7 @@ struct ReportArguments {
   std::string against, out;
 };
 
-// What cannot be written at the end had better be known before the figures are drawn.
+// Checks before the figures are drawn that the report can be written.
 void CheckReportFolder(const std::string& out) {
   const std::filesystem::path parent = std::filesystem::path(out).parent_path();
   if (out.empty()) throw InputError("--out: '' is not allowed; give the path of a page");

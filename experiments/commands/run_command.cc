@@ -48,8 +48,8 @@ Study StudyFrom(const RunArguments& arguments) {
   return study;
 }
 
-// The ways in which an answer from outside the program can be missing, by name: whether it comes may depend
-// on the machine. All else an estimator says itself, and it would say so again.
+// Names of the statuses for a missing answer from outside the program, which may depend on the machine. An
+// estimator would give any other status again.
 std::map<std::string, MotionStatus> MissingAnswers() {
   std::map<std::string, MotionStatus> missing;
   for (const MotionStatus status :
@@ -75,7 +75,7 @@ void RemoveForRetry(const StudyPlan& plan, const RunArguments& arguments, Result
                num_removed > 0 ? ", which the file notes" : "");
 }
 
-// What every condition took: of its widest interval the estimator and the rate.
+// Trials of every condition, with the estimator and the rate of its widest interval.
 Table MakeSpentTable(const StudyPlan& plan, const std::vector<CellPrecision>& cells) {
   using C = const CellPrecision&;
   const auto levels_of = [&](C c) -> const auto& { return plan.conditions[c.condition].levels; };

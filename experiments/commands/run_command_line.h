@@ -4,14 +4,14 @@
 
 namespace rcme {
 
-// What a program of commands consists of: all of them in program.cc, those of scripts/demo in demo_main.cc.
+// The commands and help texts of a program: program.cc has all commands, demo_main.cc those of scripts/demo.
 struct CommandSet {
   const char* first_session;  // lines of `rcme --help`
   void (*add)(CLI::App&);     // adds the commands (commands.h)
-  const char* footer;         // ends `rcme --help`, and what is said of a word that is no command
+  const char* footer;         // end of `rcme --help` and of the message on an unknown command
 };
 
-// Runs the command of a command line and gives the exit code (program.h).
+// Runs the command of a command line and returns the exit code (program.h).
 int RunCommandLine(int argc, const char* const* argv, const CommandSet& commands,
                    const char* installed_share = "");
 

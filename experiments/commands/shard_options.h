@@ -10,37 +10,37 @@
 namespace rcme {
 
 struct ShardArguments {
-  std::string shard, max_time;     // empty: all pieces, no limit
-  std::vector<std::string> parts;  // to be merged; empty: none
+  std::string shard, max_time;     // empty: all items, no limit
+  std::vector<std::string> parts;  // files to merge; may be empty
 
   Shard ThisShard() const;
 };
 
-// The options --shard, --merge and --max-time; `pieces` are "checks".
+// The options --shard, --merge and --max-time. `pieces` names the items in their help: "checks".
 struct ShardOptions {
   CLI::Option *shard, *merge;
 };
 ShardOptions AddShardOptions(CLI::App* command, const std::string& pieces, ShardArguments* arguments);
 
-// Where a command that was stopped keeps its results: in the folder `out`, or beside the file. Nothing (no
-// checkpoint) where `out` is a device or a pipe.
+// The checkpoint file of a command that may be stopped: in the folder `out`, or beside the file `out`. Beside
+// a device or pipe there is none, and the path is empty.
 std::string FindCheckpointInFolder(const std::string& out);
 std::string FindCheckpointBeside(const std::string& out);
 
-// The runner that the options ask for: of a shard, whose part is `out`, of parts, or with a checkpoint.
+// The runner for the options: for a shard with the part file `out`, from parts, or with a checkpoint.
 Runner MakeRunner(const WorkPlan& plan, const ShardArguments& arguments, const std::string& out,
                   const std::string& checkpoint, int num_threads);
 
-// With the checkpoint, or in memory where there is none.
+// A runner with this checkpoint, or in memory if `checkpoint` is empty.
 Runner MakeRunner(const WorkPlan& plan, const std::string& checkpoint, int num_threads);
 
-// Once nothing is missing of parts: what the items took, on standard error.
+// Prints the cost of the items on standard error if the runner reads parts. No item may be missing.
 void PrintCosts(const Runner& runner);
 
-// Of the parts of a whole plan: throws ItemsAreMissing if some are; then PrintCosts.
+// Throws ItemsAreMissing if items of the plan are missing; otherwise calls PrintCosts.
 void RequireWhole(const Runner& runner);
 
-// The last word of a command that has done its part.
+// The final message of a command that has finished its shard.
 void PrintPartIsDone(const Shard& shard, const std::string& path);
 
 }  // namespace rcme

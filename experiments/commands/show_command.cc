@@ -42,7 +42,7 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
   return PlanOfStored(ResultStore::OpenForReading(arguments.study), arguments.changes.allow_process);
 }
 
-// Numbers of the estimators with these labels, each once, in the order asked for.
+// Indices of the estimators with these labels, each once, in the order given.
 std::vector<size_t> NumbersOfEstimators(const Study& study, const std::vector<std::string>& labels) {
   std::vector<size_t> chosen;
   for (const std::string& label : labels) {
@@ -64,7 +64,7 @@ std::string DefaultOut(const StudyPlan& plan, const ShowArguments& arguments) {
   return fmt::format("trial_{}_c{}_t{}", MakeFileName(plan.study.name), arguments.condition, arguments.trial);
 }
 
-// What cannot be written at the end had better be known before the trial is run.
+// Checks before the trial is run that the output can be written.
 void CheckOut(const std::string& out) {
   const std::filesystem::path path(out), parent = path.parent_path();
   if (path.filename().empty() || out.ends_with(".png") || out.ends_with(".pdf")) {

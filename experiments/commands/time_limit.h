@@ -6,10 +6,11 @@
 
 namespace rcme {
 
-// It ends between two `pieces` ("trials"). An empty text is no limit.
+// Adds --max-time. `pieces` names the items between which the command can stop: "trials". An empty time is no
+// limit.
 CLI::Option* AddTimeLimit(CLI::App* command, const std::string& pieces, std::string* max_time);
 
-// The time begins; while a StopOnSignals lives (core/work/stop_request.h).
+// Starts the clock. Call it while a StopOnSignals exists (core/work/stop_request.h).
 void StartTimeLimit(const std::string& max_time);
 
 }  // namespace rcme

@@ -1,5 +1,5 @@
-// The commands that compare real pairs with simulation, with their given truth and with the paper; see
-// commands.h.
+// Commands that compare real pairs with simulation, with their given truth and with the paper (see
+// commands.h).
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -22,7 +22,7 @@ struct FaultPosterior {
 
 // Bayesian model averaging. A model states which faults exist, S, and how large they are, s. The estimates
 // are N(theta, V), theta_j ~ N(0, t_j^2) for j in S with t_j from three times the nominal to the greatest
-// size in seven steps of equal ratio (six times s), and theta_j = 0 for the others. With T = diag(t^2)
+// size in seven steps of equal ratio (6 s = 0 ... 6), and theta_j = 0 for the others. With T = diag(t^2)
 //
 //   p(estimates | S, s) = N(0, V + T),   E[theta] = T (V + T)^-1 estimates,   Cov[theta] = T - T (V + T)^-1 T
 //

@@ -21,7 +21,7 @@ struct SharedVariance {
   bool is_found = false;                  // at 5 %, one-sided
   VarianceByReach field;                  // at the reach of greatest gain, interpolated by a parabola
   double reach_factor = 1.0;        // standard error of the reach as a factor, by a jackknife over pairs
-  PooledParameter key_point;        // variance shared by matches of one key point, px^2; NaN: not known
+  PooledParameter key_point;        // variance shared by matches of one key point, px^2; NaN: too few repeats
   bool is_key_point_found = false;  // at 1 %, one-sided
   PooledParameter own;              // of each match alone, without the parts that were found, px^2
   VarianceByReach unseen;           // expected if no field is found, with the image diagonal as reach, px^2

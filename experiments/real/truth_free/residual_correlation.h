@@ -14,8 +14,8 @@ inline constexpr std::array<double, 5> kDistanceEdgesPx = {0.0, 1.0, 4.0, 16.0, 
 inline constexpr size_t kNumDistances = kDistanceEdgesPx.size() - 1;
 
 // Sums over the pairs of inliers at each distance, for one image pair: the product of their residuals over
-// the mean of r^2. Residuals are r = g / |J|, which have the same sign on the same side of the epipolar
-// lines.
+// the mean of r^2. Residuals are r = g / |J| over the match's noise_scale; they have the same sign on the
+// same side of the epipolar lines.
 struct ResidualProducts {
   std::array<double, kNumDistances> sums{};
   std::array<double, kNumDistances> counts{};

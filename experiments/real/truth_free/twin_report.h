@@ -45,7 +45,8 @@ struct TwinReport {
 };
 
 // `folder`: where the templates of the scene will be. `num_twins`: twins per pair of each kind. The values of
-// each pair and each twin are a step. Depends only on the arguments.
+// each pair and each twin are a step. Random streams depend on the seed and the names of scene and pairs;
+// those of simulated twins on the pair's number in place of its name.
 TwinReport MakeTwinReport(const TwinSource& source, const MotionEstimator& estimator,
                           const std::string& folder, double assumed_sigma_px, std::uint64_t seed,
                           int num_twins, KeptSteps* steps = nullptr);
