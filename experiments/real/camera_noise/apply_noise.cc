@@ -36,7 +36,7 @@ void CheckCamera(const Camera& camera, const CameraNoise& noise, const std::stri
                   of.height, of.fx, of.fy, of.cx, of.cy));
 }
 
-// The faults that are removed; the readout alone or the others.
+// The faults that the file removes: only the readout, or all others.
 FaultVector ListRemoved(const CameraNoise& noise, bool is_readout) {
   FaultVector faults = FaultVector::Zero();
   for (const CameraCorrection& each : noise.corrections) {
@@ -46,7 +46,7 @@ FaultVector ListRemoved(const CameraNoise& noise, bool is_readout) {
   return faults;
 }
 
-// Over sigma^2.
+// The file's variances, divided by sigma^2.
 KnownVariances FindKnownVariances(const CameraNoise& noise) {
   const double key_point = noise.key_point_px / noise.sigma_px.value;
   KnownVariances known;
@@ -61,7 +61,7 @@ KnownVariances FindKnownVariances(const CameraNoise& noise) {
 }
 
 bool IsOfCamera(const MotionProblem& problem, const CameraNoise& noise) {
-  // Cameras without what is removed differ from that of the file; ApplyNoise has compared them before.
+  // Corrected cameras differ from that of the file; ApplyNoise compared them before the correction.
   return RemovesAnything(noise) ||
          (IsSameCamera(problem.camera1, noise.camera) && IsSameCamera(problem.camera2, noise.camera));
 }

@@ -34,7 +34,7 @@ std::vector<PairAnswers> AnswerAll(const PairSet& set, const MotionEstimator& es
   return answers;
 }
 
-// The pairs of the first one's camera.
+// The pairs of the same camera as the first pair.
 PairSet SelectCamera(const PairSet& set) {
   PairSet selected{set.name, {}};
   if (set.pairs.empty()) return selected;
@@ -141,7 +141,7 @@ void TakeFaults(const CalibrationReport& report, const std::vector<PairAnswers>&
   TakeUncertainty(report, estimates, noise);
 }
 
-// The report with what a noise file removes in place of what is named.
+// The report, with the corrections of a noise file in place of those of the named faults.
 CalibrationReport TakeRemoved(CalibrationReport report, const CameraNoise& noise) {
   for (FaultReport& each : report.faults) {
     const auto found =
@@ -151,7 +151,8 @@ CalibrationReport TakeRemoved(CalibrationReport report, const CameraNoise& noise
   return report;
 }
 
-// Of residuals that are not divided by a power of the size; the cut is that of those that are.
+// Uses residuals that are not divided by a power of the size, of matches that were selected with the
+// division.
 std::vector<SigmaOfSize> PoolSizes(const std::vector<FittedPair>& pairs) {
   std::vector<SigmaOfSize> sizes;
   for (size_t k = 0; k + 1 < std::size(kSizeEdges); ++k) {
@@ -176,7 +177,7 @@ std::vector<SigmaOfSize> PoolSizes(const std::vector<FittedPair>& pairs) {
   return sizes;
 }
 
-// The sum of variances whose estimates are about independent.
+// The sum of two variances whose estimates are nearly independent.
 PooledParameter AddVariances(const PooledParameter& a, const PooledParameter& b) {
   const double half = std::hypot(0.5 * (a.interval.upper - a.interval.lower),
                                  0.5 * (b.interval.upper - b.interval.lower)),
@@ -217,7 +218,7 @@ void TakeNoise(const std::vector<PairAnswers>& answers, NoiseCalibration* calibr
   noise.effective_pairs = shared.own.effective_n;
 }
 
-// NaN where none is said.
+// Median over the pairs; NaN if no pair states a time.
 double FindSecondsBetween(const std::vector<PairAnswers>& answers) {
   std::vector<double> seconds;
   for (const PairAnswers& each : answers) {
@@ -226,7 +227,8 @@ double FindSecondsBetween(const std::vector<PairAnswers>& answers) {
   return ComputeMedian(std::move(seconds));
 }
 
-// Tests the displacement that all images share and, where it is found, answers to the pairs without it.
+// Tests for a displacement that all images share. If it is found, the pairs are corrected for it and
+// estimated again.
 void TakeSystematic(const PairSet& set, const MotionEstimator& estimator, std::uint64_t seed,
                     std::vector<PairAnswers>* answers, NoiseCalibration* calibration) {
   const MotionProblem& first = set.pairs.front().problem;

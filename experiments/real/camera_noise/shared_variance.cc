@@ -161,14 +161,14 @@ std::vector<PairMoments> ComputeAllMoments(const std::vector<FittedPair>& pairs,
   return all;
 }
 
-// Of the image, px: of a field that reaches farther, only variance over reach is seen in an image.
+// Diagonal of the image, px. For a longer reach an image determines only the ratio of variance to reach.
 double FindDiagonal(const std::vector<FittedPair>& pairs) {
   return std::hypot(pairs.front().camera.width, pairs.front().camera.height);
 }
 
 constexpr int kLongest = static_cast<int>(kNeighbourLengthsPx.size()) - 1;
 
-// What key points share beside a field of known variance.
+// The variance that matches of one key point share, given the variance of the field.
 void FitKeyPoints(const std::vector<PairMoments>& all, double field, SharedVariance* shared) {
   constexpr int kParts[] = {kOwnPart, kKeyPointPart};
   std::vector<UnitScore> units;
@@ -209,7 +209,7 @@ PooledParameter FitFieldAt(const std::vector<FittedPair>& pairs, double reach_px
   return PoolScoreAlone(units, 0, 0.95);
 }
 
-// Where none is found; what it expects of a field is part of the residuals' variance.
+// Sets `unseen` if no field is found. The expected variance is a part of the residuals' variance.
 void ExpectUnseen(const std::vector<FittedPair>& pairs, SharedVariance* shared) {
   if (shared->is_found) return;
   shared->unseen.reach_px = FindDiagonal(pairs);

@@ -110,7 +110,7 @@ double ComputeSignPValue(const Eigen::MatrixXd& products, std::uint64_t seed) {
   return static_cast<double>(num_as_great) / (kNumSignDraws + 1);
 }
 
-// sum over the same pairs of tr(A_u A_v).
+// Sum of tr(A_u A_v) over pairs without a common image.
 double ComputeTrace(const std::vector<CellScore>& scores) {
   double trace = 0.0;
   for (const CellScore& a : scores) {

@@ -13,8 +13,8 @@ namespace rcme {
 namespace {
 
 constexpr PooledParameter kUnknown = {kNaN, kNaN, {-kNaN, kNaN}, 0.0};
-constexpr double kTooWide = 50.0;  // times what is nominal: half of an interval that says nothing
-// Decomposed from projections the intrinsics of one camera differ by rounding.
+constexpr double kTooWide = 50.0;  // half-width, in nominal sizes, of an interval that says nothing
+// Intrinsics that are decomposed from projection matrices of one camera differ by rounding.
 bool IsOfCamera(const NamedPair& pair, const Camera& camera) {
   const auto same = [&](const Camera& other) {
     return other.K().isApprox(camera.K(), 1e-4) && other.width == camera.width &&
@@ -75,7 +75,7 @@ TruthFreeVerdict DecideFault(CameraFault fault, const PooledParameter& of) {
   return VerdictOnInterval(of.interval, 0.0, FindNominalRange(fault));
 }
 
-// Further from zero than all of the other interval, to the same side or the other.
+// Whether the interval lies entirely on one side of both zero and the other interval.
 bool IsBeyond(const Interval& interval, const Interval& other) {
   return interval.lower > std::max(0.0, other.upper) || interval.upper < std::min(0.0, other.lower);
 }
@@ -127,7 +127,7 @@ std::string DescribeHalf(CameraFault fault, const PooledParameter& of) {
                      text.unit);
 }
 
-// The fault whose estimate leaves the range of the linear step, in words; empty: none does.
+// Describes a fault whose estimate leaves the range of the linear step; empty if none does.
 std::string OutOfRange(const CalibrationReport& report) {
   for (const FaultReport& each : report.faults) {
     const double greatest = GreatestFault(each.fault, report.camera);

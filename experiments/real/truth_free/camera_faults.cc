@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastDepth = 1e-6;  // in camera 2, of a depth of one in camera 1
 
-// Per pixel of the image, of a point's velocity.
+// Velocity of a point's image, px per unit of time of `velocity`.
 Eigen::Vector2d ImageVelocity(const Camera& camera, const Eigen::Vector3d& point,
                               const Eigen::Vector3d& velocity) {
   const Eigen::Vector2d ray = point.head<2>() / point.z();
@@ -23,7 +23,8 @@ double FindImageRow(const Camera& camera, const Eigen::Vector2d& x_px) {
   return (x_px.y() + 0.5) / camera.height - 0.5;
 }
 
-// All in units of the point's depth in camera 1.
+// Shift of both key points for a readout that takes the whole time between the images. Lengths are in units
+// of the point's depth in camera 1.
 Eigen::Vector4d ShiftByReadout(const Camera& camera1, const Camera& camera2, const RelativePose& pose,
                                const Correspondence& match) {
   const Eigen::Vector3d ray1 = camera1.Ray(match.x1_px), w = VectorFromRotation(pose.R);
@@ -56,7 +57,7 @@ Eigen::Vector2d Distort(const Camera& camera, double k1, const Eigen::Vector2d& 
   return centre + (1.0 + k1 * camera.Ray(x_px).head<2>().squaredNorm()) * (x_px - centre);
 }
 
-// Each round is better by 2 |k1| |ray|^2, a fifth or less.
+// Each round reduces the error by the factor 2 |k1| |ray|^2, usually a fifth or less.
 Eigen::Vector2d Undistort(const Camera& camera, double k1, const Eigen::Vector2d& x_px) {
   constexpr int kRounds = 20;
   const Eigen::Vector2d centre(camera.cx, camera.cy);

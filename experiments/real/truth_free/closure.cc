@@ -44,8 +44,8 @@ LoopJacobian ComputeLoopJacobian(AnsweredLoop loop, size_t k, LoopErrorOf error_
   return jacobian;
 }
 
-// The moves of the closure that the residuals of single matches make, of all pairs of a loop in one row; and
-// which matches share key points.
+// The moves of the closure error by the residuals of single matches, for all pairs of a loop, and which
+// matches share key points.
 class Moves {
  public:
   // `image1`, `image2`: numbers of the pair's images.
@@ -136,7 +136,7 @@ std::vector<UnitValues> ComputeClosures(const std::vector<PairAnswers>& answers,
   std::vector<UnitValues> closures;
   for (const Loop& loop : loops) {
     if (error_of == DirectionClosure && loop.size() != 3) continue;
-    // Of the pairs themselves, or of their twins of one number; empty where one is not answered.
+    // The steps through the pairs, or through their twins of one number; empty if one has no motion.
     const auto steps_of = [&](const auto& choose) {
       std::vector<AnsweredStep> steps;
       for (const LoopStep& step : loop) {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr int kRotationFreedom = 3;  // of a rotation
 
-// The squared distance of each loop, of the pairs and of their twins, which share no error with each other.
+// The squared closure error of each loop, normalised, of the pairs and of their twins. Twins of different
+// numbers share no error.
 struct LoopDistances {
   std::vector<GroupValue> of_pairs, of_twins;
 };

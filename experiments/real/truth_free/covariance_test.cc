@@ -14,7 +14,7 @@ constexpr int kTestResamples = 1000;
 
 using ValueList = std::vector<double> UnitValues::*;
 
-// The median of a list over that of chi-square.
+// Ratio of the median of a list to the median of chi-square.
 ComparedMedians CompareWithChiSquare(std::span<const TestUnit> units, ValueList list, int degrees_of_freedom,
                                      RandomStream& rng) {
   const double median = ChiSquareQuantile(degrees_of_freedom, 0.5);
@@ -47,7 +47,7 @@ FaultCause FindFaultCause(bool is_of_data, bool is_of_estimator) {
 double UnitsNeeded(const ComparedMedians& ratio, int num_units) {
   const double value = std::log(ratio.value), nominal = std::log(kNominalVariance);
   const double below = value - std::log(ratio.interval.lower), above = std::log(ratio.interval.upper) - value;
-  // By how much the interval has to shrink to be nominal, and to hold one no longer.
+  // Factors by which the interval must shrink to be nominal, and to exclude one.
   const double to_hold = std::max(below / (nominal + value), above / (nominal - value));
   const double to_be_wrong = value > 0.0 ? below / value : above / -value;
   const double shrink = std::abs(value) < nominal ? std::min(to_hold, to_be_wrong) : to_be_wrong;

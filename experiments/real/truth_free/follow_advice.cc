@@ -10,14 +10,14 @@
 namespace rcme {
 namespace {
 
-constexpr int kMostSigmas = 3;  // an estimator that cuts residuals off sees the noise in steps
+constexpr int kMostSigmas = 3;  // an estimator that cuts off residuals finds the noise in several rounds
 
 bool AreWrong(const CovarianceVerdict& covariances) {
   return covariances.verdict == TruthFreeVerdict::kTooSmall ||
          covariances.verdict == TruthFreeVerdict::kTooLarge;
 }
 
-// "covariances hold: spatial_halves 0.9 [0.7, 1.2], simulation 1 [0.9, 1.1]".
+// "covariances: holds (spatial_halves 0.9 [0.7, 1.2], simulation 1 [0.9, 1.1])".
 std::string DescribeCovariances(const SetReport& report) {
   std::string ranges;
   for (const TruthFreeTest& test : report.tests) {
@@ -32,7 +32,7 @@ std::string DescribeCamera(const SetReport& report) {
   return fmt::format("camera: {}", DescribeCalibration(report.calibration));
 }
 
-// By what the tests that decide are off, the worst of them, in powers of e.
+// The largest |log ratio| of the tests that count.
 double Misfit(const SetReport& report) {
   double worst = 0.0;
   for (const TruthFreeTest& test : report.tests) {
@@ -97,7 +97,7 @@ class Follower {
     now_ = std::move(after);
   }
 
-  // The greatest ratio among the tests that say so: what the covariances have to be multiplied by.
+  // The factor for the covariances: the greatest ratio among the tests behind the verdict.
   double MissingFactor(const SetReport& report) const {
     double factor = 0.0;
     for (const TruthFreeTest& test : report.tests) {

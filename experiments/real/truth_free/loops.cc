@@ -15,7 +15,7 @@ struct Way {
   LoopStep step;
 };
 
-// Images as numbers in the order of their names, and the ways from each.
+// The graph of images, numbered in the order of their names, with the edges from each.
 class Network {
  public:
   explicit Network(const std::vector<NamedPair>& pairs) {
@@ -46,7 +46,7 @@ class Network {
   std::vector<std::vector<Way>> ways_;
 };
 
-// The shortest ways from one image, of at most `farthest` steps.
+// The shortest paths from one image, of at most `farthest` steps.
 class Tree {
  public:
   Tree(const Network& network, size_t root, size_t farthest) {
@@ -67,8 +67,8 @@ class Tree {
     return images;
   }
 
-  // root -> u, a pair u -> v, v -> root, where that has `length` steps and meets no image twice; u is in the
-  // tree.
+  // The loop root -> u, the pair u -> v, v -> root if it has `length` steps and visits no image twice, else
+  // an empty one. u must be in the tree.
   Loop LoopThrough(size_t u, const Way& to_v, size_t length) const {
     const auto at_v = branches_.find(to_v.to);
     if (at_v == branches_.end() || branches_.at(u).distance + at_v->second.distance + 1 != length) return {};
@@ -99,7 +99,7 @@ class Tree {
 // Sums of loops, as sets of pairs, modulo two.
 class Sums {
  public:
-  // False: the loop is the sum of loops that were added.
+  // Returns false if the loop is the sum of loops added before.
   bool Add(const Loop& loop) {
     std::vector<size_t> rest;
     for (const LoopStep& step : loop) rest.push_back(step.pair);
@@ -122,7 +122,7 @@ class Sums {
   std::map<size_t, std::vector<size_t>> with_least_;  // by the least pair in each
 };
 
-// Ways from an image to later ones, that end where a pair leads back to it.
+// Paths from an image to later ones that end where a pair leads back to it.
 class WaysForth {
  public:
   WaysForth(const Network& network, size_t first) : network_(network) {
@@ -131,7 +131,7 @@ class WaysForth {
     }
   }
 
-  // Forth by `num_steps` from the image and back by one. Empty: there is no such way.
+  // `num_steps` steps forward from the image and one back to the first image; empty if there is no such path.
   Loop Find(size_t image, size_t num_steps) {
     if (num_steps == 0) {
       const auto back = back_from_.find(image);

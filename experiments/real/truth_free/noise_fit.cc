@@ -22,7 +22,7 @@ constexpr size_t kMostForFit = 20;              // pairs that the noise is fitte
 constexpr std::uint32_t kFitTrial = 0xf17;      // no trial of a report has this number
 constexpr std::uint32_t kFitDraws = 3;          // for each of these
 constexpr double kFarLengthsPx[] = {20.0, 40.0, 80.0, 160.0};
-// From no tails to the longest; 0: normal.
+// Of Student's law, from the shortest to the longest tails; 0: normal.
 constexpr double kDegreesOfFreedom[] = {0.0, 20.0, 10.0, 6.0, 4.0, 3.0, 2.5, 2.0, 1.75, 1.5, 1.25, 1.0};
 constexpr int kSizeRounds = 2;
 // Mean correlation that a mosaic of side 2.3 px gives pairs of points up to 1 px apart (area-weighted).
@@ -45,7 +45,7 @@ ResidualPattern ObservedPattern(const std::vector<const AnsweredTrial*>& used) {
   return sum.Take();
 }
 
-// The greatest residual of those that are accepted, in a pair of usual noise.
+// Median over pairs of the largest inlier residual, px, scaled to a pair of median noise.
 double FarthestAccepted(const std::vector<const AnsweredTrial*>& used) {
   std::vector<double> farthest;
   for (const AnsweredTrial* answered : used) {
@@ -56,8 +56,8 @@ double FarthestAccepted(const std::vector<const AnsweredTrial*>& used) {
   return ComputeMedian(std::move(farthest));
 }
 
-// Longer and longer tails, each with the size that the estimator then finds as observed, up to the first that
-// are too long; of the last two the nearer.
+// Tries longer and longer tails, each with the noise scaled until the estimator finds the observed size, up
+// to the first that are too long. Keeps the tails nearest to the observed ones.
 void FitSizeAndTails(const ResidualPattern& observed, const PatternOf& pattern_of, RedrawSettings* noise) {
   double least = std::numeric_limits<double>::infinity();
   RedrawSettings tried = *noise;
@@ -77,8 +77,8 @@ void FitSizeAndTails(const ResidualPattern& observed, const PatternOf& pattern_o
   }
 }
 
-// What the pairs' residuals have in common beyond those of independent noise: at 1 to 64 px by least
-// squares over lengths, the rest of what is in common below 1 px.
+// Fits the correlation of the pairs' residuals in excess of that with independent noise: at 1 to 64 px by
+// least squares over share and length, then the remainder below 1 px.
 void FitShares(const ResidualPattern& observed, const ResidualPattern& independent, RedrawSettings* noise) {
   const auto excess = [&](size_t k) {
     const double difference = observed.products.Correlation(k) - independent.products.Correlation(k);

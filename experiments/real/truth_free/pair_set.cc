@@ -42,7 +42,7 @@ std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan) {
   std::vector<PairSet> all;
   for (const Condition& condition : plan.conditions) {
     PairSet set{NameSet(plan, condition), {}};
-    // A simulated motion is even in time, and each pair has the same; real pairs of a study do not say.
+    // Simulated motions are even in time and take the same time in each pair; for real pairs it is not known.
     const double seconds_between =
         condition.source->SharedScene() ? std::numeric_limits<double>::quiet_NaN() : 1.0;
     for (int trial = 0; trial < condition.num_trials; ++trial) {

@@ -26,7 +26,7 @@ class ScaledCovariance : public MotionEstimator {
   double factor_;
 };
 
-// Every fault with its value and what is allowed, as options are.
+// Every fault as a parameter with its value and allowed range.
 std::vector<Parameter> Parameters(PlantedFaults& faults) {
   std::vector<Parameter> parameters = {
       Parameter::Real("covariance", &faults.covariance, {1e-6, 1e6}, "",
@@ -34,7 +34,7 @@ std::vector<Parameter> Parameters(PlantedFaults& faults) {
       Parameter::Real("sigma", &faults.sigma, {1e-3, 1e3}, "", "the assumed noise level, times")};
   for (const CameraFault fault : kCameraFaults) {
     const auto i = static_cast<Eigen::Index>(fault);
-    // Nobody knows the motion along which rows were read; the last ones are no faults that are named.
+    // A readout needs the true motion, which is not known; the last faults are never named.
     if (fault == CameraFault::kReadoutTime || i >= kNumNamedFaults) continue;
     const double greatest =
         fault == CameraFault::kFocalLength || fault == CameraFault::kDistortion ? 0.5 : 1e3;

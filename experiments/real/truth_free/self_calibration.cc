@@ -19,7 +19,7 @@ constexpr double kFaultLevel = 1.0 - kFaultConfidence;
 
 Eigen::Index FindFaultIndex(CameraFault fault) { return static_cast<Eigen::Index>(fault); }
 
-// The pairs without faults; the readout of each along its answer.
+// The pairs corrected for faults; the readout of each for its estimated motion.
 std::vector<NamedPair> RemoveFrom(const std::vector<PairAnswers>& answers, const FaultVector& faults) {
   const std::vector<double> scales = ReadoutScales(answers);
   std::vector<NamedPair> pairs;
@@ -39,7 +39,7 @@ Answered AnswerPair(NamedPair pair, const MotionEstimator& estimator, std::uint6
   return {std::move(pair), std::move(estimate)};
 }
 
-// Answers to the pairs without faults.
+// Estimates for the pairs corrected for faults.
 std::vector<PairAnswers> AnswerWithout(const FaultVector& faults, const std::vector<PairAnswers>& answers,
                                        const MotionEstimator& estimator, std::uint64_t seed,
                                        KeptSteps* steps) {
@@ -50,7 +50,7 @@ std::vector<PairAnswers> AnswerWithout(const FaultVector& faults, const std::vec
   return corrected;
 }
 
-// Some faults, the others zero, where steps have become small.
+// Converged estimates of some faults, with the others zero.
 struct Fit {
   std::vector<CameraFault> faults;
   FaultVector theta = FaultVector::Zero();
@@ -67,7 +67,7 @@ class Steps {
 
   const FaultEstimates& start() const { return start_; }
 
-  // Nothing where the steps do not become small, or leave what is possible.
+  // nullopt: the steps do not converge or leave the possible range.
   std::optional<Fit> Take(const std::vector<CameraFault>& faults) const {
     Fit fit{faults, FaultVector::Zero(), PoolFaults(start_.units, faults), start_, 0};
     while (fit.num_steps < kMostSteps) {
@@ -113,7 +113,7 @@ std::vector<CameraFault> NamedFaults(const CalibrationReport& report) {
   return named;
 }
 
-// The most certain fault that the pairs show once those of the fit are corrected.
+// The most significant other fault of the pairs after correction for the fit's faults.
 std::optional<CameraFault> FindFurther(const Fit& fit, const std::vector<CameraFault>& asked) {
   std::optional<CameraFault> further;
   double most = 0.0;
@@ -128,7 +128,7 @@ std::optional<CameraFault> FindFurther(const Fit& fit, const std::vector<CameraF
   return further;
 }
 
-// Corrects what is named, and what else is certain beside it, until the test of all faults holds.
+// Corrects the named faults, and further significant ones, until the test of all faults passes.
 void CorrectNamed(const Steps& steps, CalibrationReport* report) {
   std::vector<CameraFault> taken = NamedFaults(*report);
   std::optional<Fit> fit;

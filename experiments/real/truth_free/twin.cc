@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNormalQuartile = 0.6744897501960817;  // median of |Z|
 
-// A key point's stream: by its image and place, folded to 48 bits.
+// Key of a key point's random stream: hash of its image and position, folded to 48 bits.
 std::uint64_t HashKeyPoint(const std::string& image, const Eigen::Vector2d& x_px) {
   Fnv1a hash;
   hash.Add(image);
@@ -34,7 +34,7 @@ class FieldOfImage {
     field_.emplace(field.reach_px, rng);
   }
 
-  // The key point's own noise, of variance (scale sigma)^2, with the field in place of a share of it.
+  // Replaces a share of the key point's own noise, of variance (scale sigma)^2, by the field.
   Eigen::Vector2d Mix(const Eigen::Vector2d& own, const Eigen::Vector2d& x_px, double scale) const {
     if (!field_) return own;
     return std::sqrt(1.0 - share_) * own + std::sqrt(share_) * scale * sigma_px_ * field_->At(x_px);

@@ -29,7 +29,7 @@ double ComputeMean(const std::vector<double>& values) {
   return sum / static_cast<double>(values.size());
 }
 
-// The pairs of a scene with numbers of their images, what was observed, and what the twins of each gave.
+// A pair of a scene: numbers of its images, its values and those of its twins.
 struct ComparedPair {
   std::int64_t image1 = 0, image2 = 0;
   Values observed, twins;
@@ -43,7 +43,8 @@ std::vector<PairEvent> ListPairEvents(const std::vector<ComparedPair>& pairs, si
   return events;
 }
 
-// Of a mean: observed values less what is predicted for the same pair, or for all where twins are not of one.
+// For a mean: observed minus predicted values. The prediction is that for the same pair, or for all pairs if
+// the twins do not belong to pairs.
 std::vector<PairValue> ListPairDifferences(const std::vector<ComparedPair>& pairs, size_t quantity,
                                            bool is_paired, double prediction) {
   std::vector<PairValue> differences;
@@ -56,7 +57,7 @@ std::vector<PairValue> ListPairDifferences(const std::vector<ComparedPair>& pair
   return differences;
 }
 
-// The mean of what twins gave; of paired ones over the pairs that gave something too.
+// The mean over twins; for paired twins the mean over pairs that have a value themselves.
 double ComputePrediction(const std::vector<ComparedPair>& pairs, size_t quantity, bool is_paired_mean) {
   std::vector<double> all;
   for (const ComparedPair& pair : pairs) {

@@ -29,7 +29,7 @@ std::optional<TrialData> MakeExactTrial(const TrialData& pair, const MotionEstim
   const RelativePose& pose = *exact.truth.cam2_from_cam1_true;
   const double sigma_px = takes_answer ? EstimateNoise(pair.problem, estimate) : pair.problem.sigma_px;
   const Eigen::Matrix3d F = ComputeFundamental(pair.problem, pose);
-  // What the answer accepts may lie behind a camera by noise: far points.
+  // Inliers are accepted even behind a camera, where noise can put far points.
   std::vector<bool> is_accepted(exact.problem.matches.size());
   for (const int i : estimate.inliers) is_accepted[static_cast<size_t>(i)] = takes_answer;
   size_t num_right = 0;
@@ -49,7 +49,7 @@ std::optional<TrialData> MakeExactTrial(const TrialData& pair, const MotionEstim
   return exact;
 }
 
-// Of templates whose reference is the answer, in units of their median; the others have 1.
+// Sets the noise of templates whose reference is the estimate, in units of their median; the others keep 1.
 void SetNoiseLevels(TwinSource* source) {
   std::vector<double> sigmas;
   for (const AnsweredTrial& one : source->pairs) {

@@ -33,7 +33,7 @@ Answered Ask(NamedPair pair, const MotionEstimator& estimator, const StreamName&
   return {std::move(pair), std::move(estimate)};
 }
 
-// What is computed of each pair and its twins.
+// The results for one pair and its twins.
 struct PairResults {
   PairAnswers answers;
   UnitValues spatial, random;
@@ -90,7 +90,7 @@ std::string ResultsAsJson(const PairResults& results) {
       .dump();
 }
 
-// The twins' matches are made again.
+// Twins are not stored: their matches are made again.
 PairResults ResultsFrom(const std::string& text, const NamedPair& pair, const ValidationOptions& options) {
   const Json json = ParsePiece(text);
   RequireSize(json, 9);
@@ -122,7 +122,7 @@ std::map<size_t, int> CountLoops(const std::vector<Loop>& loops, const std::vect
   return counts;
 }
 
-// Loops that have a pair in common, directly or by way of others, are of one group.
+// Groups loops that have a pair in common, directly or through other loops.
 std::vector<std::int64_t> GroupLoops(const std::vector<Loop>& loops, size_t num_pairs) {
   DisjointSets sets(num_pairs);
   for (const Loop& loop : loops) {
@@ -189,7 +189,7 @@ ComparedMedians CompareSigma(const std::vector<PairAnswers>& answers, RandomStre
   return RatioOfMedians(units, kConfidence, kResamples, rng);
 }
 
-// Of the assumed sigma: wrong only where the whole interval lies beyond what is nominal.
+// The assumed sigma is wrong only if the whole interval lies outside the nominal range.
 TruthFreeVerdict JudgeSigma(const ComparedMedians& estimated_px, double assumed_px) {
   if (std::isnan(estimated_px.value)) return TruthFreeVerdict::kNoData;
   const Interval ratio = {estimated_px.interval.lower / assumed_px, estimated_px.interval.upper / assumed_px};
