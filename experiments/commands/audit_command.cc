@@ -38,7 +38,7 @@ struct AuditArguments {
   int threads = 0;
 };
 
-// The claims to audit, and what the options have to say of where they are made.
+// The claims to audit. Sets the fields of `options` that depend on their study.
 std::vector<Claim> ListAuditedClaims(const AuditArguments& arguments, AuditOptions* options) {
   if (arguments.study.empty()) {
     options->seed = SeedWithoutStudy(arguments.changes);
@@ -55,7 +55,7 @@ std::vector<Claim> ListAuditedClaims(const AuditArguments& arguments, AuditOptio
   return StudyClaims(plan);
 }
 
-// Of all shards. Where a round is missing, writes which.
+// Merges the parts of all shards. If a round is missing, writes its plan to the file of --round.
 Audit MergeAudit(const std::vector<Claim>& all, const AuditOptions& options,
                  const AuditArguments& arguments) {
   MergedAudit merged = MergeAuditParts(all, options, arguments.shards.parts);
@@ -70,7 +70,7 @@ Audit MergeAudit(const std::vector<Claim>& all, const AuditOptions& options,
   return std::move(merged.audit);
 }
 
-// A check has threads of its own, so that the runner has one.
+// The runner has one thread, as each check has threads of its own.
 constexpr int kChecksAtATime = 1;
 
 void RunAuditPart(const Audit& plan, const AuditArguments& arguments) {

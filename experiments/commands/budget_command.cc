@@ -43,7 +43,7 @@ std::string DescribeEffortEnd(const FoundEffort& found) {
   return "";
 }
 
-// What was found for an estimator, with its times on trials that took no part in the search.
+// The effort found for an estimator, with its times on trials that were not used in the search.
 struct BudgetRow {
   std::string estimator, effort, note;
   Estimate ms;

@@ -90,7 +90,7 @@ void RequireArguments(const ConformArguments& arguments) {
   }
 }
 
-// Nothing: the part of a shard is done.
+// Returns nullopt if this was the part of a shard, which is then done.
 std::optional<AnswerRows> GetAnswers(const ConformArguments& arguments, const StudyPlan& plan,
                                      NewProblem new_problem, Runner* runner) {
   if (!runner->ReadsParts()) {

@@ -128,7 +128,7 @@ std::string TrialsPath(const GateArguments& arguments) {
   return arguments.out + "/trials.sqlite";
 }
 
-// Both versions, or the new one alone, on the trials of a study.
+// Judges both versions, or only the new one, on the trials of a study.
 GateReport GateStudy(const GateArguments& arguments) {
   Study study = LoadChangedStudy(arguments.first, arguments.changes);
   RequireFixedOptions(study, "a gate");
@@ -153,7 +153,7 @@ GateReport GateStudy(const GateArguments& arguments) {
   return report;
 }
 
-// A version on the problems of a result file, against what the file holds of the old one.
+// Runs the new version on the problems of a result file and compares it with the old version's trials there.
 GateReport GateAgainstBaseline(const GateArguments& arguments) {
   const ResultStore baseline = ResultStore::OpenForReading(arguments.first);
   const size_t e = FindInFile(baseline.Description(), arguments.old_name, "--old", arguments.first);

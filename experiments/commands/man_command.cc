@@ -15,7 +15,7 @@
 namespace rcme {
 namespace {
 
-// A text in roff: backslashes and minus signs as they are, no line that begins as a request does.
+// Escapes a text for roff: backslashes, minus signs, and lines that would begin like a request.
 std::string Roff(const std::string& text) {
   std::string roff;
   bool begins_line = true;
@@ -64,7 +64,7 @@ std::string OptionText(const DescribedOption& option) {
   return text + "\n";
 }
 
-// Lines that are indented or empty stay as they are, such as examples; the others are set as text.
+// Indented and empty lines, such as examples, are kept; other lines are set as text.
 std::string FooterText(const std::string& footer) {
   std::string text;
   bool is_literal = false;

@@ -72,7 +72,7 @@ std::vector<NamedTable> MakeMapTables(const MapWork& work, const Runner& runner)
   return tables;
 }
 
-// Writes a file for each of them, and prints the names of the files to people.
+// Writes one file for each table; the result for people lists their names.
 CommandResult WriteMap(const MapArguments& arguments, const std::vector<NamedTable>& tables) {
   std::string paths;
   for (const NamedTable& each : tables) {
@@ -91,7 +91,8 @@ void Map(const MapArguments& arguments) {
   MapWork work = arguments.study.empty() ? WorkOnBuiltInScene(arguments) : WorkOnStudy(arguments);
   work.map.trials = arguments.trials;
   const bool is_part = !arguments.shards.shard.empty(), is_merge = !arguments.shards.parts.empty();
-  if (!is_part && !is_merge) MakeResultFolder(arguments.out);  // minutes before the first table is written
+  // Now, as the first table is written minutes later.
+  if (!is_part && !is_merge) MakeResultFolder(arguments.out);
   Runner runner = MakeRunner(PlanMapWork(work), arguments.shards, arguments.out,
                              FindCheckpointInFolder(arguments.out), arguments.threads);
   if (!is_part && !is_merge) {

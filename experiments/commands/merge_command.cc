@@ -38,10 +38,10 @@ std::string DescribeMissing(const MergeReport& report) {
                      ArrayText(report.missing_shards), report.num_shards);
 }
 
-// Parts of both kinds are refused, whichever of them comes first.
+// Whether any part keeps counts. A mixture of both kinds is then refused, whichever comes first.
 bool KeepCounts(const std::vector<std::string>& parts) { return std::ranges::any_of(parts, KeepsCounts); }
 
-// `text`: what goes to standard output for people and for the shell.
+// `text`: the result as printed in the format table, for people and for the shell.
 CommandResult MakeMergeResult(const MergeArguments& arguments, const MergeReport& report,
                               const std::string& text) {
   Table table{{Column::Count("parts"), Column::Count("trials"), Column::Count("read_twice"),
@@ -53,7 +53,7 @@ CommandResult MakeMergeResult(const MergeArguments& arguments, const MergeReport
   return MakeResult(text, kMergeFormat, {}, table);
 }
 
-// The shards alone go to standard output, for the shell.
+// Prints only the missing shards on standard output, for the shell.
 void CheckMissing(const MergeArguments& arguments) {
   const auto check = KeepCounts(arguments.parts) ? CheckCounts : CheckParts;
   const MergeReport report = check(arguments.parts, arguments.options);
@@ -70,8 +70,8 @@ void CheckMissing(const MergeArguments& arguments) {
   throw EndWith{kTryAgain};
 }
 
-// Of another command than `rcme run` (core/work/part_file.h): which pieces its work has, that command alone
-// knows.
+// Joins parts of a command other than `rcme run` (core/work/part_file.h). Only that command can tell which
+// items of its work are missing.
 void JoinTheParts(const MergeArguments& arguments) {
   if (!arguments.is_partial) {
     throw InputError(

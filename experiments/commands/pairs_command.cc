@@ -54,7 +54,7 @@ std::vector<std::string> GateNames() {
   return names;
 }
 
-// An option that the layout has no use for is not passed over.
+// Refuses an option that does not apply to the layout.
 void CheckApplies(const PairsArguments& arguments) {
   const auto refuse = [&](const char* option, bool is_given, const std::vector<std::string>& layouts) {
     if (!is_given || std::ranges::find(layouts, arguments.layout) != layouts.end()) return;
@@ -80,7 +80,7 @@ void CheckApplies(const PairsArguments& arguments) {
   refuse("--truth-sd", !arguments.truth_sd.empty(), {"kitti", "euroc", "tum", "colmap"});
 }
 
-// All that the pairs depend on but the images' contents.
+// Everything that the pairs depend on except the images' contents.
 std::string DescribePairsIdentity(const PairsArguments& arguments) {
   const DatasetOptions& d = arguments.dataset;
   const PairsOptions& p = arguments.pairs;
@@ -96,7 +96,8 @@ std::string DescribePairsIdentity(const PairsArguments& arguments) {
       p.window > 0 ? fmt::format(" | window {}", p.window) : "");
 }
 
-// A study needs true motions; without any, motions are estimated and covariances checked.
+// The command to suggest next: a study needs true motions; without them motions are estimated and covariances
+// checked.
 std::string NameNextCommand(const std::vector<PairRow>& rows, const std::string& out) {
   const auto is_kept = [](const PairRow& row) { return row.reason == kKeptPair; };
   const bool has_truth = std::ranges::any_of(

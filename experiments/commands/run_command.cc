@@ -64,7 +64,7 @@ std::vector<std::string> NamesOfMissingAnswers() {
   return names;
 }
 
-// Takes nothing out where an estimator cannot be asked again.
+// Removes nothing if an estimator cannot be run again.
 void RemoveForRetry(const StudyPlan& plan, const RunArguments& arguments, ResultStore* store) {
   CheckProcessEstimators(plan.study.estimators);
   const std::map<std::string, MotionStatus> missing = MissingAnswers();
@@ -144,7 +144,7 @@ void RunToPrecision(const StudyPlan& plan, const RunArguments& arguments, Result
   PrintResult(MakeResult(text, kRunFormat, facts, WithIntervalColumns(table)), arguments.format);
 }
 
-// What became of the trials; to people the messages of the run say it.
+// Summary of the run for programs; for people its messages say the same.
 CommandResult MakeRunResult(const StudyPlan& plan, const RunReport& report, const std::string& file) {
   Table table{{Column::Key("study"), Column::Count("conditions"), Column::Count("estimators"),
                Column::Count("trials"), Column::Count("trials_before"), Column::Number("seconds"),

@@ -28,7 +28,8 @@ void WriteTrials(const ResultStore& store, bool with_times, const std::string& o
   file.Finish();
 }
 
-// For people. What is said of probabilities is of all conditions together; without any, nothing.
+// The tables for people. If there are failure probabilities, a table of them for all conditions together
+// follows.
 std::string Tables(const ResultStore& store, const Summary& summary) {
   const std::string text = SummaryAsTable(summary);
   return HasFailureProbabilities(summary) ? text + "\n" + ForecastsAsTable(MeasureFailureForecasts(store))
@@ -50,7 +51,7 @@ void PrintStrata(const Arguments& arguments) {
               arguments.out);
 }
 
-// NAME=TEXT each, the text with whatever it has.
+// Parses NAME=TEXT each; the text may contain any characters.
 Settings ParseLabels(const std::vector<std::string>& texts) {
   Settings labels;
   for (const std::string& text : texts) {

@@ -35,7 +35,7 @@ MarginalQuantity FindQuantity(const std::string& name) {
   return MarginalQuantity::kFailedLessStated;
 }
 
-// What the script has written: the held-out conditions, and the other tables as far as there are any.
+// Reads the tables that the script wrote: the held-out conditions, and other tables if there are any.
 CommandResult ReadSurface(const std::string& folder) {
   const auto path = [&](const std::string& name) {
     return (std::filesystem::path(folder) / (name + ".csv")).string();

@@ -29,7 +29,7 @@ struct TuneArguments : TuningArguments {
   int repeat = 0;
 };
 
-// One shard's part; of its second round where there is one to do.
+// Runs one shard's part of the first round, and of the second if the first is complete.
 void RunPart(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings,
              const TuningWork& work, Runner* runner) {
   const WorkResults merged = MergeParts(work.items, arguments.merged);
@@ -63,12 +63,12 @@ void WriteEstimator(const TuneArguments& arguments, const StudyPlan& plan, const
     provenance.emplace_back("changed", fmt::format("{}", fmt::join(arguments.changes.overrides, ", ")));
   }
   WriteFileWhole(path, EstimatorFileText(spec, provenance));
-  // With its own seed the study would run the trials that the estimator was tuned on.
+  // With its own seed the study would repeat the trials on which the estimator was tuned.
   PrintMessage("{}: estimator {}; next: rcme run STUDY --seed {} --add-estimator {} --out run.sqlite\n", path,
                spec.label, plan.study.seed + 1, path);
 }
 
-// Kept beside the table's file; without one nowhere.
+// The checkpoint lies beside the file of the table; without such a file there is none.
 void RunRepetitions(const TuneArguments& arguments, const StudyPlan& plan, const SettingPlan& settings) {
   const std::string& out = arguments.out;
   if (!out.empty()) CheckIsNoInput(out, {arguments.study});

@@ -34,7 +34,8 @@ struct TwinArguments {
   std::string format = "table";
 };
 
-// Where the files of a scene go: STUDY.yaml names one scene alone, a folder holds those of all.
+// Paths of a scene's files. --out STUDY.yaml names those of a single scene; a folder takes those of all
+// scenes.
 struct TwinPlaces {
   std::filesystem::path study, simulated_study, templates;
 };

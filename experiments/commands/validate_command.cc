@@ -65,7 +65,7 @@ std::vector<PairSet> ReadSets(const std::string& pairs, const ValidateArguments&
   return arguments.num_images > 2 ? SequencesOfStudy(plan, arguments.num_images) : PairSetsOfStudy(plan);
 }
 
-// Of several folders or studies a set has the name of its own before its name.
+// With several folders or studies, the name of each set begins with the name of its folder or study.
 std::vector<PairSet> ReadAllSets(const ValidateArguments& arguments) {
   std::vector<PairSet> all;
   for (const std::string& pairs : arguments.pairs) {
@@ -78,7 +78,7 @@ std::vector<PairSet> ReadAllSets(const ValidateArguments& arguments) {
   return all;
 }
 
-// The chosen estimator, with what is planted in its covariances.
+// The chosen estimator, with the planted factor on its covariances.
 AdvisedEstimator ChooseAdvised(const EstimatorSpec& spec, const PlantedFaults& planted,
                                const std::optional<CameraNoise>& noise) {
   AdvisedEstimator advised;

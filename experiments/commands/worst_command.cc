@@ -32,8 +32,8 @@ struct WorstArguments {
   double claim = -1.0;
 };
 
-// The study with the estimators that are compared alone, in this order, and no conditions but its
-// population's draws.
+// The study with only the compared estimators, in this order, and only the draws of its population as
+// conditions.
 Study MakeSearchStudy(const WorstArguments& arguments) {
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (!study.population || !study.factors.empty() || study.population->design == PointSet::kLatinHypercube)
@@ -54,7 +54,7 @@ Study MakeSearchStudy(const WorstArguments& arguments) {
   return study;
 }
 
-// Draws that are conditions, with their levels.
+// The draws that are conditions, with their levels.
 std::string PoolAsCsv(const Study& study) {
   std::string text = fmt::format("draw,{}\n", fmt::join(ListDrawnKeys(*study.population), ","));
   for (const PopulationDraw& draw : DrawPopulation(study)) {
