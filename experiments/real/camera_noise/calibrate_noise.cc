@@ -57,8 +57,8 @@ double FindCorrection(const CalibrationReport& report, CameraFault fault) {
   return found == report.faults.end() ? 0.0 : found->correction;
 }
 
-// What may be wrong with the intrinsics or the readout; key points of one image are shifted where the test
-// names that, and by nothing that a camera does.
+// The faults that may exist: those of intrinsics and readout. A shift of image 2 is not an error of a camera
+// and counts only if the test names it.
 std::vector<CameraFault> ListUncertain(const CalibrationReport& report, const FaultEstimates& estimates) {
   std::vector<CameraFault> uncertain;
   for (const CameraFault fault : estimates.asked) {
@@ -68,8 +68,8 @@ std::vector<CameraFault> ListUncertain(const CalibrationReport& report, const Fa
   return uncertain;
 }
 
-// The others taken to be zero. Standard deviations are those of the normal law that has the estimates'
-// intervals, which are of few degrees of freedom.
+// Evidence on these faults with the others taken as zero. Standard deviations are those of a normal law with
+// the estimates' intervals, since these come from few degrees of freedom.
 std::optional<FaultEvidence> GatherEvidence(const CalibrationReport& report, const FaultEstimates& estimates,
                                             const std::vector<CameraFault>& faults) {
   const PooledScores pooled = PoolFaults(estimates.units, faults);
@@ -91,8 +91,8 @@ std::optional<FaultEvidence> GatherEvidence(const CalibrationReport& report, con
   return evidence;
 }
 
-// What to take out, and what stays uncertain. Nothing is taken out where what is left is of another kind: a
-// fault that only looks like one of these.
+// Sets the corrections and the remaining uncertainty. Nothing is corrected if the residuals show a fault of
+// another kind, which may only look like one of these.
 void TakeUncertainty(const CalibrationReport& report, const FaultEstimates& estimates, CameraNoise* noise) {
   const std::vector<CameraFault> faults = ListUncertain(report, estimates);
   const std::optional<FaultEvidence> evidence = GatherEvidence(report, estimates, faults);
@@ -120,7 +120,7 @@ void TakeUncertainty(const CalibrationReport& report, const FaultEstimates& esti
   }
 }
 
-// What all faults are beside each other once those that are named are corrected.
+// Sets the joint estimates of all faults from pairs that are corrected for the named ones.
 void TakeFaults(const CalibrationReport& report, const std::vector<PairAnswers>& corrected,
                 CameraNoise* noise) {
   const FaultEstimates estimates = EstimateFaults(corrected);

@@ -25,7 +25,7 @@ Estimate EstimateFrom(const PooledParameter& of, double scale = 1.0) {
   return {scale * of.value, {scale * of.interval.lower, scale * of.interval.upper}, kNaN};
 }
 
-// Of a variance; an interval that reaches below zero begins there.
+// The root of a variance; an interval that reaches below zero begins at zero.
 Estimate RootEstimate(const PooledParameter& variance) {
   const auto root = [](double x) { return std::sqrt(std::max(0.0, x)); };
   return {root(variance.value), {root(variance.interval.lower), root(variance.interval.upper)}, kNaN};
@@ -56,7 +56,8 @@ void AddSharedRows(const NoiseCalibration& calibration, std::vector<NoiseRow>* r
   }
 }
 
-// What is more probable than not is taken out, whether the test names it or not.
+// Says whether the test names the fault and what is removed: a fault that is more probable than not is
+// removed even if it is not named.
 std::string FaultState(const CameraCorrection& correction, const CalibrationReport& report) {
   const auto found = std::ranges::find(report.faults, kCameraFaults[correction.fault], &FaultReport::fault);
   const bool is_named = found != report.faults.end() && IsFault(found->verdict);

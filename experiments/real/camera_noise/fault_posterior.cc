@@ -29,7 +29,7 @@ int CountFaults(unsigned set, int num_faults) {
   return count;
 }
 
-// t of step `size`, 0 to kNumSizes - 1, of the faults of a set; zero of the others.
+// The prior standard deviations t at step `size`, 0 to kNumSizes - 1: for faults in the set; zero for others.
 Eigen::VectorXd FindSizes(const FaultEvidence& evidence, unsigned set, int size) {
   Eigen::VectorXd sizes = Eigen::VectorXd::Zero(evidence.estimates.size());
   const double x = static_cast<double>(size) / (kNumSizes - 1);
@@ -85,7 +85,7 @@ std::vector<FaultModel> FitModels(const FaultEvidence& evidence) {
   return models;
 }
 
-// Of the models, adding up to one, in their order.
+// Posterior weights of the models, in their order, with sum one.
 std::vector<double> ComputeWeights(const std::vector<FaultModel>& models) {
   double greatest = -std::numeric_limits<double>::infinity();
   for (const FaultModel& model : models) greatest = std::max(greatest, model.log_weight);

@@ -40,7 +40,7 @@ MatchScores KeepFirstOfEach(const MatchScores& scores) {
   return kept;
 }
 
-// A pair of equations and what they say of the second unknown, the first eliminated.
+// Score and information of the second unknown of two equations, with the first eliminated.
 UnitScore Eliminate(const ImageNumbers& images, const Eigen::Vector2d& q, const Eigen::Matrix2d& T,
                     const Eigen::Matrix2d& M, double variance) {
   const Eigen::Matrix2d weighted = M.ldlt().solve(T) / (2.0 * variance * variance);
@@ -52,7 +52,7 @@ UnitScore Eliminate(const ImageNumbers& images, const Eigen::Vector2d& q, const 
           Eigen::MatrixXd::Constant(1, 1, is_known ? information : 0.0)};
 }
 
-// Of the field at one reach.
+// Score and information of the field's variance at one reach.
 UnitScore TakeField(const FittedPair& pair, const ResidualMoments& moments, int length) {
   const int parts[] = {kOwnPart, kFirstLengthPart + length};
   const Eigen::Matrix2d T = moments.T(parts, parts);
@@ -73,7 +73,7 @@ double ComputeGain(const std::vector<UnitScore>& units, size_t left_out) {
 
 using UnitsByReach = std::map<double, std::vector<UnitScore>>;
 
-// log reach at the top of the parabola through the greatest gain and its neighbours.
+// log reach at the maximum of the parabola through the greatest gain and its neighbours.
 double FindLogReach(const UnitsByReach& units, size_t left_out) {
   std::vector<double> at, gains;
   for (const auto& [reach, of_reach] : units) {
@@ -89,7 +89,7 @@ double FindLogReach(const UnitsByReach& units, size_t left_out) {
 
 constexpr size_t kLeaveNoneOut = static_cast<size_t>(-1);
 
-// Leaving out one pair at a time; the factor of one standard error.
+// Standard error of the reach as a factor, by a jackknife that leaves out one pair at a time.
 double ComputeReachFactor(const UnitsByReach& units, size_t num_pairs) {
   double sum = 0.0, squares = 0.0;
   for (size_t i = 0; i < num_pairs; ++i) {
@@ -101,14 +101,14 @@ double ComputeReachFactor(const UnitsByReach& units, size_t num_pairs) {
   return std::exp(std::sqrt((n - 1.0) / n * std::max(0.0, squares - sum * sum / n)));
 }
 
-// score / information^1/2, which has about the variance 1 where nothing is shared, within +-3: a pair of a
-// few wrong matches, or of a field much larger than the others', counts as one pair.
+// score / information^1/2, clipped to +-3. Its variance is about 1 if nothing is shared. The clipping limits
+// the influence of a pair with wrong matches or with a field much larger than the others'.
 double Standardise(const UnitScore& unit) {
   const double information = unit.information(0, 0);
   return information > 0.0 ? std::clamp(unit.score(0) / std::sqrt(information), -3.0, 3.0) : 0.0;
 }
 
-// One-sided test of the mean of standardised scores, by their scatter.
+// One-sided test whether the mean of the standardised scores exceeds zero, by their scatter.
 bool IsAbove(std::vector<UnitScore> units, double level) {
   for (UnitScore& unit : units) {
     unit.score(0) = Standardise(unit);
@@ -117,8 +117,9 @@ bool IsAbove(std::vector<UnitScore> units, double level) {
   return !units.empty() && PoolScoreAlone(units, 0, 1.0 - 2.0 * level).interval.lower > 0.0;
 }
 
-// Of each pair, at the reach where the standardised scores of the others are greatest: choosing it makes no
-// score of the pair greater, so that the test of their mean is one test, not one of each reach.
+// The score of each pair at the reach where the sum of the other pairs' standardised scores is greatest. The
+// choice does not depend on the pair's own score, so testing the mean needs no correction for several
+// reaches.
 std::vector<UnitScore> TakeAtReachOfOthers(const UnitsByReach& units) {
   std::map<double, double> sums;
   for (const auto& [reach, of_reach] : units) {
