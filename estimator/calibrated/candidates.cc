@@ -38,7 +38,7 @@ std::vector<Mode> Distinct(std::vector<Mode> modes, size_t count) {
 // that starts at too wide a scale may end in a compromise between two motions.
 double StartScale(const MatchBlocks& matches, const Mode& mode) {
   MatchTermLists terms;
-  EvaluateTerms(matches, mode.pose, &terms);
+  EvaluateTerms(matches, mode.pose, &terms, kScaleMatches);
   const auto n = static_cast<size_t>(std::min(matches.num_matches(), kScaleMatches));
   const MixtureParameters& m = mode.mixture;
   const double wrong = (1.0 - m.inlier_ratio) * m.outlier_density;
@@ -118,7 +118,7 @@ std::vector<Mode> AtScale(const MatchBlocks& matches, const MixturePrior& prior,
                           double scale) {
   for (Mode& mode : modes) {
     mode.mixture.scale = scale;
-    mode.log_likelihood = SumPosterior(matches, mode.used, prior, mode.pose, mode.mixture).log_likelihood;
+    mode.log_likelihood = SumLogPosterior(matches, mode.used, prior, mode.pose, mode.mixture);
   }
   return modes;
 }

@@ -58,6 +58,20 @@ MixtureSums SumPosterior(const MatchBlocks& matches, const MatchMask& mask, cons
   return sums;
 }
 
+Vector5d SumPosteriorGradient(const MatchBlocks& matches, const MatchMask& mask, const MixturePrior& prior,
+                              const RelativePose& pose, const MixtureParameters& parameters) {
+  Vector5d gradient = SumMixtureGradient(matches, mask, pose, parameters);
+  if (prior.motion != nullptr) gradient += EvaluatePrior(*prior.motion, pose).gradient;
+  return gradient;
+}
+
+double SumLogPosterior(const MatchBlocks& matches, const MatchMask& mask, const MixturePrior& prior,
+                       const RelativePose& pose, const MixtureParameters& parameters) {
+  double log_likelihood = SumLogLikelihood(matches, mask, pose, parameters);
+  if (prior.motion != nullptr) log_likelihood -= EvaluatePrior(*prior.motion, pose).cost;
+  return log_likelihood;
+}
+
 ModeFit::ModeFit(const MatchBlocks& matches, const MixturePrior& prior, Mode* mode, MixtureUpdate update)
     : matches_(matches), prior_(prior), mode_(mode), update_(update), num_used_(CountIn(mode->used)) {
   at_ = SumPosterior(matches_, mode->used, prior_, mode->pose, mode->mixture);

@@ -23,6 +23,11 @@ struct MixturePrior {
 // and hessian.
 MixtureSums SumPosterior(const MatchBlocks& matches, const MatchMask& mask, const MixturePrior& prior,
                          const RelativePose& pose, const MixtureParameters& parameters);
+// Its gradient alone and its log_likelihood alone, with the same bits in less time.
+Vector5d SumPosteriorGradient(const MatchBlocks& matches, const MatchMask& mask, const MixturePrior& prior,
+                              const RelativePose& pose, const MixtureParameters& parameters);
+double SumLogPosterior(const MatchBlocks& matches, const MatchMask& mask, const MixturePrior& prior,
+                       const RelativePose& pose, const MixtureParameters& parameters);
 
 // Whether a fit changes the mixture, too (its scale only if MixturePrior::estimates_scale).
 enum class MixtureUpdate { kNone, kAll };

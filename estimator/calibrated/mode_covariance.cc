@@ -56,7 +56,7 @@ Matrix5d WidenedForFew(const Matrix5d& root, const Matrix5d& inverse, const Mode
 
 Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode, const MixturePrior& prior) {
   const auto gradient_at = [&](const Vector5d& step) {
-    return SumPosterior(matches, mode.used, prior, Retract(mode.pose, step), mode.mixture).gradient;
+    return SumPosteriorGradient(matches, mode.used, prior, Retract(mode.pose, step), mode.mixture);
   };
   const Matrix5d root = mode.inverse_hessian.llt().matrixL();
   Matrix5d whitened;
@@ -133,7 +133,7 @@ Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOpti
                               const Mode& mode, const Matrix5d& inverse_of_observed) {
   return CalibrationCovariance(
       problem, options.calibration, inverse_of_observed, [&](const MotionProblem& changed) {
-        return SumMixture(MatchBlocks(changed), mode.used, mode.pose, mode.mixture).gradient;
+        return SumMixtureGradient(MatchBlocks(changed), mode.used, mode.pose, mode.mixture);
       });
 }
 

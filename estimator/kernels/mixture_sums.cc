@@ -27,6 +27,7 @@ struct MixtureModel {
 };
 // log_likelihood, num_right, sum_squares, num_wrong_near, then gradient and the Hessian's lower triangle.
 inline constexpr int kNumScalars = 4, kNumMixtureSums = kNumScalars + 20;
+enum class WantedSums { kAll, kLogLikelihood, kGradient };
 
 }  // namespace rcme
 #endif
@@ -57,6 +58,24 @@ HWY_INLINE NoiseScales LoadNoiseScales(const MatchBlocks& matches, int block, in
   return {Load(scales.scale + lane), Load(scales.inverse + lane)};
 }
 
+// The mixture's constants. They are computed once: within the loop over the matches the compiler would divide
+// again for every block.
+struct MixtureConstants {
+  Vec inverse_s2, inverse_noise;  // 1 / s^2; 1 / (s times the noise of the angle between two rays)
+  Vec inverse_square;             // 1 / (s^2 dof), dof the degrees of freedom
+  Vec inlier, outlier;            // w C / s and (1 - w) q
+  Vec weight;                     // 2k / dof
+  int power;                      // k
+  HWY_INLINE MixtureConstants(const MixtureParameters& m, double inverse_noise_rad)
+      : inverse_s2(Set(1.0 / (m.scale * m.scale))),
+        inverse_noise(Set(inverse_noise_rad / m.scale)),
+        inverse_square(Set(1.0 / m.noise.dof()) * inverse_s2),
+        inlier(Set(m.inlier_ratio * m.noise.peak / m.scale)),
+        outlier(Set((1.0 - m.inlier_ratio) * m.outlier_density)),
+        weight(Set(2.0 * m.noise.power / m.noise.dof())),
+        power(m.noise.power) {}
+};
+
 // The terms of the density at some matches, r = g / n. For a match with noise scale w, the caller passes n w
 // for n, so that r is r'.
 struct MixtureTerms {
@@ -65,25 +84,24 @@ struct MixtureTerms {
 };
 // Divisions and roots cost the most time. So c(z)^(-1/2) = 1 + min(z / s + 1, 0)^2 is a ratio of polynomials
 // in the depth's `along` and sqrt(square), 1 + u^2 / dof one in g and n^2, and three inverses come from one.
-HWY_INLINE MixtureTerms EvaluateMixture(Vec g, Vec n2, const DepthAngle& depth, double inverse_noise_rad,
-                                        const NoiseScales& noise, const MixtureParameters& m) {
-  const Vec one = Set(1.0), inverse_s2 = Set(1.0 / (m.scale * m.scale)), g2 = g * g;
-  const Vec inverse_noise = Set(inverse_noise_rad / m.scale) * noise.inverse;
+HWY_INLINE MixtureTerms EvaluateMixture(Vec g, Vec n2, const DepthAngle& depth, const NoiseScales& noise,
+                                        const MixtureConstants& m) {
+  const Vec one = Set(1.0), g2 = g * g, inverse_noise = m.inverse_noise * noise.inverse;
   const Vec beyond = Lesser(FusedMulAdd(depth.along, inverse_noise, hn::Sqrt(depth.square)), Set(0.0));
-  const Vec e = FusedMulAdd(beyond, beyond, depth.square);                   // square c(z)^(-1/2)
-  const Vec q = FusedMulAdd(g2, Set(1.0 / m.noise.dof()) * inverse_s2, n2);  // n^2 (1 + u^2 / dof)
+  const Vec e = FusedMulAdd(beyond, beyond, depth.square);  // square c(z)^(-1/2)
+  const Vec q = FusedMulAdd(g2, m.inverse_square, n2);      // n^2 (1 + u^2 / dof)
   const Vec qe = q * e, inverse_all = one / (n2 * qe);
   const Vec d = depth.square * (inverse_all * (n2 * q)), inverse_q = n2 * (inverse_all * (n2 * e));
   MixtureTerms terms;
   terms.inverse_n2 = inverse_all * qe;
   terms.r2 = g2 * terms.inverse_n2;
-  const Vec inlier = Set(m.inlier_ratio * m.noise.peak / m.scale) * Power(inverse_q, m.noise.power) * (d * d);
-  terms.total = inlier + Set((1.0 - m.inlier_ratio) * m.outlier_density) * noise.scale;
+  const Vec inlier = m.inlier * Power(inverse_q, m.power) * (d * d);
+  terms.total = inlier + m.outlier * noise.scale;
   terms.right = inlier / terms.total;
-  terms.weight = Set(2.0 * m.noise.power / m.noise.dof()) * inverse_q;
+  terms.weight = m.weight * inverse_q;
   // psi' = v (2 / (1 + u^2 / dof) - 1), psi^2 = v^2 u^2
   const Vec bend = FusedMulSub(Set(2.0), inverse_q, one);
-  const Vec doubt = (one - terms.right) * (terms.weight * (terms.r2 * inverse_s2));
+  const Vec doubt = (one - terms.right) * (terms.weight * (terms.r2 * m.inverse_s2));
   terms.curvature = terms.right * terms.weight * Greater(bend - doubt, Set(0.6));
   return terms;
 }
@@ -108,16 +126,35 @@ HWY_INLINE void EvaluateSlopes(const MixtureModel& model, const Matches& m, cons
   }
 }
 
-template <bool are_scaled>
+// The scalar sums but the first one, the product of the densities.
+HWY_INLINE void AddScalars(const MixtureTerms& terms, Vec right, Vec weight, Vec noise2, Mask is_used,
+                           Vec* sums) {
+  sums[1] = sums[1] + right;
+  sums[2] = FusedMulAdd(weight, terms.r2, sums[2]);
+  const Mask is_near = hn::And(is_used, terms.r2 * noise2 <= Set(kNearResidual * kNearResidual));
+  sums[3] = sums[3] + hn::IfThenElseZero(is_near, Set(1.0) - terms.right);
+}
+
+HWY_INLINE void AddHessian(Vec curvature, const Vec* slopes, Vec* sums) {
+  for (int row = 0, i = kNumScalars + 5; row < 5; ++row) {
+    const Vec weighted = curvature * slopes[row];
+    for (int col = 0; col <= row; ++col, ++i) sums[i] = FusedMulAdd(weighted, slopes[col], sums[i]);
+  }
+}
+
+// Sums that are not wanted are zero; the others have the same bits whichever are wanted.
+template <bool are_scaled, WantedSums wanted>
 void SumMixtureOver(const MatchBlocks& matches, const MatchMask& mask, const MixtureModel& model,
                     const MixtureParameters& parameters, double* totals) {
+  constexpr bool has_likelihood = wanted != WantedSums::kGradient;
   alignas(64) double partial[kNumMixtureSums][kBlockSize];
-  const Vec one = Set(1.0), zero = Set(0.0), inverse_s2 = Set(1.0 / (parameters.scale * parameters.scale));
+  const Vec one = Set(1.0), zero = Set(0.0);
+  const MixtureConstants constants(parameters, model.inverse_noise_rad);
   for (int lane = 0; lane < kBlockSize; lane += kLanes) {
     Vec sums[kNumMixtureSums], product = one;
     for (Vec& sum : sums) sum = zero;
     for (int b = 0; b < matches.num_blocks(); ++b) {
-      if (b % 8 == 0) {
+      if (has_likelihood && b % 8 == 0) {
         sums[0] = sums[0] + ComputeLog(Tag(), product);
         product = one;
       }
@@ -129,27 +166,21 @@ void SumMixtureOver(const MatchBlocks& matches, const MatchMask& mask, const Mix
       const DepthAngle depth = Least(EvaluateDepths(model.pose, model.rays, m));
       const NoiseScales noise = LoadNoiseScales<are_scaled>(matches, b, lane);
       const Vec noise2 = noise.scale * noise.scale;
-      const MixtureTerms terms = EvaluateMixture(c.g, SquaredGradient(c) * noise2, depth,
-                                                 model.inverse_noise_rad, noise, parameters);
+      const MixtureTerms terms = EvaluateMixture(c.g, SquaredGradient(c) * noise2, depth, noise, constants);
+      if constexpr (has_likelihood) product = product * hn::IfThenElse(is_used, terms.total, one);
+      if constexpr (wanted == WantedSums::kLogLikelihood) continue;
       const Vec u = c.g * terms.inverse_n2;
       Vec slopes[5];
       EvaluateSlopes(model, m, c, u * noise2, slopes);
-      const Vec right = hn::IfThenElseZero(is_used, terms.right);
-      product = product * hn::IfThenElse(is_used, terms.total, one);
-      const Vec weight = right * terms.weight;
-      sums[1] = sums[1] + right;
-      sums[2] = FusedMulAdd(weight, terms.r2, sums[2]);
-      const Mask is_near = hn::And(is_used, terms.r2 * noise2 <= Set(kNearResidual * kNearResidual));
-      sums[3] = sums[3] + hn::IfThenElseZero(is_near, one - terms.right);
-      const Vec pull = weight * u * inverse_s2;
-      const Vec curvature = hn::IfThenElseZero(is_used, terms.curvature) * terms.inverse_n2 * inverse_s2;
+      const Vec right = hn::IfThenElseZero(is_used, terms.right), weight = right * terms.weight;
+      const Vec pull = weight * u * constants.inverse_s2;
       for (int k = 0; k < 5; ++k) {
         sums[kNumScalars + k] = FusedMulAdd(pull, slopes[k], sums[kNumScalars + k]);
       }
-      for (int row = 0, i = kNumScalars + 5; row < 5; ++row) {
-        const Vec weighted = curvature * slopes[row];
-        for (int col = 0; col <= row; ++col, ++i) sums[i] = FusedMulAdd(weighted, slopes[col], sums[i]);
-      }
+      if constexpr (wanted == WantedSums::kGradient) continue;
+      AddScalars(terms, right, weight, noise2, is_used, sums);
+      const Vec curvature = hn::IfThenElseZero(is_used, terms.curvature);
+      AddHessian(curvature * terms.inverse_n2 * constants.inverse_s2, slopes, sums);
     }
     sums[0] = sums[0] + ComputeLog(Tag(), product);
     for (int i = 0; i < kNumMixtureSums; ++i) Store(sums[i], partial[i] + lane);
@@ -157,15 +188,29 @@ void SumMixtureOver(const MatchBlocks& matches, const MatchMask& mask, const Mix
   for (int i = 0; i < kNumMixtureSums; ++i) totals[i] = SumOfEight(partial[i]);
 }
 
+template <bool are_scaled>
+void SumWanted(const MatchBlocks& matches, const MatchMask& mask, const MixtureModel& model,
+               const MixtureParameters& parameters, WantedSums wanted, double* totals) {
+  switch (wanted) {
+    case WantedSums::kAll:
+      return SumMixtureOver<are_scaled, WantedSums::kAll>(matches, mask, model, parameters, totals);
+    case WantedSums::kLogLikelihood:
+      return SumMixtureOver<are_scaled, WantedSums::kLogLikelihood>(matches, mask, model, parameters, totals);
+    case WantedSums::kGradient:
+      return SumMixtureOver<are_scaled, WantedSums::kGradient>(matches, mask, model, parameters, totals);
+  }
+}
+
 void SumMixtureOverMatches(const MatchBlocks& matches, const MatchMask& mask, const MixtureModel& model,
-                           const MixtureParameters& parameters, double* totals) {
-  if (matches.noise_scales().empty()) return SumMixtureOver<false>(matches, mask, model, parameters, totals);
-  SumMixtureOver<true>(matches, mask, model, parameters, totals);
+                           const MixtureParameters& parameters, WantedSums wanted, double* totals) {
+  if (matches.noise_scales().empty())
+    return SumWanted<false>(matches, mask, model, parameters, wanted, totals);
+  SumWanted<true>(matches, mask, model, parameters, wanted, totals);
 }
 
 // `lists`: residual, depth, five derivatives, without noise scales.
-void ListTerms(const MatchBlocks& matches, const MixtureModel& model, double* const* lists) {
-  for (int b = 0; b < matches.num_blocks(); ++b) {
+void ListTerms(const MatchBlocks& matches, int num_blocks, const MixtureModel& model, double* const* lists) {
+  for (int b = 0; b < num_blocks; ++b) {
     for (int lane = 0; lane < kBlockSize; lane += kLanes) {
       const Matches m = LoadMatches(matches[b], lane);
       const Constraint c = EvaluateConstraint(Broadcast{model.F}, m);
@@ -246,7 +291,7 @@ MixtureSums SumMixture(const MatchBlocks& matches, const MatchMask& mask, const 
                        const MixtureParameters& parameters) {
   double totals[kNumMixtureSums];
   HWY_DYNAMIC_DISPATCH(SumMixtureOverMatches)
-  (matches, mask, ModelAt(matches, pose, true), parameters, totals);
+  (matches, mask, ModelAt(matches, pose, true), parameters, WantedSums::kAll, totals);
   MixtureSums sums{totals[0], totals[1], totals[2], totals[3], Vector5d::Zero(), Matrix5d::Zero()};
   sums.gradient = Eigen::Map<const Vector5d>(totals + kNumScalars);
   for (int row = 0, i = kNumScalars + 5; row < 5; ++row) {
@@ -255,8 +300,26 @@ MixtureSums SumMixture(const MatchBlocks& matches, const MatchMask& mask, const 
   return sums;
 }
 
-void EvaluateTerms(const MatchBlocks& matches, const RelativePose& pose, MatchTermLists* terms) {
-  const size_t size = static_cast<size_t>(matches.num_blocks()) * kBlockSize;
+Vector5d SumMixtureGradient(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
+                            const MixtureParameters& parameters) {
+  double totals[kNumMixtureSums];
+  HWY_DYNAMIC_DISPATCH(SumMixtureOverMatches)
+  (matches, mask, ModelAt(matches, pose, true), parameters, WantedSums::kGradient, totals);
+  return Eigen::Map<const Vector5d>(totals + kNumScalars);
+}
+
+double SumLogLikelihood(const MatchBlocks& matches, const MatchMask& mask, const RelativePose& pose,
+                        const MixtureParameters& parameters) {
+  double totals[kNumMixtureSums];
+  HWY_DYNAMIC_DISPATCH(SumMixtureOverMatches)
+  (matches, mask, ModelAt(matches, pose, false), parameters, WantedSums::kLogLikelihood, totals);
+  return totals[0];
+}
+
+void EvaluateTerms(const MatchBlocks& matches, const RelativePose& pose, MatchTermLists* terms,
+                   int most_matches) {
+  const int num_blocks = (std::min(most_matches, matches.num_matches()) + kBlockSize - 1) / kBlockSize;
+  const size_t size = static_cast<size_t>(num_blocks) * kBlockSize;
   double* lists[7];
   size_t k = 0;
   for (std::vector<double>* list :
@@ -265,7 +328,7 @@ void EvaluateTerms(const MatchBlocks& matches, const RelativePose& pose, MatchTe
     list->resize(size);
     lists[k++] = list->data();
   }
-  HWY_DYNAMIC_DISPATCH(ListTerms)(matches, ModelAt(matches, pose, true), lists);
+  HWY_DYNAMIC_DISPATCH(ListTerms)(matches, num_blocks, ModelAt(matches, pose, true), lists);
   if (matches.noise_scales().empty()) return;
   for (double* list : lists) {
     for (size_t i = 0; i < size; ++i) list[i] /= matches.NoiseScaleAt(i);

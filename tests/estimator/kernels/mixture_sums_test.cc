@@ -127,6 +127,35 @@ TEST_F(MixtureSumsOf, AreTheSameBitsOnEveryInstructionSet) {
     }
 }
 
+TEST_F(MixtureSumsOf, EachAloneHasTheBitsThatItHasAmongAll) {
+  for (const bool is_scaled : kNoises)
+    for (const int n : kMixtureSizes) {
+      const MixtureProblem c = MakeMixtureProblem(n, is_scaled);
+      const MatchBlocks matches(c.problem);
+      const MatchMask mask = MakeMask(c.used, matches);
+      Run([&] {
+        const MixtureSums all = c.Sum(c.pose);
+        EXPECT_EQ(SumMixtureGradient(matches, mask, c.pose, c.parameters), all.gradient);
+        EXPECT_EQ(SumLogLikelihood(matches, mask, c.pose, c.parameters), all.log_likelihood);
+      });
+    }
+}
+
+TEST_F(MixtureSumsOf, ListsOfTheFirstMatchesAreThoseOfAllCutShort) {
+  const MixtureProblem c = MakeMixtureProblem(65);
+  const MatchBlocks matches(c.problem);
+  Run([&] {
+    MatchTermLists all, first;
+    EvaluateTerms(matches, c.pose, &all);
+    EvaluateTerms(matches, c.pose, &first, 20);
+    ASSERT_EQ(first.residual.size(), 24U);
+    all.residual.resize(24);
+    all.derivative[4].resize(24);
+    EXPECT_EQ(first.residual, all.residual);
+    EXPECT_EQ(first.derivative[4], all.derivative[4]);
+  });
+}
+
 TEST_F(MixtureSumsOf, ListsHoldTheTermsOfEveryMatch) {
   for (const bool is_scaled : kNoises)
     for (const int n : kMixtureSizes) {
