@@ -11,7 +11,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kWrong = 0.5;
 // With fewer explained matches a large influence is nothing unusual.
 constexpr int kLeastExplained = 30;
 constexpr int kMostRounds = 3, kStepsWithout = 8;
@@ -19,12 +18,12 @@ constexpr int kStepsToCompare = 3, kStepsToConverge = 20;
 // Least share of a mode's inliers near one plane for which the other motion of the plane is tried.
 constexpr double kPlanarShare = 0.6;
 
-// Stops using the matches that are more likely wrong than right. Returns whether there were any.
-bool LeaveOutWrong(const std::vector<double>& wrong, Mode* mode) {
+// Stops using these matches. Returns whether the mode used any of them.
+bool LeaveOut(const std::vector<size_t>& wrong, Mode* mode) {
   bool has_changed = false;
-  for (size_t i = 0; i < wrong.size(); ++i) {
+  for (const size_t i : wrong) {
     const auto bit = static_cast<std::uint8_t>(1u << (i % kBlockSize));
-    if (wrong[i] < kWrong || !(mode->used[i / kBlockSize] & bit)) continue;
+    if (!(mode->used[i / kBlockSize] & bit)) continue;
     mode->used[i / kBlockSize] &= static_cast<std::uint8_t>(~bit);
     has_changed = true;
   }
@@ -57,7 +56,7 @@ class ModeList {
     int round = 0;
     for (; round < kMostRounds && explanation->num_explained >= kLeastExplained; ++round) {
       Mode without = *mode;
-      if (!LeaveOutWrong(WrongByInfluence(*mode, *explanation), &without)) break;
+      if (!LeaveOut(ListWrongByInfluence(*mode, *explanation), &without)) break;
       if (!FitMode(matches_, prior_, kStepsWithout, &without)) break;
       Explanation fewer = Explain(matches_, without);
       if (2 * fewer.num_explained < explanation->num_explained) break;

@@ -24,4 +24,7 @@ double ProbabilityWrong(double probability_by_residual, double leverage, double 
 // This probability for each match that the mode explains, and zero for the others.
 std::vector<double> WrongByInfluence(const Mode& mode, const Explanation& explanation);
 
+// The matches for which it is at least one half, in ascending order.
+std::vector<size_t> ListWrongByInfluence(const Mode& mode, const Explanation& explanation);
+
 }  // namespace rcme

@@ -28,7 +28,7 @@ Cosines ComputeCosines(const MotionProblem& problem, const RelativePose& pose, s
   return cosines;
 }
 
-double Sign(double x) { return static_cast<double>(x > 0.0) - static_cast<double>(x < 0.0); }
+int Sign(double x) { return static_cast<int>(x > 0.0) - static_cast<int>(x < 0.0); }
 
 // At b_k, consider the matches that could have had it: a_j < b_k <= b_j. Their a_j are in a random order, so
 // that the sum of the signs of a_j - a_k has the variance of a uniform rank.
@@ -36,13 +36,14 @@ double TestOrder(const Cosines& c) {
   double sum = 0.0, variance = 0.0;
   for (size_t k = 0; k < c.a.size(); ++k) {
     if (!(c.a[k] < c.b[k])) continue;
-    double num_at_risk = 0.0;
-    for (size_t j = 0; j < c.a.size(); ++j) {
-      if (!(c.a[j] < c.b[k] && c.b[k] <= c.b[j])) continue;
-      num_at_risk += 1.0;
-      sum += Sign(c.a[j] - c.a[k]);
+    int num_at_risk = 0, sum_of_signs = 0;
+    for (size_t j = 0; j < c.a.size(); ++j) {  // without branches, which would be hard to predict
+      const int is_at_risk = static_cast<int>(c.a[j] < c.b[k]) & static_cast<int>(c.b[k] <= c.b[j]);
+      num_at_risk += is_at_risk;
+      sum_of_signs += is_at_risk * Sign(c.a[j] - c.a[k]);
     }
-    variance += (num_at_risk * num_at_risk - 1.0) / 3.0;
+    sum += sum_of_signs;
+    variance += (1.0 * num_at_risk * num_at_risk - 1.0) / 3.0;
   }
   return variance > 0.0 ? sum / std::sqrt(variance) : 0.0;
 }

@@ -76,6 +76,25 @@ TEST(WrongByInfluence, FindsAWrongMatchOnItsEpipolarLine) {
   EXPECT_LE(num_false, num_right / 200);
 }
 
+// The list does not evaluate every probability. It must hold the same matches, here under good motions and
+// under bad ones.
+TEST(WrongByInfluence, TheListHoldsThoseOfAtLeastOneHalf) {
+  size_t num_listed = 0;
+  for (std::uint32_t trial = 0; trial < 40; ++trial) {
+    FittedMode f = FitScene(100, 0.5, 0.4, trial);
+    f.mode.pose = Retract(f.mode.pose, (trial % 4) * 0.003 * Vector5d::Ones());
+    const Explanation e = Explain(f.matches, f.mode);
+    const std::vector<double> wrong = WrongByInfluence(f.mode, e);
+    std::vector<size_t> expected;
+    for (size_t i = 0; i < wrong.size(); ++i) {
+      if (wrong[i] >= 0.5) expected.push_back(i);
+    }
+    EXPECT_EQ(ListWrongByInfluence(f.mode, e), expected) << trial;
+    num_listed += expected.size();
+  }
+  EXPECT_GE(num_listed, 5U);
+}
+
 // Of 40 explained matches with leverages of 0.01 to 0.4 one in twenty exceeds 0.38: the 39th in rising order
 // counts, and each match by its own share of it.
 TEST(WrongByInfluence, IsRelativeToTheTwentieth) {
