@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/kernels/block_source.h"
@@ -65,14 +66,17 @@ class Rounds {
   const LoopCounts& counts() const { return counts_; }
 
  private:
-  // Scores the best of the fresh models on the rest of the matches.
+  // Scores the best of the fresh models on the rest of the matches. It is the order of the models that is
+  // sorted, because they are large.
   void ScoreBest(int first_end) {
     const size_t count = std::min(std::max(kLeastFullScores, fresh_.size() / 4), fresh_.size());
-    std::partial_sort(
-        fresh_.begin(), fresh_.begin() + static_cast<std::ptrdiff_t>(count), fresh_.end(),
-        [](const RankedModel& a, const RankedModel& b) { return a.first_score > b.first_score; });
+    std::vector<std::pair<double, size_t>> order;  // first score, index in fresh_
+    order.reserve(fresh_.size());
+    for (size_t i = 0; i < fresh_.size(); ++i) order.emplace_back(fresh_[i].first_score, i);
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
+                      [](const auto& a, const auto& b) { return a.first > b.first; });
     for (size_t i = 0; i < count; ++i) {
-      RankedModel& model = fresh_[i];
+      RankedModel& model = fresh_[order[i].second];
       model.score += scores_.SumScores(model.F, soft_scale_, first_end, scores_.num_matches());
       best_score_ = std::max(best_score_, model.score);
       scored_.push_back(model);
@@ -113,17 +117,19 @@ std::vector<ScoredEssential> SelectDistinct(const std::vector<RankedModel>& mode
   for (const RankedModel& model : models) order.push_back(&model);
   std::stable_sort(order.begin(), order.end(),
                    [](const RankedModel* a, const RankedModel* b) { return a->score > b->score; });
-  std::vector<ScoredEssential> taken;
+  std::vector<ScoredEssential> ranked, taken;
+  for (const RankedModel* model : order)
+    ranked.push_back({EssentialFromWhitened(model->F, scale), model->score});
+  std::vector<bool> is_taken(ranked.size(), false);
   const auto take = [&](size_t up_to, double too_like, const MotionPrior* near) {
-    for (const RankedModel*& model : order) {
-      if (taken.size() >= up_to) return;
-      if (model == nullptr) continue;
-      const ScoredEssential next{EssentialFromWhitened(model->F, scale), model->score};
+    for (size_t i = 0; i < ranked.size() && taken.size() < up_to; ++i) {
+      if (is_taken[i]) continue;
+      const ScoredEssential& next = ranked[i];
       const bool is_new = std::ranges::all_of(
           taken, [&](const ScoredEssential& other) { return Likeness(next.E, other.E) < too_like; });
       if (!is_new || (near != nullptr && !IsNearPrior(*near, next.E))) continue;
       taken.push_back(next);
-      model = nullptr;
+      is_taken[i] = true;
     }
   };
   take((count + 1) / 2, kSame, nullptr);

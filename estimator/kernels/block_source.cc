@@ -67,9 +67,9 @@ void BlockSource<FivePoint>::AdvanceToNextModel(const MatchBlocks& matches, Rand
   SolveSamples(matches);
 }
 
-void BlockSource<FivePoint>::CopyModel(const MatchBlocks& matches, size_t place, int model, int lane,
-                                       HypothesisBlock* block) {
-  CopySample(matches, samples_[place], lane, block);
+void BlockSource<FivePoint>::CopyModel(const MatchBlocks& matches, RequestedOutputs outputs, size_t place,
+                                       int model, int lane, HypothesisBlock* block) {
+  if (outputs != RequestedOutputs::kNone) CopySample(matches, samples_[place], lane, block);
   const int number = order_[static_cast<size_t>(models_.begin[place] + model)];
   for (int i = 0; i < 9; ++i) essentials_.E[i][lane] = models_.E[i][number];
 }
@@ -83,7 +83,7 @@ void BlockSource<FivePoint>::FillNext(const MatchBlocks& matches, RequestedOutpu
     const HypothesisId id = {samples_[place_], model_};
     (*proposals)[static_cast<size_t>(lane)] = {id, SampleVerdict::kDegenerate, model_ + 1 >= count};
     if (count == 0) continue;
-    CopyModel(matches, place_, model_, lane, block);
+    CopyModel(matches, outputs, place_, model_, lane, block);
     has_model |= 1u << lane;
   }
   InstantiateExactModels(matches.ray_scale(), essentials_, outputs, block);
@@ -93,7 +93,7 @@ void BlockSource<FivePoint>::FillNext(const MatchBlocks& matches, RequestedOutpu
 void BlockSource<FivePoint>::FillFirst(const MatchBlocks& matches, RequestedOutputs outputs,
                                        const HypothesisId& id, HypothesisBlock* block) {
   SolveOne(matches, id.sample);
-  for (int lane = 0; lane < kBlockSize; ++lane) CopyModel(matches, 0, id.model, lane, block);
+  for (int lane = 0; lane < kBlockSize; ++lane) CopyModel(matches, outputs, 0, id.model, lane, block);
   InstantiateExactModels(matches.ray_scale(), essentials_, outputs, block);
 }
 

@@ -71,7 +71,8 @@ class BlockSource<FivePoint> {
   void SortModels(size_t place);
 
   void AdvanceToNextModel(const MatchBlocks& matches, RandomStream& rng);
-  void CopyModel(const MatchBlocks& matches, size_t place, int model, int lane, HypothesisBlock* block);
+  void CopyModel(const MatchBlocks& matches, RequestedOutputs outputs, size_t place, int model, int lane,
+                 HypothesisBlock* block);
 
   std::array<Sample, kBlockSize> samples_{};
   FivePointModels models_{};

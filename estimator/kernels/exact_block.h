@@ -11,9 +11,9 @@ struct alignas(64) EssentialBlock {
   HypothesisBlock::Row E[9];
 };
 
-// Fills F, is_model and, unless `outputs` is kNone, dF of the block, which already holds the samples of five
-// matches (eq::motion_estimate, eq. 5, eq::cov_p). There is no sample_statistic, because the motion fits its
-// sample exactly.
+// Fills F, is_model and, unless `outputs` is kNone, dF of the block (eq::motion_estimate, eq. 5, eq::cov_p).
+// For dF, the block already holds the samples of five matches. There is no sample_statistic, because the
+// motion fits its sample exactly.
 void InstantiateExactModels(const RayScale& ray_scale, const EssentialBlock& essentials,
                             RequestedOutputs outputs, HypothesisBlock* block);
 
