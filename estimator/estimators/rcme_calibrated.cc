@@ -103,9 +103,10 @@ void FillMatches(const Explanation& explanation, const std::vector<int>& order, 
     const double p = explanation.probability[i];
     num_right += p;
     estimate->inlier_probabilities[static_cast<size_t>(order[i])] = p;
-    if (p > 0.5) estimate->inliers.push_back(order[i]);
   }
-  std::ranges::sort(estimate->inliers);
+  for (size_t i = 0; i < order.size(); ++i) {
+    if (estimate->inlier_probabilities[i] > 0.5) estimate->inliers.push_back(static_cast<int>(i));
+  }
   estimate->num_support = estimate->num_explained = static_cast<int>(estimate->inliers.size());
   // A variance estimated with k degrees of freedom has variance 2 sigma^4 / k.
   const double freedom = std::max(num_right - 5.0, 1.0);
