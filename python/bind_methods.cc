@@ -17,6 +17,7 @@
 #include "experiments/audit/claims/study_claims.h"
 #include "experiments/conform/conform_output.h"
 #include "experiments/conform/conform_report.h"
+#include "experiments/conform/conform_words.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/find_estimator.h"

@@ -2,20 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
+#include "parameters/find_setting.h"
 #include "parameters/parameter.h"
 #include "stats/distributions.h"
 
 namespace rcme {
 namespace {
-
-// The value of an option; empty: there is none.
-std::string FindValue(const Settings& options, const std::string& name) {
-  const auto found = std::ranges::find(options, name, &Settings::value_type::first);
-  return found == options.end() ? "" : found->second;
-}
 
 // MSAC compares the squared Sampson distance with sigma^2 chi2_1 (estimator/point_consistency.h).
 std::string DescribeSampson(double level, double sigma_px) {
@@ -41,10 +35,11 @@ std::string DescribeCalibrated(const std::string& sigma, double sigma_px) {
 }  // namespace
 
 std::string DescribeInlierThreshold(const std::string& name, const Settings& options, double sigma_px) {
-  if (name == "rcme_calibrated") return DescribeCalibrated(FindValue(options, "sigma"), sigma_px);
+  if (name == "rcme_calibrated")
+    return DescribeCalibrated(FindSetting(options, "sigma").value_or(""), sigma_px);
   double level = 0.0, num_sigma = 0.0;
-  const bool has_level = ParseReal(FindValue(options, "significance_level"), &level);
-  const bool has_sigma = ParseReal(FindValue(options, "threshold_sigma"), &num_sigma);
+  const bool has_level = ParseReal(FindSetting(options, "significance_level").value_or(""), &level);
+  const bool has_sigma = ParseReal(FindSetting(options, "threshold_sigma").value_or(""), &num_sigma);
   if (name == "msac" && has_level) return DescribeSampson(level, sigma_px);
   if (name == "rcme" && has_level) return DescribeTestOfHypothesis(level, sigma_px);
   if (name == "opencv_usac" && has_sigma) {

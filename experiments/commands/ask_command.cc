@@ -49,7 +49,7 @@ std::string ResultPath(const AskArguments& arguments) { return arguments.out + "
 
 // Runs the question's study up to `trials` trials and keeps those that the result file already has. If the
 // file belongs to another question, nothing is written, not even study.yaml.
-RunReport RunTrialsOf(const AskArguments& arguments, int trials) {
+RunReport RunAskedTrials(const AskArguments& arguments, int trials) {
   const std::string path = arguments.out + "/study.yaml";
   const std::string text = MakeStudyText(arguments.question, trials);
   const StudyPlan plan = MakePlan(ParseStudy(text, path), path);
@@ -80,16 +80,16 @@ int FindTrialsAskedBefore(const AskArguments& arguments) {
 void RunQuestion(const AskArguments& arguments) {
   const int before = FindTrialsAskedBefore(arguments);
   if (arguments.trials > 0) {
-    RunTrialsOf(arguments, arguments.trials);
+    RunAskedTrials(arguments, arguments.trials);
   } else if (before > kPilotTrials) {
     PrintMessage("The answer is of the {} trials that {} was begun with; --trials N takes more\n", before,
                  ResultPath(arguments));
-    RunTrialsOf(arguments, before);
+    RunAskedTrials(arguments, before);
   } else {
     const int trials =
-        ChooseTrials(RunTrialsOf(arguments, kPilotTrials), ParseDuration(arguments.within).value());
+        ChooseTrials(RunAskedTrials(arguments, kPilotTrials), ParseDuration(arguments.within).value());
     PrintMessage("{} trials of each estimator, within about {}\n", trials, arguments.within);
-    RunTrialsOf(arguments, trials);
+    RunAskedTrials(arguments, trials);
   }
 }
 

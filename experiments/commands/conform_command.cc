@@ -14,6 +14,7 @@
 #include "experiments/commands/time_limit.h"
 #include "experiments/conform/calibration_work.h"
 #include "experiments/conform/conform_output.h"
+#include "experiments/conform/conform_words.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/study/estimator_file.h"

@@ -8,6 +8,7 @@
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
+#include "parameters/find_setting.h"
 
 namespace rcme {
 
@@ -75,7 +76,7 @@ EstimatorSpec FindOnlyEstimator(const Study& study, const std::string& command, 
 }
 
 bool HasRobustCovariance(const EstimatorSpec& spec) {
-  return std::ranges::count(spec.options, Settings::value_type("covariance", "robust")) > 0;
+  return FindSetting(spec.options, "covariance") == "robust";
 }
 
 }  // namespace rcme

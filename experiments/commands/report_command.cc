@@ -3,13 +3,13 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/statistics/report_data.h"
-#include "experiments/core/files/file_output.h"
-#include "experiments/core/text/message.h"
-#include "experiments/core/files/regular_file.h"
-#include "experiments/core/files/scratch_folder.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
+#include "experiments/core/files/file_output.h"
+#include "experiments/core/files/regular_file.h"
+#include "experiments/core/files/scratch_folder.h"
+#include "experiments/core/text/message.h"
+#include "experiments/statistics/report_data.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

@@ -7,6 +7,7 @@
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/tuning_file.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -46,8 +47,7 @@ StudyPlan MakeTuningPlan(const TuningArguments& arguments) {
     FindParameter(Parameters(*study.tuning), text.substr(0, equals)).SetFromText(value);
   }
   CheckCombinations(*study.tuning, study.estimators);  // of another estimator than in the file
-  const auto scene = std::ranges::find(study.data, "scene", &Settings::value_type::first);
-  const bool is_simulated = scene == study.data.end() || scene->second != kMatchFilesScene;
+  const bool is_simulated = FindSetting(study.data, "scene") != kMatchFilesScene;
   if (is_simulated) Override(&study, "severity", "skipped");  // no one looks at it here
   return MakePlan(study, arguments.study);
 }

@@ -25,6 +25,7 @@
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/study/study_file.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 
@@ -89,10 +90,8 @@ AdvisedEstimator ChooseAdvised(const EstimatorSpec& spec, const PlantedFaults& p
     if (noise) estimator = WithSharedNoise(std::move(estimator), *noise, HasRobustCovariance(changed));
     return factor == 1.0 ? std::move(estimator) : ScaleCovariances(std::move(estimator), factor);
   };
-  for (const auto& [option, value] : spec.options) {
-    if (option == "covariance") advised.is_robust = value == "robust";
-    if (option == "covariance_factor") ParseReal(value, &advised.factor);
-  }
+  advised.is_robust = HasRobustCovariance(spec);
+  if (const auto factor = FindSetting(spec.options, "covariance_factor")) ParseReal(*factor, &advised.factor);
   return advised;
 }
 

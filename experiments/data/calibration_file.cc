@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "experiments/data/match_file.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "simulator/camera_registry.h"
 
@@ -12,15 +13,6 @@ namespace rcme {
 namespace {
 
 constexpr const char* kCameras = "own_intrinsics";
-
-// Returns the last value of a key; empty if there is none.
-std::string FindLastValue(const Settings& settings, const std::string& key) {
-  std::string last;
-  for (const auto& [name, value] : settings) {
-    if (name == key) last = value;
-  }
-  return last;
-}
 
 void AddIntrinsics(const std::string& number, const Camera& camera, Settings* settings) {
   const std::pair<std::string, double> values[] = {
@@ -63,8 +55,8 @@ SettingHelp CalibrationHelp() {
 }
 
 Settings WithCalibration(const Settings& settings) {
-  if (FindLastValue(settings, "cameras") != kCamerasFromFile) return settings;
-  const std::string path = FindLastValue(settings, kCalibrationKey);
+  if (FindSetting(settings, "cameras") != kCamerasFromFile) return settings;
+  const std::string path = FindSetting(settings, kCalibrationKey).value_or("");
   if (path.empty()) {
     throw InputError(fmt::format("cameras: {} needs the key '{}': {}", kCamerasFromFile, kCalibrationKey,
                                  CalibrationHelp().allowed));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -90,14 +91,6 @@ void WriteSystematic(const DisplacementCells& cells, YAML::Emitter* out) {
   *out << YAML::EndMap;
 }
 
-std::string LastNoiseValue(const Settings& settings, const std::string& key) {
-  std::string last;
-  for (const auto& [name, value] : settings) {
-    if (name == key) last = value;
-  }
-  return last;
-}
-
 }  // namespace
 
 double CameraNoise::DisplacementShare() const {
@@ -120,8 +113,8 @@ std::string CameraNoiseAsYaml(const CameraNoise& noise) {
 }
 
 Settings WithNoiseFile(const Settings& settings) {
-  if (LastNoiseValue(settings, "noise") != kNoiseFromFile) return settings;
-  const std::string path = LastNoiseValue(settings, kNoiseFileKey);
+  if (FindSetting(settings, "noise") != kNoiseFromFile) return settings;
+  const std::string path = FindSetting(settings, kNoiseFileKey).value_or("");
   if (path.empty())
     throw InputError(fmt::format("noise: {} needs the key '{}': a file of `rcme calibrate-noise`",
                                  kNoiseFromFile, kNoiseFileKey));

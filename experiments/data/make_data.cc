@@ -8,6 +8,7 @@
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/camera_noise.h"
 #include "experiments/data/match_folder.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
@@ -110,7 +111,7 @@ struct Configured {
   explicit Configured(const Settings& given) {
     const Settings settings = WithNoiseFile(WithCalibration(given));
     const Choices choices = ChoicesIn(settings);
-    has_doubts = std::ranges::count(settings, kTruthInDoubtKey, &Settings::value_type::first) > 0;
+    has_doubts = FindSetting(settings, kTruthInDoubtKey).has_value();
     if (choices.scene != kMatchFilesScene) {
       const bool is_known = std::ranges::count(SceneRegistry(), choices.scene, &SceneEntry::name) > 0;
       if (!is_known) ThrowUnknownScene(choices.scene);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +10,7 @@
 #include <string_view>
 
 #include "experiments/study/command_permission.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "stats/fnv1a.h"
@@ -45,21 +45,17 @@ std::string FormatBuild(const std::string& name, const std::string& hash) {
 // "build of NAME " without the hash.
 std::string CutHash(const std::string& build) { return build.substr(0, build.rfind(' ') + 1); }
 
-std::string FindOption(const Settings& options, const std::string& name) {
-  const auto found = std::ranges::find(options, name, &Settings::value_type::first);
-  return found == options.end() ? "none" : found->second;
-}
-
 // "num_iterations 200, not 100" for each option in which the two differ.
 std::vector<std::string> ListOtherOptions(const DescribedEstimator& of_old,
                                           const DescribedEstimator& of_new) {
   std::vector<std::string> others;
   for (const auto& [name, value] : of_new.options) {
-    const std::string before = FindOption(of_old.options, name);
+    const std::string before = FindSetting(of_old.options, name).value_or("none");
     if (before != value) others.push_back(fmt::format("{} {}, not {}", name, value, before));
   }
   for (const auto& [name, value] : of_old.options)
-    if (FindOption(of_new.options, name) == "none") others.push_back(fmt::format("no {}", name));
+    if (FindSetting(of_new.options, name).value_or("none") == "none")
+      others.push_back(fmt::format("no {}", name));
   return others;
 }
 

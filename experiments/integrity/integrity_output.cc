@@ -189,7 +189,7 @@ std::string DescribeTruth(const IntegrityReport& report) {
   std::string text =
       "The truth of real pairs is taken as exact: its errors count as errors of the estimator.";
   if (sensitivity.num_inexact[0] + sensitivity.num_inexact[1] == 0)
-    return FormatParagraph(text + " How good it is, no pair says (truth_sd).");
+    return FormatParagraph(text + " No pair states how accurate its truth is (truth_sd).");
   for (size_t q = 0; q < kNumIntegrityQuantities; ++q) {
     const auto percent = [](std::int64_t count, std::int64_t n) {
       return n == 0 ? 0.0 : 100.0 * static_cast<double>(count) / static_cast<double>(n);

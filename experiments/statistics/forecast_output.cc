@@ -211,11 +211,12 @@ std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, cons
           "failed, Brier (mean (P - y)^2), slope (1: right, below: too sure), AUC, AURC: 95 % intervals, {}. "
           "ECE: {} bins of equal width; if right: its mean if P were right; p: the share of samples of such "
           "that reach it. AURC: mean failure rate over all shares of trials answered, surest first, a "
-          "refusal as the last and a failure; kept: trials at P <= {}, of all; {} intervals.",
+          "refusal as the last and a failure; kept: trials at P <= {}, of all; {}.",
           is_of_population
               ? "for the population that the conditions are a sample of, the trials of a draw as one cluster"
               : "the trials of a scene as one cluster",
-          kNumCalibrationBins, kSureBelow, is_of_population ? "such" : "exact (or by repeated scenes)"));
+          kNumCalibrationBins, kSureBelow,
+          is_of_population ? "such intervals" : "exact intervals, or over scenes if scenes are repeated"));
   if (std::ranges::find(measures, ForecastSource::kInlierShare, &ForecastMeasures::source) !=
       measures.end()) {
     text += FormatParagraph(

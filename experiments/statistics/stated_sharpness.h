@@ -1,5 +1,5 @@
-// How sharp the regions are that an estimator states: beside every coverage, since a region covers as often
-// as it likes if it is wide enough.
+// The width of the regions that an estimator states. It is printed beside every coverage, because regions
+// that are wide enough always cover.
 #pragma once
 
 #include <string>

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "estimator/conform/conform_estimator.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -26,8 +25,8 @@ std::string ShownCommand(const std::string& command) {
 std::string FindCommand(const EstimatorSpec& spec) {
   if (const std::optional<EstimatorSpec> inner = FindConformed(spec)) return FindCommand(*inner);
   if (spec.name != kProcess) return {};
-  const auto command = std::ranges::find(spec.options, kCommand, &Settings::value_type::first);
-  return command == spec.options.end() || command->second == kNoCommand ? std::string() : command->second;
+  const std::string command = FindSetting(spec.options, kCommand).value_or(kNoCommand);
+  return command == kNoCommand ? std::string() : command;
 }
 
 bool IsCommand(const EstimatorSpec& spec, const std::string& option) {

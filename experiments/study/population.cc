@@ -8,6 +8,7 @@
 
 #include "experiments/data/make_data.h"
 #include "experiments/study/study.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
@@ -20,18 +21,9 @@ namespace {
 constexpr const char *kDrawsLine = "# draws: ", *kChosenLine = "# chosen draws: ", *kDrawLine = "# draw ",
                      *kOutsideWord = ": outside of given: ";
 
-// Returns the last value of a key, or null if there is none.
-const std::string* FindValue(const Settings& settings, const std::string& key) {
-  const auto found = std::find_if(settings.rbegin(), settings.rend(),
-                                  [&](const auto& setting) { return setting.first == key; });
-  return found == settings.rend() ? nullptr : &found->second;
-}
-
 bool IsWith(const DrawnKey& drawn, const Settings& settings) {
-  return std::ranges::all_of(drawn.with, [&](const auto& choice) {
-    const std::string* value = FindValue(settings, choice.first);
-    return value != nullptr && *value == choice.second;
-  });
+  return std::ranges::all_of(
+      drawn.with, [&](const auto& choice) { return FindSetting(settings, choice.first) == choice.second; });
 }
 
 // The value at u in [0, 1), formatted with six digits.
@@ -50,8 +42,7 @@ std::string ValueAt(const DrawnRange& range, bool is_whole, double u) {
 // Reads a side of a restriction as a number; returns false if the draw does not have it.
 bool ReadSide(const Settings& resolved, const std::string& side, double* number) {
   if (ParseReal(side, number)) return true;
-  const std::string* value = FindValue(resolved, side);
-  return value != nullptr && ParseReal(*value, number);
+  return ParseReal(FindSetting(resolved, side).value_or(""), number);
 }
 
 bool Meets(const Settings& resolved, const Restriction& restriction) {
@@ -90,7 +81,7 @@ class Drawer {
     for (const std::string& key : keys_) {
       const bool is_drawn = std::any_of(settings.begin() + std::ssize(study_.data), settings.end(),
                                         [&](const auto& setting) { return setting.first == key; });
-      draw.levels.push_back(is_drawn ? *FindValue(resolved, key) : kNotDrawn);
+      draw.levels.push_back(is_drawn ? FindSetting(resolved, key).value() : kNotDrawn);
     }
     for (const Restriction& restriction : population_.given) {
       if (draw.outside_of.empty() && !Meets(resolved, restriction)) draw.outside_of = restriction.Text();

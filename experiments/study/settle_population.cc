@@ -6,6 +6,7 @@
 
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -38,14 +39,12 @@ bool Has(const Settings& resolved, const Settings& with) {
 void SettleKey(const std::vector<std::pair<Settings, Settings>>& possible, DrawnKey* drawn) {
   bool is_anywhere = false;
   for (const auto& [settings, resolved] : possible) {
-    const bool has_key = std::ranges::count(resolved, drawn->key, &Settings::value_type::first) > 0;
-    if (!has_key || !Has(resolved, drawn->with)) continue;
+    if (!FindSetting(resolved, drawn->key) || !Has(resolved, drawn->with)) continue;
     is_anywhere = true;
     const auto canonical = [&, &settings = settings](const std::string& value) {
       Settings with_it = settings;
       with_it.emplace_back(drawn->key, value);
-      const Settings written = ResolveSettings(with_it);
-      return std::ranges::find(written, drawn->key, &Settings::value_type::first)->second;
+      return FindSetting(ResolveSettings(with_it), drawn->key).value();
     };
     for (std::string& word : drawn->range.words) word = canonical(word);
     if (drawn->range.kind == DrawnRange::Kind::kAnyOf) continue;

@@ -8,6 +8,7 @@
 #include "experiments/data/make_data.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/settle_population.h"
+#include "parameters/find_setting.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
 
@@ -23,14 +24,16 @@ void SettleOption(const Place& place, const YAML::Node& line, const Study& study
     labels.push_back(spec.label);
     if (spec.label != label) continue;
     if (IsCommand(spec, option))
-      place.Fail(line, fmt::format("factors: {}: a command, or a file that may bring one, cannot vary; leave it out", factor->key));
+      place.Fail(
+          line, fmt::format("factors: {}: a command, or a file that may bring one, cannot vary; leave it out",
+                            factor->key));
     for (std::string& level : factor->levels) {
       EstimatorSpec varied = spec;
       place.At(line, [&] {
         SetOptions(&varied, {{option, level}});
         Configure(varied)->Make();
       });
-      level = std::ranges::find(varied.options, option, &Settings::value_type::first)->second;
+      level = FindSetting(varied.options, option).value();
     }
     return;
   }
@@ -60,8 +63,7 @@ Settings ChooseFirstSettings(const Study& study) {
 
 std::string MakeCanonical(Settings settings, const std::string& key, const std::string& value) {
   settings.emplace_back(key, value);
-  const Settings resolved = ResolveSettings(settings);
-  return std::ranges::find(resolved, key, &Settings::value_type::first)->second;
+  return FindSetting(ResolveSettings(settings), key).value();
 }
 
 void SettleData(const Place& place, const YAML::Node& root, Study* of) {
@@ -102,7 +104,8 @@ void SettleData(const Place& place, const YAML::Node& root, Study* of) {
         place.Fail(line,
                    "factors: scene: match_files is not a simulated scene; write a separate study for it");
       const std::string text = level;
-      place.At(line, [&] { level = MakeCanonical(IsChoice(factor.key) ? first : choices, factor.key, text); });
+      place.At(line,
+               [&] { level = MakeCanonical(IsChoice(factor.key) ? first : choices, factor.key, text); });
     }
     RequireDifferentLevels(place, line, factor, given);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -36,9 +37,7 @@ std::string BaseLevel(const Study& study, const std::string& key) {
       if (key == spec.label + "." + option) base = value;
     }
   }
-  for (const auto& [name, value] : study.data) {
-    if (name == key) base = value;
-  }
+  base = FindSetting(study.data, key).value_or(base);
   if (base.empty()) {
     throw InputError(fmt::format("factors: {}: a one_at_a_time design needs the base value in data", key));
   }

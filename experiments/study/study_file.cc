@@ -18,6 +18,7 @@
 #include "experiments/study/settle_study.h"
 #include "experiments/study/study_keys.h"
 #include "experiments/study/tuning_file.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
@@ -139,8 +140,7 @@ std::vector<std::string> DataKeys(const Study& study) {
   std::vector<std::string> keys;
   const Settings settings = ResolveSettings(ChooseFirstSettings(study));
   for (const auto& [key, value] : settings) keys.push_back(key);
-  const bool is_of_match_files =
-      std::ranges::count(settings, Settings::value_type("scene", kMatchFilesScene)) > 0;
+  const bool is_of_match_files = FindSetting(settings, "scene") == kMatchFilesScene;
   if (is_of_match_files && std::ranges::count(keys, kTruthInDoubtKey) == 0)
     keys.emplace_back(kTruthInDoubtKey);
   return keys;
@@ -155,10 +155,6 @@ std::vector<std::string> BoundKeys() {
 
 bool IsIn(const std::vector<std::string>& keys, const std::string& key) {
   return std::ranges::count(keys, key) > 0;
-}
-
-bool HasOption(const EstimatorSpec& spec, const std::string& option) {
-  return std::ranges::count(spec.options, option, &Settings::value_type::first) > 0;
 }
 
 void OverrideOption(const std::string& option, const std::string& value, EstimatorSpec* spec) {
@@ -222,7 +218,8 @@ void FollowFailureBounds(const YAML::Node& entries, Study* study) {
     if (!entries[i].IsMap() || entries[i]["file"]) continue;
     for (const Parameter& bound : Parameters(study->failure)) {
       const bool is_given = entries[i]["options"] && entries[i]["options"][bound.name()];
-      if (!is_given && HasOption(spec, bound.name())) SetOptions(&spec, {{bound.name(), bound.Value()}});
+      if (!is_given && FindSetting(spec.options, bound.name()))
+        SetOptions(&spec, {{bound.name(), bound.Value()}});
     }
   }
 }
@@ -321,7 +318,7 @@ void Override(Study* study, const std::string& key, const std::string& value) {
   bool has_any = IsIn(BoundKeys(), key);
   if (has_any) FindParameter(Parameters(study->failure), key).SetFromText(value);
   for (EstimatorSpec& spec : study->estimators) {
-    if (!HasOption(spec, key)) continue;
+    if (!FindSetting(spec.options, key)) continue;
     try {
       OverrideOption(key, value, &spec);
     } catch (const InputError& error) {

@@ -16,6 +16,7 @@
 #include "experiments/core/text/program_name.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
@@ -137,8 +138,7 @@ std::vector<std::string> ListStudyDifferences(const YAML::Node& locked, const YA
 
 std::string TextToLock(const StudyPlan& plan) {
   Study study = plan.study;
-  const bool is_of_real_pairs =
-      std::ranges::count(study.data, Settings::value_type("scene", kMatchFilesScene)) > 0;
+  const bool is_of_real_pairs = FindSetting(study.data, "scene") == kMatchFilesScene;
   std::erase_if(study.data, [](const auto& setting) {
     return setting.first == "folder" || setting.first == kTruthInDoubtKey;
   });

@@ -10,6 +10,7 @@
 #include "experiments/data/make_data.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/study_file.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "stats/fnv1a.h"
 
@@ -178,8 +179,7 @@ StudyPlan BeginPlan(const Study& given, PlanEstimators estimators) {
         fmt::format("factors: {} cannot vary; give sigma_px, displacement_share and "
                     "displacement_reach_px of displacement_field as factors",
                     kNoiseFileKey));
-  if (study.common_scenes &&
-      std::ranges::count(study.data, Settings::value_type("scene", kMatchFilesScene)) > 0) {
+  if (study.common_scenes && FindSetting(study.data, "scene") == kMatchFilesScene) {
     throw InputError("common_scenes: pairs of match files have no scenes to share; leave it out");
   }
   StudyPlan plan;

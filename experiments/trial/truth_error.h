@@ -1,15 +1,16 @@
-// How far errors may be off because the given truth is.
+// How far the errors of answers may be off because the given truth has an error of its own.
 #pragma once
 
 #include "experiments/data/data_source.h"
 
 namespace rcme {
 
-inline constexpr double kTruthErrorSds = 2.0;  // an error of the truth that is to be reckoned with
+// The greatest error of the truth that is allowed for, in its standard deviations.
+inline constexpr double kTruthErrorSds = 2.0;
 
-// kTruthErrorSds standard deviations of the truth's own error (Truth::sd) along the axis on which it is
-// greatest: by so much may an angle between answer and truth be too small or too great. 0: the truth is
-// exact, or nobody says.
+// An angle between answer and truth may be too small or too great by this much: kTruthErrorSds standard
+// deviations of the truth's own error (Truth::sd), along the axis on which they are greatest. 0: the truth is
+// exact, or its error is not known.
 struct TruthErrorDeg {
   double rotation = 0.0, direction = 0.0;
 };

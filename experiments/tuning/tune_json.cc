@@ -13,6 +13,7 @@
 #include "experiments/study/tuning_file.h"
 #include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_output.h"
+#include "parameters/find_setting.h"
 #include "stats/pareto_front.h"
 #include "stats/thresholds.h"
 
@@ -64,9 +65,8 @@ Json RenderTunedLevels(const Tuning& tuning, const EstimatorSpec& tuned, const E
     levels.emplace_back(option, level);
   }
   Json in_order = Json::array();
-  for (const TunedOption& option : tuning.options) {
-    in_order.push_back(std::ranges::find(levels, option.name, &Settings::value_type::first)->second);
-  }
+  for (const TunedOption& option : tuning.options)
+    in_order.push_back(FindSetting(levels, option.name).value());
   return in_order;
 }
 

@@ -17,6 +17,7 @@ A page shows a block between two comments, and the file of the same name with `.
     say             the lines below it, with numbers in braces: {TABLE: conditions | format}; `use` names a table and
                     `where` conditions that hold for all of them
     text FILE       lines of a committed text file as they stand; `from` and `to` say with what they begin
+    same PAGE NAME  the block NAME of another page, named from the root of the repository
     made NAME       what made the result: command, commit, CPU minutes
     list            every result
     ...             the kinds of special_blocks.py
@@ -35,7 +36,8 @@ KEY = re.compile(r"^([a-z]+): (.*)$")
 
 
 def pages():
-    return sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md"), RESULTS / "README.md", *RESULTS.glob("*/README.md")])
+    return sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md"), *(ROOT / "examples").glob("*/README.md"), RESULTS / "README.md",
+                   *RESULTS.glob("*/README.md")])
 
 
 def template_file(page):
@@ -136,7 +138,12 @@ def text(spec):
     return "```text\n" + "\n".join(lines).strip("\n") + "\n```"
 
 
-KINDS = {"rates": rates, "table": table, "say": say, "text": text, **SPECIAL}
+def same(spec):
+    page, name = spec.argument.split()
+    return render(Spec(templates(ROOT / page)[name]))
+
+
+KINDS = {"rates": rates, "table": table, "say": say, "text": text, "same": same, **SPECIAL}
 
 
 def render(spec):

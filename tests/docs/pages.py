@@ -5,6 +5,7 @@ import re
 
 FENCE = re.compile(r"^\s*```(\w*)\s*$")
 FILE_BEFORE = re.compile(r"`([\w./-]+)`:\s*$")  # "..., in `first.yaml`:" before a block: the file it shows
+GENERATED = re.compile(r"<!-- begin generated: .*?<!-- end generated: ", re.DOTALL)  # of committed results, not of the commands beside it
 COMMENT = re.compile(r"\s+# .*$|\s{2,}#.*$")
 FIRST_WORDS = ("rcme", "$rcme", "build/release/bin/rcme", "scripts/", "python3", "pip", "cmake", "sbatch", "sacct", "parallel",
                "kubectl", "mkdir ", "PYTHONPATH=")
@@ -57,6 +58,7 @@ def code_blocks(text):
 def contents(text):
     """What a page shows, in its order: files, commands and (blocks called `text`) their output."""
     shown = []
+    text = GENERATED.sub(lambda block: "\n" * block[0].count("\n"), text)
     for begin, language, lines, before in code_blocks(text):
         name = FILE_BEFORE.search(before)
         if name and language in ("yaml", "json", "csv"):

@@ -1,8 +1,10 @@
 // From the pairs of a camera to its noise file, and from that to estimates, validations and studies.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -54,6 +56,18 @@ TEST_F(CalibrateNoiseProgram, WritesAFileThatOthersTake) {
       "estimators: [{name: standard, options: {num_iterations: 20}}]\ntrials: 2\n");
   const ProgramResult run = RunRcme({"run", study, "--out", folder_.Path("run.sqlite")});
   EXPECT_EQ(run.exit_code, 0) << run.err;
+}
+
+// The table says as much of a fault as the file keeps for the covariances.
+TEST_F(CalibrateNoiseProgram, SaysWhatIsLeftOfAFault) {
+  const ProgramResult table = Call({});
+  ASSERT_EQ(table.exit_code, 0) << table.err;
+  const std::string written = ReadBytes(file_);
+  std::smatch fault;
+  ASSERT_TRUE(std::regex_search(written, fault, std::regex("focal_length: \\{.*uncertainty: ([^}]+)\\}")))
+      << written;
+  const std::string left = fmt::format("+-{:.2g} % is left", 100.0 * std::stod(fault[1]));
+  EXPECT_NE(table.out.find(left), std::string::npos) << left << " is not in\n" << table.out;
 }
 
 TEST_F(CalibrateNoiseProgram, RefusesWhatItCannotUse) {

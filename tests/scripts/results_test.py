@@ -10,6 +10,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts/reproduce"))
 
+from blocks import Spec, render  # noqa: E402
 from digests import difference, hash_of, trials_of  # noqa: E402
 from recipes import data, is_same, read_recipes, with_data  # noqa: E402
 from tables import filled  # noqa: E402
@@ -108,6 +109,10 @@ class TheWords(unittest.TestCase):
         text = "one two\nthree\n\n- four five\n  six\n- seven\n| a | b c d e f |"
         self.assertEqual(filled(text, width=9), "one two\nthree\n\n- four\n  five\n  six\n- seven\n| a | b c d e f |")
         self.assertEqual(filled("a rate of 5 [1, 9] %", width=14), "a rate of 5\n[1, 9] %")
+
+    def test_a_page_may_show_the_block_of_another_page(self):
+        shown = render(Spec("same results/audit/README.md audit_verdict_counts"))
+        self.assertEqual(shown, render(Spec("verdict_counts audit/audit")))
 
 
 if __name__ == "__main__":

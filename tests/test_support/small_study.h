@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <string>
 #include <type_traits>
 
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_columns.h"
+#include "parameters/find_setting.h"
 
 namespace rcme {
 
@@ -27,7 +27,7 @@ inline std::string SmallStudyYaml() {
 
 // The value of an option, which is there.
 inline std::string ReadOption(const EstimatorSpec& spec, const std::string& option) {
-  return std::ranges::find(spec.options, option, &Settings::value_type::first)->second;
+  return FindSetting(spec.options, option).value();
 }
 
 inline Study SmallStudy() { return ParseStudy(SmallStudyYaml(), "small.yaml"); }

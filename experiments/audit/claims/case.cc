@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "experiments/data/make_data.h"
+#include "parameters/find_setting.h"
 #include "stats/coverage.h"
 #include "stats/distributions.h"
 
@@ -38,9 +39,7 @@ Check MakeCheck(const Settings& settings, const Statistic& statistic, const std:
                 const TrialLimits& limits) {
   Check check;
   check.conditions = settings;
-  for (const auto& [key, value] : settings) {
-    if (key == "sigma_px") check.sigma_px = std::stod(value);
-  }
+  if (const auto sigma_px = FindSetting(settings, "sigma_px")) check.sigma_px = std::stod(*sigma_px);
   check.targets = targets;
   check.limits = limits;
   check.trial = [cases = SimulatedCases(settings), statistic](const StreamName& name) {

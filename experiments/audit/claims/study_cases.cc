@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "experiments/data/make_data.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -27,11 +28,8 @@ void RequireCases(const Study& study) {
                     rows.size(), kMaxCaseConditions));
   }
   for (const std::vector<std::string>& levels : rows) {
-    std::string scene;
-    for (const auto& [key, value] : CombineSettings(study, levels)) {
-      if (key == "scene") scene = value;
-    }
-    if (scene == kMatchFilesScene) throw InputError(kNoMatchFiles);
+    if (FindSetting(CombineSettings(study, levels), "scene") == kMatchFilesScene)
+      throw InputError(kNoMatchFiles);
   }
 }
 

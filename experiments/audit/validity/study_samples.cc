@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/data/make_data.h"
 #include "experiments/trial/simulate_draw.h"
+#include "parameters/find_setting.h"
 #include "parameters/parameter.h"
 #include "simulator/exact_match.h"
 
@@ -17,17 +17,9 @@ namespace {
 constexpr const char* kSigmaKey = "sigma_px";
 constexpr const char* kAssumedSigmaKey = "assumed_sigma_px";
 
-std::string ReadSettingValue(const Settings& settings, const std::string& key) {
-  for (const auto& [name, value] : settings) {
-    if (name == key) return value;
-  }
-  return {};
-}
-
 double ReadSettingNumber(const Settings& settings, const std::string& key) {
-  // remains NaN for the word "true"
   double number = std::numeric_limits<double>::quiet_NaN();  // stays NaN for the word "true"
-  ParseReal(ReadSettingValue(settings, key), &number);
+  ParseReal(FindSetting(settings, key).value_or(""), &number);
   return number;
 }
 

@@ -9,6 +9,7 @@
 #include "experiments/real/answer/motion_words.h"
 #include "experiments/real/answer/refusal_advice.h"
 #include "experiments/study/estimator_spec.h"
+#include "parameters/find_setting.h"
 #include "parameters/probability_text.h"
 #include "peers/outside_answer.h"
 #include "stats/constants.h"
@@ -72,13 +73,10 @@ std::string FoundText(const RelativePose& pose, const MotionSpread& spread) {
 
 // The bounds of a stated probability are options of the estimator.
 std::string BoundsText(const EstimatorSpec& spec) {
-  std::string rotation, direction;
-  for (const auto& [option, value] : spec.options) {
-    if (option == "max_rotation_error_deg") rotation = value;
-    if (option == "max_direction_error_deg") direction = value;
-  }
-  if (rotation.empty() || direction.empty()) return "wrong";
-  return fmt::format("rotation off by more than {} deg or direction by {} deg", rotation, direction);
+  const auto rotation = FindSetting(spec.options, "max_rotation_error_deg");
+  const auto direction = FindSetting(spec.options, "max_direction_error_deg");
+  if (!rotation || !direction) return "wrong";
+  return fmt::format("rotation off by more than {} deg or direction by {} deg", *rotation, *direction);
 }
 
 std::string ForBoundsText(const std::vector<ProbabilityForBounds>& for_bounds) {

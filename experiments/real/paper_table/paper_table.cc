@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "experiments/data/match_folder.h"
+#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/text_lines.h"
@@ -98,12 +99,9 @@ class Members {
  private:
   // Returns the image names in the condition's folder; a simulated scene has none.
   const ImageNames& FindImageNames(const Condition& condition, const StudyPlan& plan) {
-    std::string folder;
     std::vector<std::string> levels = condition.levels;
     levels.resize(FactorNames(plan.study).size());
-    for (const auto& [key, value] : CombineSettings(plan.study, levels)) {
-      if (key == "folder") folder = value;
-    }
+    const std::string folder = FindSetting(CombineSettings(plan.study, levels), "folder").value_or("");
     const auto [found, is_new] = names_of_folder_.try_emplace(folder);
     if (is_new && !folder.empty()) found->second = ImageNamesIn(folder);
     return found->second;

@@ -8,110 +8,16 @@
 #include <utility>
 
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/real/truth_free/closure_output.h"
+#include "experiments/real/truth_free/validate_json.h"
+#include "experiments/real/truth_free/validate_words.h"
 
 namespace rcme {
 namespace {
 
 const NumberFormat kTwoDigits{1.0, "", ".2g"};
-
-bool IsBounded(const Interval& interval) {
-  return std::isfinite(interval.lower) && std::isfinite(interval.upper);
-}
-
-std::string RangeText(double value, const Interval& interval) {
-  if (!IsBounded(interval)) return fmt::format("{:.2g} (too few for an interval)", value);
-  return fmt::format("{:.2g} [{:.2g}, {:.2g}]", value, interval.lower, interval.upper);
-}
-
-// Of a ratio without an interval (stats/median_ratio.h).
-std::string DescribeTooFew(const TruthFreeTest& test) {
-  return fmt::format("the variances' ratio, {:.2g} here, cannot be told from {} {}: it takes {} at least",
-                     test.ratio.value, test.num_units,
-                     test.num_units == 1 ? "pair or loop" : "pairs or loops", kLeastUnitsOfRatio);
-}
-
-const char* CauseName(FaultCause cause) {
-  switch (cause) {
-    case FaultCause::kData:
-      return "data";
-    case FaultCause::kEstimator:
-      return "estimator";
-    case FaultCause::kBoth:
-      return "both";
-    case FaultCause::kNone:
-      break;
-  }
-  return "";
-}
-
-// What a fault is of, as the end of a sentence; empty: nothing is said of it.
-std::string DescribeCause(FaultCause cause, bool is_small) {
-  switch (cause) {
-    case FaultCause::kData:
-      return "; the data: in simulation it is not";
-    case FaultCause::kEstimator:
-      return fmt::format("; the estimator's own covariance is too {}, in simulation too",
-                         is_small ? "small" : "large");
-    case FaultCause::kBoth:
-      return "; in simulation too, and more so here";
-    case FaultCause::kNone:
-      break;
-  }
-  return "";
-}
-
-// "covariances: too small; the data: in simulation it is not (spatial_halves)".
-std::string DescribeCovariances(const CovarianceVerdict& of) {
-  const std::string text = std::string("covariances: ") + VerdictName(of.verdict);
-  if (of.verdict == TruthFreeVerdict::kNoData) return text;
-  return fmt::format("{}{} ({})", text, DescribeCause(of.cause, of.verdict == TruthFreeVerdict::kTooSmall),
-                     fmt::join(of.tests, ", "));
-}
-
-// Beside coverage: a covariance covers as often as it likes if it is wide enough.
-std::string DescribeSharpness(const SetReport& report) {
-  if (std::isnan(report.rotation_sd_deg)) return "";
-  return FormatParagraph(fmt::format("stated sd (median): {:.2g} deg of rotation, {:.2g} deg of direction",
-                                     report.rotation_sd_deg, report.direction_sd_deg));
-}
-
-bool IsKnown(const DistanceCorrelation& c) { return std::isfinite(c.difference.lower); }
-
-std::string CorrelationVerdict(const DistanceCorrelation& c) {
-  if (!IsKnown(c)) return "no data";
-  if (c.difference.upper < kNominalCorrelation) return "holds";
-  return c.difference.lower > kNominalCorrelation ? "correlated" : "undecided";
-}
-
-// "3 loops of images (2 of 3, 1 of 4)".
-std::string LoopsText(const SetReport& report) {
-  int sum = 0;
-  std::string lengths;
-  for (const auto& [length, count] : report.num_loops) {
-    sum += count;
-    lengths += fmt::format("{}{} of {}", lengths.empty() ? "" : ", ", count, length);
-  }
-  return fmt::format("{} loops of images{}", sum, sum > 0 ? " (" + lengths + ")" : "");
-}
-
-// In files a fault that is found is "wrong", whichever way.
-std::string FaultVerdict(TruthFreeVerdict verdict) {
-  const bool is_fault = verdict == TruthFreeVerdict::kTooSmall || verdict == TruthFreeVerdict::kTooLarge;
-  return is_fault ? "wrong" : VerdictName(verdict);
-}
-
-// "focal length 0.2 %, ...".
-std::string NominalFaults() {
-  std::string words;
-  for (size_t j = 0; j < kNumNamedFaults; ++j) {
-    const CameraFaultText& text = FindFaultText(kCameraFaults[j]);
-    words += fmt::format("{}{} {:g}{}{}", words.empty() ? "" : ", ", text.words, text.per_unit * text.nominal,
-                         *text.unit ? " " : "", text.unit);
-  }
-  return words;
-}
 
 // What a set says of one thing.
 struct SetRow {
@@ -133,7 +39,7 @@ SetRow MakeCorrelationRow(const SetReport& set, const DistanceCorrelation& c) {
   if (!IsKnown(c)) return row;
   row.value = c.correlation - c.twin_correlation;
   row.heading = fmt::format("residuals {:g} to {:g} px apart", c.from_px, c.to_px);
-  row.words = fmt::format("{}: correlation {}", row.verdict, RangeText(row.value, row.interval));
+  row.words = fmt::format("{}: correlation {}", row.verdict, FormatRange(row.value, row.interval));
   return row;
 }
 
@@ -166,143 +72,13 @@ std::vector<SetRow> MakeSetRows(const SetReport& set) {
   add("noise_by_size", "noise by size", VerdictName(set.sizes.verdict), DescribeSizeTest(set.sizes),
       set.sizes.num_pairs, set.sizes.slope);
   add("sigma_px", "noise", VerdictName(set.sigma_verdict),
-      fmt::format("sigma {} px, assumed {:g}: {}", RangeText(set.sigma_px.value, set.sigma_px.interval),
+      fmt::format("sigma {} px, assumed {:g}: {}", FormatRange(set.sigma_px.value, set.sigma_px.interval),
                   set.assumed_sigma_px, VerdictName(set.sigma_verdict)),
       set.num_answered, set.sigma_px);
   return rows;
 }
 
 Estimate EstimateCoverage(const SharedMemberRate& coverage) { return {coverage.rate, coverage.interval}; }
-
-// A part of a set: a test, a fault, ...
-template <typename Part>
-struct PartOfSet {
-  const SetReport* set;
-  const Part* part;
-};
-template <typename Part>
-using PartColumns = std::vector<ColumnOf<PartOfSet<Part>>>;
-
-// A row for each part of each set, after a column for the set.
-template <typename Part, typename ListParts>
-Table MakeTableOfParts(PartColumns<Part> columns, const std::vector<SetReport>& reports,
-                       ListParts list_parts) {
-  columns.insert(columns.begin(), {Column::Key("set"), [](const auto& row) { return row.set->name; }});
-  std::vector<PartOfSet<Part>> rows;
-  for (const SetReport& report : reports) {
-    for (const Part& part : list_parts(report)) rows.push_back({&report, &part});
-  }
-  return MakeTable(columns, rows);
-}
-
-Column MakeIntervalColumn(const std::string& name) {
-  return {.name = name + "_lower," + name + "_upper",
-          .type = ColumnType::kInterval,
-          .json_name = name + "_interval"};
-}
-
-// The parameter, its interval, and as how many pairs it counts.
-void AddPooled(const std::string& name, PooledParameter FaultReport::*member,
-               PartColumns<FaultReport>* columns) {
-  using F = const PartOfSet<FaultReport>&;
-  columns->push_back({Column::Number(name), [=](F f) { return (f.part->*member).value; }});
-  columns->push_back({MakeIntervalColumn(name), [=](F f) { return (f.part->*member).interval; }});
-  columns->push_back(
-      {Column::Number(name + "_effective_pairs"), [=](F f) { return (f.part->*member).effective_n; }});
-}
-
-void AddRatio(const std::string& name, ComparedMedians TruthFreeTest::*member,
-              PartColumns<TruthFreeTest>* columns) {
-  using T = const PartOfSet<TruthFreeTest>&;
-  columns->push_back({Column::Number(name), [=](T t) { return (t.part->*member).value; }});
-  columns->push_back({MakeIntervalColumn(name), [=](T t) { return (t.part->*member).interval; }});
-}
-
-void AddCoverage(const std::string& name, SharedMemberRate TruthFreeTest::*member,
-                 PartColumns<TruthFreeTest>* columns) {
-  using T = const PartOfSet<TruthFreeTest>&;
-  columns->push_back({Column::Number(name), [=](T t) { return (t.part->*member).rate; }});
-  columns->push_back({MakeIntervalColumn(name), [=](T t) { return (t.part->*member).interval; }});
-}
-
-std::vector<ColumnOf<SetReport>> MakeSetColumns() {
-  using S = const SetReport&;
-  return {
-      {Column::Key("set"), [](S s) { return s.name; }},
-      {Column::Count("pairs"), [](S s) { return s.num_pairs; }},
-      {Column::Count("answered"), [](S s) { return s.num_answered; }},
-      {Column::Text("covariances"), [](S s) { return VerdictName(s.covariances.verdict); }},
-      {Column::Text("cause"), [](S s) { return CauseName(s.covariances.cause); }},
-      {Column::Text("by_tests"), [](S s) { return fmt::format("{}", fmt::join(s.covariances.tests, " ")); }},
-      {Column::Number("rotation_sd_deg"), [](S s) { return s.rotation_sd_deg; }},
-      {Column::Number("direction_sd_deg"), [](S s) { return s.direction_sd_deg; }},
-      {Column::Number("assumed_sigma_px"), [](S s) { return s.assumed_sigma_px; }},
-      {Column::Number("sigma_px"), [](S s) { return s.sigma_px.value; }},
-      {MakeIntervalColumn("sigma_px"), [](S s) { return s.sigma_px.interval; }},
-      {Column::Text("sigma_verdict"), [](S s) { return VerdictName(s.sigma_verdict); }},
-      {Column::Count("calibration_pairs"), [](S s) { return s.calibration.num_pairs; }},
-      {Column::Number("calibration_p_value"), [](S s) { return s.calibration.p_value; }},
-      {Column::Number("calibration_dispersion"), [](S s) { return s.calibration.dispersion; }},
-      {Column::Text("calibration_verdict"), [](S s) { return FaultVerdict(s.calibration.verdict); }},
-      {Column::Count("size_pairs"), [](S s) { return s.sizes.num_pairs; }},
-      {Column::Number("size_slope"), [](S s) { return s.sizes.slope.value; }},
-      {MakeIntervalColumn("size_slope"), [](S s) { return s.sizes.slope.interval; }},
-      {Column::Number("size_slope_effective_pairs"), [](S s) { return s.sizes.slope.effective_n; }},
-      {Column::Text("size_verdict"), [](S s) { return VerdictName(s.sizes.verdict); }}};
-}
-
-using LoopCount = std::pair<const size_t, int>;  // images, loops of so many
-PartColumns<LoopCount> MakeLoopColumns() {
-  using L = const PartOfSet<LoopCount>&;
-  return {{Column::Count("images"), [](L l) { return static_cast<std::int64_t>(l.part->first); }},
-          {Column::Count("loops"), [](L l) { return l.part->second; }}};
-}
-
-PartColumns<TruthFreeTest> MakeTestColumns() {
-  using T = const PartOfSet<TruthFreeTest>&;
-  PartColumns<TruthFreeTest> columns = {
-      {Column::Key("test"), [](T t) { return t.part->name; }},
-      {Column::Count("degrees_of_freedom"), [](T t) { return t.part->degrees_of_freedom; }},
-      {Column::Count("n"), [](T t) { return t.part->num_values; }}};
-  AddCoverage("coverage", &TruthFreeTest::coverage, &columns);
-  AddCoverage("twin_coverage", &TruthFreeTest::twin_coverage, &columns);
-  AddRatio("ratio", &TruthFreeTest::ratio, &columns);
-  AddRatio("in_simulation", &TruthFreeTest::in_simulation, &columns);
-  AddRatio("against_twins", &TruthFreeTest::against_twins, &columns);
-  columns.push_back({Column::Text("verdict"), [](T t) { return VerdictName(t.part->verdict); }});
-  columns.push_back({Column::Text("cause"), [](T t) { return CauseName(t.part->cause); }});
-  columns.push_back({Column::Count("units"), [](T t) { return t.part->num_units; }});
-  columns.push_back({Column::Number("units_needed"), [](T t) { return t.part->units_needed; }});
-  return columns;
-}
-
-PartColumns<DistanceCorrelation> MakeCorrelationColumns() {
-  using C = const PartOfSet<DistanceCorrelation>&;
-  return {{Column::Number("from_px"), [](C c) { return c.part->from_px; }},
-          {Column::Number("to_px"), [](C c) { return c.part->to_px; }},
-          {Column::Number("n"), [](C c) { return c.part->num_products; }},
-          {Column::Number("correlation"), [](C c) { return c.part->correlation; }},
-          {Column::Number("twin_correlation"), [](C c) { return c.part->twin_correlation; }},
-          {MakeIntervalColumn("difference"), [](C c) { return c.part->difference; }},
-          {Column::Text("verdict"), [](C c) { return CorrelationVerdict(*c.part); }}};
-}
-
-PartColumns<FaultReport> MakeFaultColumns() {
-  using F = const PartOfSet<FaultReport>&;
-  PartColumns<FaultReport> columns = {
-      {Column::Key("fault"), [](F f) { return FindFaultText(f.part->fault).name; }},
-      {Column::Number("nominal"), [](F f) { return FindFaultText(f.part->fault).nominal; }}};
-  AddPooled("beside_others", &FaultReport::joint, &columns);
-  AddPooled("alone", &FaultReport::alone, &columns);
-  AddPooled("twins", &FaultReport::twins, &columns);
-  columns.push_back({Column::Text("verdict"), [](F f) { return FaultVerdict(f.part->verdict); }});
-  columns.push_back({Column::Text("in_words"), [](F f) { return DescribeFault(*f.part); }});
-  return columns;
-}
-
-PartColumns<std::string> MakeAdviceColumns() {
-  return {{Column::Text("advice"), [](const PartOfSet<std::string>& a) { return *a.part; }}};
-}
 
 // The simulation has no twins of its own.
 Value AgainstTwins(const SetRow& row, Estimate estimate) {
@@ -333,74 +109,17 @@ std::string SetAsTable(const SetReport& report) {
        {Column::Estimated("twins covered", percent),
         [](R r) { return r.test ? AgainstTwins(r, EstimateCoverage(r.test->twin_coverage)) : Value(); }}},
       rows);
-  std::string text = FormatParagraph(fmt::format("{}: {} pairs, {} answered, {}", report.name,
-                                                 report.num_pairs, report.num_answered, LoopsText(report))) +
-                     FormatParagraph(DescribeCovariances(report.covariances)) + DescribeSharpness(report) +
-                     "\n" + RenderText(table);
+  std::string text = DescribeSet(report) + "\n" + RenderText(table);
   for (const std::string& advice : report.advice) text += FormatParagraph("  -> " + advice);
   return text + "\n";
 }
 
 }  // namespace
 
-std::string DescribeVerdict(const TruthFreeTest& test) {
-  const ComparedMedians& ratio = test.ratio;
-  if (!std::isnan(ratio.value) && !IsBounded(ratio.interval) && test.verdict != TruthFreeVerdict::kNoData) {
-    if (test.verdict != TruthFreeVerdict::kTooSmall) return "undecided: " + DescribeTooFew(test);
-    return fmt::format("too small by the coverage; {}{}", DescribeTooFew(test),
-                       DescribeCause(test.cause, true));
-  }
-  const std::string range = RangeText(ratio.value, ratio.interval);
-  switch (test.verdict) {
-    case TruthFreeVerdict::kTooSmall:
-      return fmt::format("too small by {} in variance{}", range, DescribeCause(test.cause, true));
-    case TruthFreeVerdict::kTooLarge:
-      return fmt::format(
-          "too large by {} in variance{}",
-          RangeText(1.0 / ratio.value, {1.0 / ratio.interval.upper, 1.0 / ratio.interval.lower}),
-          DescribeCause(test.cause, false));
-    case TruthFreeVerdict::kUndecided:
-      if (std::isnan(test.units_needed)) return fmt::format("undecided: {}", range);
-      if (test.units_needed > test.num_units)
-        return fmt::format("undecided: {}; some {:.2g} in place of {} would decide it", range,
-                           test.units_needed, test.num_units);
-      return fmt::format("undecided: {}; within {:g} of one it would be by the approximation", range,
-                         kApproximation);
-    case TruthFreeVerdict::kNoData:
-      return VerdictName(test.verdict);
-    default:
-      return fmt::format("{}: {}", VerdictName(test.verdict), range);
-  }
-}
-
 std::string ValidationAsTable(const std::vector<SetReport>& reports) {
   std::string text;
   for (const SetReport& report : reports) text += SetAsTable(report);
-  return text +
-         FormatParagraph(fmt::format(
-             "Covariances as they are stated against the differences of two halves of the matches (5 degrees "
-             "of freedom), the closure of rotations around loops of images (3) and of directions around "
-             "three "
-             "(1): medians over that of chi-square; 1 is right. simulation: the answers to simulated twins "
-             "(the same matches at the estimated geometry with independent noise anew) against the motion "
-             "that they were made of; what is too small there is the estimator's own. Intervals 95 %: "
-             "bootstrap over pairs or loops; those of coverage know which pairs share an image. holds: the "
-             "whole interval within [1/{0:g}, {0:g}], and coverage accordingly. Correlations are beyond "
-             "those "
-             "of the twins; nominal below {1:g}.",
-             kNominalVariance, kNominalCorrelation)) +
-         FormatParagraph(fmt::format(
-             "Camera faults: self-calibration over all pairs of one camera, each beside the others; the "
-             "intervals of a set hold together in 95 % of sets, by the scatter of pairs. One is named only "
-             "if "
-             "the test of all is rejected, the steps converge, and correcting what is named leaves nothing. "
-             "A "
-             "readout time is asked of pairs that state seconds_between. Nominal: {}.",
-             NominalFaults())) +
-         FormatParagraph(fmt::format(
-             "Noise by size: slope of log r^2 on log noise^2 over that of the twins; nominal within {:g} of "
-             "one.",
-             kNominalSlope));
+  return text + DescribeValidationColumns();
 }
 
 Table MakeValidationTable(const std::vector<SetReport>& reports) {
@@ -424,27 +143,9 @@ Table MakeValidationTable(const std::vector<SetReport>& reports) {
 }
 
 CommandResult MakeValidationResult(const std::vector<SetReport>& reports) {
-  return MakeResult(
-      ValidationAsTable(reports) + ClosuresAsTable(reports), kValidationFormat,
-      {{"nominal_variance", kNominalVariance}, {"nominal_correlation", kNominalCorrelation}},
-      MakeValidationTable(reports),
-      {{"sets", MakeTable(MakeSetColumns(), reports)},
-       {"loops",
-        MakeTableOfParts(
-            MakeLoopColumns(), reports, [](const SetReport& set) -> const auto& { return set.num_loops; })},
-       {"tests",
-        MakeTableOfParts(
-            MakeTestColumns(), reports, [](const SetReport& set) -> const auto& { return set.tests; })},
-       {"correlations", MakeTableOfParts(
-                            MakeCorrelationColumns(), reports,
-                            [](const SetReport& set) -> const auto& { return set.correlations; })},
-       {"closures", MakeClosureTable(reports)},
-       {"camera_faults", MakeTableOfParts(
-                             MakeFaultColumns(), reports,
-                             [](const SetReport& set) -> const auto& { return set.calibration.faults; })},
-       {"advice",
-        MakeTableOfParts(
-            MakeAdviceColumns(), reports, [](const SetReport& set) -> const auto& { return set.advice; })}});
+  return MakeResult(ValidationAsTable(reports) + ClosuresAsTable(reports), kValidationFormat,
+                    {{"nominal_variance", kNominalVariance}, {"nominal_correlation", kNominalCorrelation}},
+                    MakeValidationTable(reports), MakeValidationParts(reports));
 }
 
 }  // namespace rcme

@@ -2,8 +2,8 @@
 
 #include <stdexcept>
 
-#include "experiments/run/store/trial_checksum.h"
 #include "experiments/run/store/record_table.h"
+#include "experiments/run/store/trial_checksum.h"
 
 namespace rcme {
 namespace {

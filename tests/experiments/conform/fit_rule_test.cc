@@ -11,6 +11,7 @@
 
 #include "experiments/conform/conform_output.h"
 #include "experiments/conform/conform_report.h"
+#include "experiments/conform/conform_words.h"
 #include "experiments/conform/cross_validate.h"
 #include "experiments/conform/test_promises.h"
 #include "parameters/input_error.h"
@@ -302,7 +303,7 @@ TEST(ConformAsText, SaysWhatItsSharesAndIntervalsAreOf) {
   EXPECT_TRUE(says("the intervals are of the mean of these rules for new problems"));
   EXPECT_FALSE(says("truth of real pairs"));
   report.has_real_truth = true;
-  EXPECT_TRUE(says("How good it is, no pair says (truth_sd)"));
+  EXPECT_TRUE(says("No pair states how accurate its truth is (truth_sd)"));
   for (JudgedAnswer& answer : report.judged) answer.row.nees_of_inexact_truth = 0.0;
   report.judged[0].row.is_wrong_by_truth = true;
   EXPECT_TRUE(says("(truth_sd, of 100 of 100 answers)"));

@@ -8,6 +8,7 @@
 #include "experiments/real/truth_free/camera_faults.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
+#include "parameters/find_setting.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -141,16 +142,13 @@ TEST(NoiseFromFile, IsTheDisplacementFieldOfTheFile) {
   const std::string path = folder.Write("noise.yaml", CameraNoiseAsYaml(MakeNoise()));
   const Settings settings = {{"scene", "uniform_volume"}, {"noise", "from_file"}, {"noise_file", path}};
   const Settings resolved = ResolveSettings(settings);
-  const auto value_of = [](const Settings& of, const std::string& key) {
-    return std::ranges::find(of, key, &Settings::value_type::first)->second;
-  };
-  EXPECT_EQ(value_of(resolved, "noise"), "displacement_field");
-  EXPECT_EQ(value_of(resolved, "sigma_px"), "0.25");
-  EXPECT_EQ(value_of(resolved, "displacement_share"), "0.25");
-  EXPECT_EQ(value_of(resolved, "displacement_reach_px"), "80");
+  EXPECT_EQ(FindSetting(resolved, "noise"), "displacement_field");
+  EXPECT_EQ(FindSetting(resolved, "sigma_px"), "0.25");
+  EXPECT_EQ(FindSetting(resolved, "displacement_share"), "0.25");
+  EXPECT_EQ(FindSetting(resolved, "displacement_reach_px"), "80");
   Settings beside = settings;
   beside.emplace_back("sigma_px", "0.5");
-  EXPECT_EQ(value_of(ResolveSettings(beside), "sigma_px"), "0.5");
+  EXPECT_EQ(FindSetting(ResolveSettings(beside), "sigma_px"), "0.5");
   EXPECT_TRUE(ThrowsInputError(
       [&] {
         ResolveSettings({{"scene", "plane"}, {"noise", "from_file"}});

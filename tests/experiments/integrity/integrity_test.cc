@@ -300,7 +300,7 @@ TEST(IntegrityOutput, SaysCountsInWordsAndInJson) {
   EXPECT_NE(text.find("street"), std::string::npos);
   EXPECT_EQ(text.find("truth of real pairs"), std::string::npos);
   report.has_real_truth = true;
-  EXPECT_NE(IntegrityAsText(report).find("How good it is, no pair says"), std::string::npos);
+  EXPECT_NE(IntegrityAsText(report).find("No pair states how accurate its truth is"), std::string::npos);
   report.conditions[0].counts.truth_sensitivity = {{8, 8}, {{{0, 4}, {1, 2}}}, {{{0, 2}, {0, 1}}}};
   std::string moved = IntegrityAsText(report);
   std::ranges::replace(moved, '\n', ' ');

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "experiments/real/truth_free/validate.h"
-#include "experiments/real/truth_free/validate_output.h"
+#include "experiments/real/truth_free/validate_words.h"
 #include "stats/constants.h"
 
 namespace rcme {

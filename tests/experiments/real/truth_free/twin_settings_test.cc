@@ -2,9 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "experiments/data/make_data.h"
+#include "parameters/find_setting.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
@@ -29,8 +28,7 @@ TwinFit SomeFit() {
 
 std::string ReadValue(const TwinFit& fit, const std::string& key) {
   const Settings settings = SimulatedTwinData(fit, 0.3, 0.5);
-  const auto found = std::ranges::find(settings, key, &Settings::value_type::first);
-  return found == settings.end() ? "" : found->second;
+  return FindSetting(settings, key).value_or("");
 }
 
 // A camera that turns less than half of what it sees of parallax goes sideways, with rotations uniform up to
@@ -93,13 +91,9 @@ TEST(SemiRealData, IsOfTheTemplatesWithTheNoiseOfTheFit) {
   TwinFit fit = SomeFit();
   fit.noise.noise_px = 0.25;
   const Settings data = SemiRealData(fit, "templates", 0.5);
-  const auto value = [&](const std::string& key) {
-    const auto found = std::ranges::find(data, key, &Settings::value_type::first);
-    return found == data.end() ? std::string() : found->second;
-  };
-  EXPECT_EQ(value("folder"), "templates");
-  EXPECT_EQ(value("sigma_px"), "0.5");
-  EXPECT_EQ(value("redraw_noise_px"), "0.25");
+  EXPECT_EQ(FindSetting(data, "folder"), "templates");
+  EXPECT_EQ(FindSetting(data, "sigma_px"), "0.5");
+  EXPECT_EQ(FindSetting(data, "redraw_noise_px"), "0.25");
 }
 
 }  // namespace

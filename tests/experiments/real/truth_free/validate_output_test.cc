@@ -9,6 +9,7 @@
 #include <regex>
 
 #include "experiments/core/table/render_table.h"
+#include "experiments/real/truth_free/validate_words.h"
 
 namespace rcme {
 namespace {

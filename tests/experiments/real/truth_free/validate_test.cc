@@ -14,6 +14,7 @@
 #include "experiments/real/truth_free/residual_correlation.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/validate_output.h"
+#include "experiments/real/truth_free/validate_words.h"
 #include "experiments/study/study_file.h"
 #include "stats/consistency.h"
 #include "tests/test_support/fit_all_matches.h"
