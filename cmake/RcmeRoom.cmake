@@ -69,11 +69,17 @@ function(rcme_compile_together target size)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# rcme_name_groups(SIZE NAME SOURCE ...): NAME/0 is the group of the first SIZE sources, and so on.
+# rcme_name_groups(SIZE NAME SOURCE ...): NAME/0 is the group of the first SIZE sources, and so on. Up to a third of SIZE that
+# are left belong to the last group: one of their own would read the same headers again.
 function(rcme_name_groups size name)
   set(number 0)
+  list(LENGTH ARGN sources)
+  math(EXPR last "(3 * ${sources} - ${size} - 1) / (3 * ${size})")
   foreach(source ${ARGN})
     math(EXPR group "${number} / ${size}")
+    if(group GREATER last)
+      set(group ${last})
+    endif()
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${name}/${group})
     math(EXPR number "${number} + 1")
   endforeach()

@@ -4,7 +4,7 @@
 
 namespace rcme {
 
-// The commands and help texts of a program: program.cc has all commands, demo_main.cc those of scripts/demo.
+// The commands and help texts of a program: program.cc has all commands, demo_commands.cc those of scripts/demo.
 struct CommandSet {
   const char* first_session;  // lines of `rcme --help`
   void (*add)(CLI::App&);     // adds the commands (commands.h)

@@ -60,7 +60,7 @@ SHORTER = [
     (r"^rcme audit (\S+yaml) (.*?)(--only estimator )?--out", r"rcme audit \1 \2--only inlier.true_pose.rank_aware --set outlier_ratio=0 --out"),
     (r"^rcme ask (.*)--within 1m", r"rcme ask \1--trials 10"),
     (r"^rcme integrity (.*)--trials \d+", r"rcme integrity \1--trials 4"),
-    (r"^rcme solve (.*)$", r"rcme solve \1 --set num_matches=60 --trials 100"),
+    (r"^rcme solve (.*)$", r"rcme solve \1 --set num_matches=60 --trials 100 --estimator standard --estimator rcme_as_printed"),
     (r"^rcme map (.*)$", r"rcme map \1 --trials 4"),
     (r"^rcme transfer (\S*transfer_mu.yaml)", r"rcme transfer \1 --set scene=uniform_volume --set num_matches=60"),
     (r"^rcme (tune|transfer) (.*)$", r"rcme \1 \2 --tune explore=10 --tune calibrate=40 --tune verify=5 --tune at_most=0.9"),

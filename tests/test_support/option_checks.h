@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -55,19 +56,18 @@ inline std::vector<double> ListEstimateNumbers(const MotionEstimate& e) {
   return numbers;
 }
 
-// The answers to all problems; none where the options contradict each other.
-inline std::vector<std::vector<double>> Answers(const std::string& estimator, const Settings& options,
-                                                const std::vector<MotionProblem>& problems) {
-  std::vector<std::vector<double>> answers;
+// Null where the options contradict each other.
+inline std::unique_ptr<MotionEstimator> MakeIfAllowed(const std::string& estimator, const Settings& options) {
   try {
-    const std::unique_ptr<MotionEstimator> made = MakeEstimator(estimator, options);
-    for (const MotionProblem& problem : problems) {
-      RandomStream rng({1, 0, 0, 4});
-      answers.push_back(ListEstimateNumbers(made->Estimate(problem, rng)));
-    }
+    return MakeEstimator(estimator, options);
   } catch (const InputError&) {
+    return nullptr;
   }
-  return answers;
+}
+
+inline std::vector<double> Answer(const MotionEstimator& estimator, const MotionProblem& problem) {
+  RandomStream rng({1, 0, 0, 4});
+  return ListEstimateNumbers(estimator.Estimate(problem, rng));
 }
 
 // Values of all kinds that an option may take.
@@ -107,12 +107,17 @@ inline bool HasEffectOn(const std::vector<MotionProblem>& problems, const std::s
   const std::vector<Parameter> options = model->Parameters();
   const std::vector<std::string> values = ValuesFor(FindOption(estimator, options, option));
   for (Settings company : Companies(options)) {
-    const auto without = Answers(estimator, company, problems);
+    const std::unique_ptr<MotionEstimator> without = MakeIfAllowed(estimator, company);
+    if (!without) continue;
+    std::vector<std::vector<double>> answers_without;  // of the first problems, as far as one was asked for
     for (const std::string& value : values) {
       company.emplace_back(option, value);
-      const auto with = Answers(estimator, company, problems);
+      const std::unique_ptr<MotionEstimator> with = MakeIfAllowed(estimator, company);
       company.pop_back();
-      if (!with.empty() && !without.empty() && with != without) return true;
+      for (std::size_t i = 0; with && i < problems.size(); ++i) {
+        if (i == answers_without.size()) answers_without.push_back(Answer(*without, problems[i]));
+        if (Answer(*with, problems[i]) != answers_without[i]) return true;
+      }
     }
   }
   return false;
