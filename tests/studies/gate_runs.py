@@ -5,13 +5,15 @@
 
 Every run has a seed of its own. An A/A run compares an estimator with itself under another name, or (fresh) with itself on samples of its
 own, so that trials change sides by chance. Rows are appended to OUT/runs.csv and a run that is there already is not run again; the
-counts with exact 95 % intervals go to OUT/summary.csv."""
+counts with exact 95 % intervals go to OUT/summary.csv. Beside other work, give a longer --max-time and compare the processor's seconds with
+the budget."""
 
 import argparse
 import csv
 import json
 import math
 import pathlib
+import resource
 import subprocess
 import tempfile
 import time
@@ -31,7 +33,7 @@ RUNS = {
     "worse_solver": (SAMPLE, {**SAMPLE, "solver": "eight_point"}),
     "fewer_samples": ({"name": "rcme_calibrated"}, {"name": "rcme_calibrated", "max_samples": 16, "min_samples": 16}),
 }
-COLUMNS = ["run", "seed", "exit_code", "verdict", "worse", "trials_per_condition", "seconds"]
+COLUMNS = ["run", "seed", "exit_code", "verdict", "worse", "trials_per_condition", "seconds", "cpu_seconds"]
 
 
 def estimator_file(folder, label, settings):
@@ -41,6 +43,11 @@ def estimator_file(folder, label, settings):
     return str(path)
 
 
+def cpu_seconds_of_children():
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
+
+
 def run_gate(arguments, name, seed):
     old, new = RUNS[name]
     with tempfile.TemporaryDirectory() as scratch:
@@ -48,14 +55,15 @@ def run_gate(arguments, name, seed):
         command = [arguments.program, "gate", arguments.study, "--old", estimator_file(folder, "before", old),
                    "--new", estimator_file(folder, "after", new), "--seed", str(seed), "--threads", str(arguments.threads),
                    "--max-time", arguments.max_time, "--out", str(folder / "out")]
-        start = time.monotonic()
+        start, cpu_start = time.monotonic(), cpu_seconds_of_children()
         done = subprocess.run(command, capture_output=True, text=True)
         if done.returncode not in VERDICTS:
             raise SystemExit(f"{' '.join(command)}: {done.stderr}")
         gate = json.loads((folder / "out/gate.json").read_text())
         worse = " ".join(test["quantity"] for test in gate["tests"] if test["verdict"] == "worse")
         return {"run": name, "seed": seed, "exit_code": done.returncode, "verdict": VERDICTS[done.returncode], "worse": worse,
-                "trials_per_condition": gate["trials_per_condition"], "seconds": f"{time.monotonic() - start:.1f}"}
+                "trials_per_condition": gate["trials_per_condition"], "seconds": f"{time.monotonic() - start:.1f}",
+                "cpu_seconds": f"{cpu_seconds_of_children() - cpu_start:.1f}"}
 
 
 def binomial_tail(k, n, p):
@@ -79,7 +87,8 @@ def exact_interval(k, n):
 def summarize(rows, path):
     with open(path, "w", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
-        out.writerow(["run", "n", "worse", "lower", "upper", "not_worse", "undecided", "median_trials_per_condition", "median_seconds"])
+        out.writerow(["run", "n", "worse", "lower", "upper", "not_worse", "undecided", "median_trials_per_condition", "median_seconds",
+                      "median_cpu_seconds", "most_cpu_seconds"])
         for name in RUNS:
             some = [row for row in rows if row["run"] == name]
             if not some:
@@ -88,7 +97,8 @@ def summarize(rows, path):
             middle = lambda key: sorted(float(row[key]) for row in some)[n // 2]
             out.writerow([name, n, worse, *(f"{end:.4f}" for end in exact_interval(worse, n)),
                           sum(row["verdict"] == "not worse" for row in some), sum(row["verdict"] == "undecided" for row in some),
-                          f"{middle('trials_per_condition'):.0f}", f"{middle('seconds'):.1f}"])
+                          f"{middle('trials_per_condition'):.0f}", f"{middle('seconds'):.1f}", f"{middle('cpu_seconds'):.1f}",
+                          f"{max(float(row['cpu_seconds']) for row in some):.1f}"])
 
 
 def main():
