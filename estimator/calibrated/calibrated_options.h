@@ -29,14 +29,15 @@ enum class CalibratedStep {
   kOppositeWay,
   kDirectionPosterior,
   kNoiseChoice,
+  kUsualMotions,  // the prior of the motion (mode_weights.h)
   kModelCheck,
 };
 
 // Options of rcme_calibrated.
 struct CalibratedOptions {
   int min_samples = 64, max_samples = 10000;
-  int num_candidates = 16;  // hypotheses refined by a few steps
-  int num_modes = 4;        // how many of them are refined to the optimum
+  int num_candidates = 8;  // hypotheses refined by a few steps
+  int num_modes = 4;       // how many of them are refined to the optimum
 
   // The failure bounds: a motion counts as wrong if either error exceeds its bound.
   double max_rotation_error_deg = 3.0, max_direction_error_deg = 15.0;

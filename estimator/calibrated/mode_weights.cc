@@ -11,12 +11,21 @@
 namespace rcme {
 namespace {
 
-constexpr double kLeastSharedVariance = 10.0, kMostWidth = 10.0;
+constexpr double kLeastSharedVariance = 10.0;
+constexpr double kAxial = 0.95;    // least forwardness of travel along the axis
+constexpr double kTurnRad = 0.05;  // below it, smaller rotations are hardly more likely
+
+double Axial(double forwardness) { return std::max(forwardness - kAxial, 0.0) / (1.0 - kAxial); }
 
 }  // namespace
 
-const std::array<const char*, kNumModeTerms> kModeTermNames = {"exclusive", "shared", "explained",
-                                                               "noise",     "width",  "parallax"};
+const std::array<const char*, kNumModeTerms> kModeTermNames = {"exclusive", "shared", "explained", "noise",
+                                                               "forward",   "axial",  "turn"};
+
+double ComputeForwardness(const RelativePose& pose) {
+  const double z1 = pose.R.col(2).dot(pose.t), z2 = pose.t.z();  // R' t and t: the baseline in either frame
+  return 0.5 * std::abs(z1 + z2);
+}
 
 std::array<double, kNumModeTerms> ComputeModeTerms(const Contrast& contrast, const ModeTraits& a,
                                                    const ModeTraits& b) {
@@ -26,8 +35,9 @@ std::array<double, kNumModeTerms> ComputeModeTerms(const Contrast& contrast, con
           contrast.shared / sd,
           std::log(explained),
           std::log(a.scale / b.scale),
-          std::clamp(b.log_det_information - a.log_det_information, -kMostWidth, kMostWidth),
-          std::log((1.0 + std::max(a.depth_in_noise, 0.0)) / (1.0 + std::max(b.depth_in_noise, 0.0)))};
+          a.forwardness - b.forwardness,
+          Axial(a.forwardness) - Axial(b.forwardness),
+          std::log((a.turn_rad + kTurnRad) / (b.turn_rad + kTurnRad))};
 }
 
 double ModeLogOdds(const Contrast& contrast, const ModeTraits& a, const ModeTraits& b) {

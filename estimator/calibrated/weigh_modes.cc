@@ -1,31 +1,27 @@
 #include "estimator/calibrated/weigh_modes.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/calibrated/direction_posterior.h"
+#include "estimator/geometry/pose.h"
 
 namespace rcme {
 namespace {
 
-// log det of the information without the scale of the mode's noise: how well the geometry of its matches
-// determines the motion.
-double LogDetGeometry(const Mode& mode, const MotionPrior* prior) {
-  const Eigen::LLT<Matrix5d> llt(mode.mixture.scale * mode.mixture.scale * FindMatchInformation(prior, mode));
-  return 2.0 * llt.matrixLLT().diagonal().array().log().sum();
-}
-
-ModeTraits FindTraits(const ExplainedMode& mode, const MotionPrior* prior) {
-  return {mode.explanation.num_explained, mode.mode.mixture.scale, LogDetGeometry(mode.mode, prior),
-          UsualDepthInNoise(mode.explanation)};
+ModeTraits FindTraits(const ExplainedMode& mode, CalibratedStep leave_out) {
+  ModeTraits traits{.num_explained = mode.explanation.num_explained, .scale = mode.mode.mixture.scale};
+  if (leave_out == CalibratedStep::kUsualMotions) return traits;
+  traits.forwardness = ComputeForwardness(mode.mode.pose);
+  traits.turn_rad = VectorFromRotation(mode.mode.pose.R).norm();
+  return traits;
 }
 
 class ModeComparison {
  public:
-  explicit ModeComparison(const std::vector<ExplainedMode>& modes, const MotionPrior* prior = nullptr)
+  explicit ModeComparison(const std::vector<ExplainedMode>& modes, const MotionPrior* prior = nullptr,
+                          CalibratedStep leave_out = CalibratedStep::kNone)
       : modes_(modes), prior_evidence_(modes.size(), 0.0) {
-    for (const ExplainedMode& mode : modes) traits_.push_back(FindTraits(mode, prior));
+    for (const ExplainedMode& mode : modes) traits_.push_back(FindTraits(mode, leave_out));
     for (size_t i = 0; prior != nullptr && i < modes.size(); ++i)
       prior_evidence_[i] = ComputePriorEvidence(*prior, modes[i].mode);
   }
@@ -103,7 +99,7 @@ std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t ans
 
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
                        const MixturePrior& prior, const CalibratedOptions& options) {
-  const ModeComparison comparison(modes, prior.motion);
+  const ModeComparison comparison(modes, prior.motion, options.leave_out);
   ModeWeights weights;
   weights.answer = ChooseAnswer(modes, comparison);
   weights.is_rival = FindRivals(modes, weights.answer, bounds);

@@ -28,6 +28,7 @@ FAMILIES = ["indoor", "outdoor", "low_parallax", "planarity", "moving_object", "
             "uniform", "forward", "parallax", "clustered_inliers", "assumed_sigma"]
 OF_FAMILY, OF_RANDOM = 0.6, 0.3  # weights of a trial of a family, of one with random partners; they are easy and many
 MODES_OF_FAMILY = 2.0  # the same where the modes' weights are fitted: there the families have few trials with two modes
+PRIOR_TERMS, PRIOR_SHARE = ("mode_forward", "mode_axial", "mode_turn"), 0.6  # share of the fitted weights (mode_weights.h)
 RIDGE = 5e-4  # of the standardised terms' weights, per trial
 OUTSIDE = 0.005  # share of the training trials beyond either end of a term's domain
 QUANTILE_95 = 11.0705  # of chi-square with five degrees of freedom
@@ -61,7 +62,7 @@ def sources_of_modes(scale):
     training = [Source("studies/right_calibration.yaml", 71, draws(2000), 4, listing="modes")]
     training += [Source(f"studies/calibrated/{family}.yaml", 73, None, max(2, int(20 * scale)), MODES_OF_FAMILY, listing="modes")
                  for family in ("indoor", "outdoor", "planarity", "hard", "few_matches")]
-    return training, [Source("studies/right_calibration.yaml", 81, draws(800), 4, listing="modes")]
+    return training, [Source("studies/right_calibration.yaml", 82, draws(800), 4, listing="modes")]
 
 
 def sources(scale):
@@ -208,15 +209,15 @@ class Check:
         return ((values >= self.ranges[:, 0]) & (values <= self.ranges[:, 1])).all(axis=1)
 
 
-def fit_failure(x, failed, weight, has_constant=True):
-    """Weights of a ridge logistic regression by Newton's method; where there is a constant it is the first column."""
+def fit_failure(x, failed, weight, has_constant=True, known=0.0):
+    """Weights of a ridge logistic regression by Newton's method; where there is a constant it is the first column. `known`: log-odds to add."""
     mean, scale = x.mean(axis=0), x.std(axis=0)
     if not has_constant:
         mean, scale = np.zeros(x.shape[1]), np.sqrt((x**2).mean(axis=0))
     else:
         mean[0], scale[0] = 0.0, 1.0
     scale[scale == 0] = 1.0
-    b = newton((x - mean) / scale, failed, weight, np.zeros(x.shape[1]), has_constant)
+    b = newton((x - mean) / scale, failed, weight, np.zeros(x.shape[1]), has_constant, known)
     b /= scale
     if has_constant:
         b[0] -= b[1:] @ mean[1:]
@@ -227,16 +228,17 @@ def penalty_of(number, weight, has_constant=True):
     return RIDGE * np.diag([0.0 if has_constant else 1.0] + [1.0] * (number - 1)) * weight.sum()
 
 
-def newton(z, failed, weight, b, has_constant=True):
+def newton(z, failed, weight, b, has_constant=True, known=0.0):
     """Ridge logistic regression on standardised columns, begun at b; a step that does not gain is halved."""
     penalty = penalty_of(z.shape[1], weight, has_constant)
 
     def loss(b):
-        return weight @ (np.logaddexp(0, z @ b) - failed * (z @ b)) + 0.5 * b @ penalty @ b
+        log_odds = z @ b + known
+        return weight @ (np.logaddexp(0, log_odds) - failed * log_odds) + 0.5 * b @ penalty @ b
 
     now = loss(b)
     for _ in range(50):
-        p = logistic(z @ b)
+        p = logistic(z @ b + known)
         hessian = (z * (weight * np.maximum(p * (1 - p), 1e-6))[:, None]).T @ z + penalty
         step = np.linalg.solve(hessian, z.T @ (weight * (failed - p)) - penalty @ b)
         while (after := loss(b + step)) > now and np.abs(step).max() > 1e-10:
@@ -479,20 +481,31 @@ def write_modes_table(folder, train, test, b):
     with open(folder / "modes.csv", "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["term", "weight", "log_loss_more_without", "wrong_mode_more_without_percent"])
-        for k, name in enumerate(train.names):
-            without = b.copy()
-            rest = [j for j in range(len(b)) if j != k]
-            without[rest], without[k] = fit_failure(train.x[:, rest], np.ones(len(train.x)), train.weight, has_constant=False), 0.0
-            table.writerow([name[len("mode_"):], f"{b[k]:.4g}", f"{test.log_loss(without) - test.log_loss(b):.4f}",
+        for weight, name in zip(b, train.names):
+            without = fit_mode_terms(train, name)
+            table.writerow([name[len("mode_"):], f"{weight:.4g}", f"{test.log_loss(without) - test.log_loss(b):.4f}",
                             f"{100 * (test.wrong(without) - test.wrong(b)):.2f}"])
         table.writerow(["all", "", f"{test.log_loss(b):.4f}", f"{100 * test.wrong(b):.2f}"])
+
+
+def fit_mode_terms(train, left_out=None):
+    """All weights, then those of the prior's terms reduced and the others fitted again beside them. That of the term left out is 0."""
+    terms = np.array([name != left_out for name in train.names])
+    is_prior = np.array([name in PRIOR_TERMS for name in train.names])
+    fit = lambda columns, known: fit_failure(train.x[:, columns], np.ones(len(train.x)), train.weight, has_constant=False, known=known)
+    b = np.zeros(len(train.names))
+    b[terms] = fit(terms, 0.0)
+    b[is_prior] *= PRIOR_SHARE
+    others = terms & ~is_prior
+    b[others] = fit(others, train.x[:, is_prior] @ b[is_prior])
+    return b
 
 
 def fit_modes(arguments):
     training, held_out = sources_of_modes(arguments.scale)
     files = make_all(training + held_out, arguments)
     train = ModePairs(files[:len(training)], training)
-    b = fit_failure(train.x, np.ones(len(train.x)), train.weight, has_constant=False)
+    b = fit_mode_terms(train)
     if not arguments.report_only:
         write_array("kModeTerms", weight_rows([name.removeprefix("mode_") for name in train.names], b), training)
     write_modes_table(arguments.out, train, ModePairs(files[len(training):], held_out), b)

@@ -20,7 +20,7 @@ Contrast Of(double exclusive, double shared, double variance) {
   return contrast;
 }
 
-// {exclusive, shared, explained, noise, width, parallax}
+// {exclusive, shared, explained, noise, forward, axial, turn}
 using Terms = std::array<double, kNumModeTerms>;
 
 void ExpectTerms(const Terms& found, const Terms& expected) {
@@ -28,40 +28,49 @@ void ExpectTerms(const Terms& found, const Terms& expected) {
 }
 
 TEST(ComputeModeTerms, OfExamplesByHand) {
-  const ModeTraits usual = {100, 1.0, 0.0, 0.0};
-  ExpectTerms(ComputeModeTerms(Of(9.0, 0.0, 0.0), usual, usual), {3.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-  ExpectTerms(ComputeModeTerms(Of(-9.0, 0.0, 0.0), usual, usual), {-3.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-  ExpectTerms(ComputeModeTerms(Of(0.0, 20.0, 6.0), usual, usual), {0.0, 5.0, 0.0, 0.0, 0.0, 0.0});
-  ExpectTerms(ComputeModeTerms({}, {50, 0.5, -3.0, 7.0}, {100, 1.0, 0.0, 1.0}),
-              {0.0, 0.0, std::log(0.5), std::log(0.5), 3.0, std::log(4.0)});
-  // Widths within ten nats; points behind the cameras are no parallax.
-  ExpectTerms(ComputeModeTerms({}, {100, 1.0, -80.0, -5.0}, usual), {0.0, 0.0, 0.0, 0.0, 10.0, 0.0});
-  ExpectTerms(ComputeModeTerms({}, {100, 1.0, 80.0, 0.0}, usual), {0.0, 0.0, 0.0, 0.0, -10.0, 0.0});
+  const ModeTraits usual = {100, 1.0, 0.5, 0.05};
+  ExpectTerms(ComputeModeTerms(Of(9.0, 0.0, 0.0), usual, usual), {3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms(Of(-9.0, 0.0, 0.0), usual, usual), {-3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms(Of(0.0, 20.0, 6.0), usual, usual), {0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms({}, {50, 0.5, 0.96, 0.15}, usual),
+              {0.0, 0.0, std::log(0.5), std::log(0.5), 0.46, 0.2, std::log(2.0)});
+  ExpectTerms(ComputeModeTerms({}, {100, 1.0, 0.95, 0.0}, usual),
+              {0.0, 0.0, 0.0, 0.0, 0.45, 0.0, -std::log(2.0)});
 }
 
 TEST(ComputeModeTerms, HaveTheOtherSignTheOtherWayRound) {
-  const ModeTraits a = {70, 0.7, 2.0, 3.0}, b = {90, 1.1, -4.0, 30.0};
+  const ModeTraits a = {70, 0.7, 0.99, 0.3}, b = {90, 1.1, 0.2, 0.1};
   const Terms forth = ComputeModeTerms(Of(4.0, 7.0, 3.0), a, b);
   Terms back = ComputeModeTerms(Of(-4.0, -7.0, 3.0), b, a);
   for (double& x : back) x = -x;
   ExpectTerms(forth, back);
 }
 
-// What speaks for a mode does so by its sign: more evidence, more matches, less noise, a wider optimum, less
-// parallax.
+TEST(ComputeForwardness, IsTheMeanCosineToBothAxes) {
+  const RelativePose along{RotationFromVector({0.0, 0.3, 0.0}), Eigen::Vector3d::UnitZ()};
+  EXPECT_NEAR(ComputeForwardness(along), 0.5 * (1.0 + std::cos(0.3)), 1e-12);
+  EXPECT_NEAR(ComputeForwardness({along.R, -along.t}), ComputeForwardness(along), 1e-12);
+  EXPECT_NEAR(ComputeForwardness({along.R.transpose(), -along.R.transpose() * along.t}),
+              ComputeForwardness(along), 1e-12);
+  EXPECT_NEAR(ComputeForwardness({Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitY()}), 0.0, 1e-12);
+}
+
+// What speaks for a mode does so by its sign: more evidence, more matches, less noise, travel along the axis
+// or across it, a smaller rotation.
 TEST(ModeLogOdds, GrowWithWhatSpeaksForTheMode) {
-  const ModeTraits usual = {100, 1.0, 0.0, 5.0};
+  const ModeTraits usual = {100, 1.0, 0.7, 0.1};
   EXPECT_EQ(ModeLogOdds({}, usual, usual), 0.0);
   EXPECT_GT(ModeLogOdds(Of(9.0, 0.0, 0.0), usual, usual), 0.0);
   EXPECT_GT(ModeLogOdds(Of(0.0, 9.0, 0.0), usual, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {110, 1.0, 0.0, 5.0}, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {100, 0.9, 0.0, 5.0}, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {100, 1.0, -1.0, 5.0}, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 0.0, 4.0}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {110, 1.0, 0.7, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 0.9, 0.7, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 1.0, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 0.0, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 0.7, 0.0}, usual), 0.0);
 }
 
 TEST(ModeLogOdds, AreTheFittedSumOfTheTerms) {
-  const ModeTraits a = {70, 0.7, 2.0, 3.0}, b = {90, 1.1, -4.0, 30.0};
+  const ModeTraits a = {70, 0.7, 0.99, 0.3}, b = {90, 1.1, 0.2, 0.1};
   const Contrast contrast = Of(4.0, 7.0, 3.0);
   const Terms terms = ComputeModeTerms(contrast, a, b);
   double sum = 0.0;

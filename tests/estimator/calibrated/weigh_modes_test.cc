@@ -14,12 +14,12 @@ constexpr double kDensity = 1e-2;                   // of a wrong match
 constexpr MotionBounds kModeBounds = {0.05, 0.25};  // rad
 const MixturePrior kPrior = {kDensity, true};
 
-// A motion that turns by so much, with the information exp(log_det / 5) along every direction in units of its
-// noise; ten matches of 19 times the density of a wrong one, which are evidence of 10 log 10 nats.
-ExplainedMode ModeAt(double turn_rad, double log_det = 0.0, int num_explained = 100, double scale = 1.0) {
+// A motion along the optical axis that turns by so much about it; ten matches of 19 times the density of a
+// wrong one, which are evidence of 10 log 10 nats.
+ExplainedMode ModeAt(double turn_rad, int num_explained = 100, double scale = 1.0) {
   ExplainedMode made;
   made.mode.pose = {RotationFromVector({0.0, 0.0, turn_rad}), Eigen::Vector3d::UnitZ()};
-  made.mode.hessian = std::exp(log_det / 5.0) / (scale * scale) * Matrix5d::Identity();
+  made.mode.hessian = Matrix5d::Identity() / (scale * scale);
   made.mode.mixture.scale = scale;
   made.mode.mixture.inlier_ratio = 0.5;
   made.mode.mixture.outlier_density = kDensity;
@@ -65,17 +65,16 @@ TEST(WeighModes, ModesWithinTheBoundsAreOne) {
   }
 }
 
-// The odds of rivals against the answer, from the width in units of their noise (scale), the number of
-// matches and the noise, add up to the root of their powers.
+// The odds of rivals against the answer, from their rotation, the number of matches and the noise, add up to
+// the root of their powers.
 TEST(WeighModes, RivalsAddUpToTheirNorm) {
-  const std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.2, 1.0, 90, 2.0),
-                                            ModeAt(0.4, 2.0, 80, 1.5)};
+  const std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.2, 90, 2.0), ModeAt(0.4, 80, 1.5)};
   const ModeWeights weights = WeighModes(modes, kModeBounds, kPrior, {});
   EXPECT_EQ(weights.answer, 0u);
-  const auto odds = [](double log_det, int num_explained, double scale) {
-    return std::exp(-ModeLogOdds({}, {100, 1.0, 0.0, 0.0}, {num_explained, scale, log_det, 0.0}));
+  const auto odds = [](double turn_rad, int num_explained, double scale) {
+    return std::exp(-ModeLogOdds({}, {100, 1.0, 1.0, 0.0}, {num_explained, scale, 1.0, turn_rad}));
   };
-  const double first = odds(1.0, 90, 2.0), second = odds(2.0, 80, 1.5);
+  const double first = odds(0.2, 90, 2.0), second = odds(0.4, 80, 1.5);
   const double norm = std::pow(std::pow(first, 2.5) + std::pow(second, 2.5), 0.4);
   const double total = 1.0 + norm + kNone;
   EXPECT_NEAR(weights.of_modes[0], 1.0 / total, 1e-12);
@@ -86,12 +85,28 @@ TEST(WeighModes, RivalsAddUpToTheirNorm) {
 }
 
 TEST(WeighModes, TheAnswerIsTheModeThatNoOtherBeats) {
-  const ModeWeights weights = WeighModes(
-      {ModeAt(0.0, 3.0), ModeAt(0.2, 2.0), ModeAt(0.4, 0.0), ModeAt(0.6, 1.0)}, kModeBounds, kPrior, {});
+  const std::vector<ExplainedMode> modes = {ModeAt(0.0, 70), ModeAt(0.2, 80), ModeAt(0.4, 100),
+                                            ModeAt(0.6, 90)};
+  CalibratedOptions options;
+  options.leave_out = CalibratedStep::kUsualMotions;
+  const ModeWeights weights = WeighModes(modes, kModeBounds, kPrior, options);
   EXPECT_EQ(weights.answer, 2u);
   EXPECT_GT(weights.of_modes[2], weights.of_modes[3]);
   EXPECT_GT(weights.of_modes[3], weights.of_modes[1]);
   EXPECT_GT(weights.of_modes[1], weights.of_modes[0]);
+}
+
+// Two modes with the same matches: the prior prefers the one that turns less, and does not if it is left out.
+TEST(WeighModes, ThePriorOfTheMotionCanBeLeftOut) {
+  const std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.2)};
+  CalibratedOptions options;
+  const ModeWeights with = WeighModes(modes, kModeBounds, kPrior, options);
+  EXPECT_NEAR(with.of_modes[0] / with.of_modes[1],
+              std::exp(ModeLogOdds({}, {100, 1.0, 1.0, 0.0}, {100, 1.0, 1.0, 0.2})), 1e-9);
+  EXPECT_GT(with.of_modes[0], 2.0 * with.of_modes[1]);
+  options.leave_out = CalibratedStep::kUsualMotions;
+  const ModeWeights without = WeighModes(modes, kModeBounds, kPrior, options);
+  EXPECT_NEAR(without.of_modes[0], without.of_modes[1], 1e-12);
 }
 
 // Two motions of their own, 20 matches against 15: the prior odds of the options times (15 / 20)^3.
@@ -134,12 +149,12 @@ TEST(FindRivals, AreOfWhereTheAnswerIsNow) {
 
 TEST(ListModePairs, HasEveryTwoModesOnceWithTheirTerms) {
   const std::vector<ModePair> pairs =
-      ListModePairs({ModeAt(0.0), ModeAt(0.2, 1.0, 90, 2.0), ModeAt(0.4, 2.0, 80, 1.5)});
+      ListModePairs({ModeAt(0.0), ModeAt(0.2, 90, 2.0), ModeAt(0.4, 80, 1.5)});
   ASSERT_EQ(pairs.size(), 3u);
   EXPECT_EQ(pairs[1].a, 0u);
   EXPECT_EQ(pairs[1].b, 2u);
   EXPECT_FALSE(pairs[1].is_second_motion);
-  const auto expected = ComputeModeTerms({}, {100, 1.0, 0.0, 0.0}, {80, 1.5, 2.0, 0.0});
+  const auto expected = ComputeModeTerms({}, {100, 1.0, 1.0, 0.0}, {80, 1.5, 1.0, 0.4});
   for (size_t k = 0; k < kNumModeTerms; ++k) EXPECT_NEAR(pairs[1].terms[k], expected[k], 1e-12) << k;
 }
 
