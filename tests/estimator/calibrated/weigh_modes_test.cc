@@ -57,7 +57,10 @@ TEST(WeighModes, NoMotionIsNeverMoreThanSevenTimesAsLikely) {
 
 // The same motion found three times weighs as much as found once.
 TEST(WeighModes, ModesWithinTheBoundsAreOne) {
-  const ModeWeights weights = WeighModes({ModeAt(0.0), ModeAt(0.01), ModeAt(0.04)}, kModeBounds, kPrior, {});
+  CalibratedOptions options;
+  options.leave_out = CalibratedStep::kUsualMotions;
+  const ModeWeights weights =
+      WeighModes({ModeAt(0.0), ModeAt(0.01), ModeAt(0.04)}, kModeBounds, kPrior, options);
   EXPECT_NEAR(weights.of_no_motion, kNone / (1.0 + kNone), 1e-12);
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_FALSE(weights.is_rival[i]);

@@ -213,10 +213,10 @@ TEST(MotionPriorUse, AnImpossiblePriorIsRefused) {
   EXPECT_NE(e.message.find("prior"), std::string::npos);
 }
 
-// Nearly all points on a plane, travel along the axis: two motions explain the matches, and a rotation known
+// Nearly all points on a plane, travel in any direction: two motions explain the matches, and a rotation known
 // to a degree tells which is the camera's. Without it a part of the answers is wrong.
 TEST(MotionPriorUse, ChoosesBetweenTheMotionsOfAPlane) {
-  SceneGenerator scenes("plane_and_parallax", "", "forward");
+  SceneGenerator scenes("plane_and_parallax", "", "general");
   for (const auto& [key, value] :
        {std::pair{"num_matches", "150"}, {"off_plane_share", "0"}, {"baseline_m", "1"}})
     FindParameter(scenes.Parameters(), key).SetFromText(value);
