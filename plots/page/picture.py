@@ -16,9 +16,11 @@ WIDE, NARROW, NARROW_SCREEN = 6.8, 3.4, "(max-width: 40rem)"  # inches of the fi
 def settle(figure):
     """Leaves the panels where the layout puts them, to a millionth of the figure: the last bits of its solver are not the same
     each time, and names within the file are hashes of them."""
-    figure.draw_without_rendering()
+    if layout := figure.get_layout_engine():
+        layout.execute(figure)
     figure.set_layout_engine("none")
     for axes in figure.axes:
+        axes.apply_aspect()
         axes.set_position([round(number, 6) for number in axes.get_position().bounds])
 
 

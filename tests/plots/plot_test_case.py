@@ -8,6 +8,7 @@
 """
 
 import contextlib
+import gc
 import io
 import json
 import pathlib
@@ -18,6 +19,7 @@ import warnings
 
 PLOTS = pathlib.Path(__file__).resolve().parents[2] / "plots"
 sys.path.insert(0, str(PLOTS))
+gc.set_threshold(100_000, 50, 1000)  # as plots/common/command_line.py, for what the tests draw themselves
 warnings.simplefilter("error")  # a layout that was given up is a fault
 
 
