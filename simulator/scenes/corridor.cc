@@ -9,7 +9,7 @@ namespace rcme {
 namespace {
 
 // Part 0: both walls, 1: floor, 2: ceiling. A corridor is convex, so there is no occlusion.
-class CorridorWorld : public PointwiseWorld {
+class CorridorWorld : public World {
  public:
   CorridorWorld(const UprightCamera& camera1, std::vector<std::vector<Rectangle>> parts,
                 std::vector<double> shares)
@@ -17,11 +17,11 @@ class CorridorWorld : public PointwiseWorld {
 
   std::vector<double> PartShares() const override { return shares_; }
 
- private:
-  Eigen::Vector3d DrawCandidate(size_t part, RandomStream& rng) const override {
-    return camera_.DrawPoint(parts_[part], rng);
+  void DrawCandidates(size_t part, size_t, RandomStream& rng, PointBlock* block) const override {
+    camera_.DrawPoints(parts_[part], rng, block);
   }
 
+ private:
   UprightCamera camera_;
   std::vector<std::vector<Rectangle>> parts_;
   std::vector<double> shares_;

@@ -26,16 +26,16 @@ void AddFaces(const Eigen::Vector3d& low, const Eigen::Vector3d& high, bool has_
   }
 }
 
-class RoomWorld : public PointwiseWorld {
+class RoomWorld : public World {
  public:
   RoomWorld(const UprightCamera& camera1, std::vector<Rectangle> faces)
       : camera_(camera1), faces_(std::move(faces)) {}
 
- private:
-  Eigen::Vector3d DrawCandidate(size_t, RandomStream& rng) const override {
-    return camera_.DrawPoint(faces_, rng);
+  void DrawCandidates(size_t, size_t, RandomStream& rng, PointBlock* block) const override {
+    camera_.DrawPoints(faces_, rng, block);
   }
 
+ private:
   UprightCamera camera_;
   std::vector<Rectangle> faces_;
 };
@@ -71,7 +71,7 @@ class Room : public SceneModel {
     AddFaces({-0.5 * width_m_, -height_m_, -0.5 * length_m_}, {0.5 * width_m_, 0.0, 0.5 * length_m_}, true,
              true, &faces);
     for (int k = 0; k < num_boxes_; ++k) AddBox({x_m, z_m}, rng, &faces);
-    return std::make_unique<RoomWorld>(camera1, std::move(faces));
+    return std::make_unique<RoomWorld>(camera1, camera1.InView(std::move(faces)));
   }
 
  private:

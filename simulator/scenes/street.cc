@@ -15,7 +15,7 @@ struct StreetSize {
 };
 
 // Part 0: the road, 1: the facades, 2: far points. The street is convex, so there is no occlusion.
-class StreetWorld : public PointwiseWorld {
+class StreetWorld : public World {
  public:
   StreetWorld(const SceneCamera& camera1, double turn, const StreetSize& size, std::vector<double> shares)
       : camera_(camera1),
@@ -31,11 +31,12 @@ class StreetWorld : public PointwiseWorld {
 
   std::vector<double> PartShares() const override { return shares_; }
 
- private:
-  Eigen::Vector3d DrawCandidate(size_t part, RandomStream& rng) const override {
-    return part == 2 ? DrawFarPoint(rng) : upright_.DrawPoint(part == 0 ? road_ : facades_, rng);
+  void DrawCandidates(size_t part, size_t, RandomStream& rng, PointBlock* block) const override {
+    if (part < 2) return upright_.DrawPoints(part == 0 ? road_ : facades_, rng, block);
+    for (size_t i = 0; i < PointBlock::kSize; ++i) block->Set(i, DrawFarPoint(rng));
   }
 
+ private:
   // Uniform in depth, across image 1, and in height up to that of the facades.
   Eigen::Vector3d DrawFarPoint(RandomStream& rng) const {
     const double depth_m = rng.Uniform(size_.street_length_m, kStreetFarSpan * size_.street_length_m);

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "simulator/scene_camera.h"
+#include "simulator/scene_model.h"
+#include "simulator/scenes/view_volume.h"
 #include "stats/random.h"
 
 namespace rcme {
@@ -26,12 +28,14 @@ class UprightCamera {
 
   // A viewing ray, given in camera axes, in the axes of the building.
   Eigen::Vector3d InBuildingAxes(const Eigen::Vector3d& ray) const;
-  // The depth (third coordinate in the camera, m) of the first rectangle on the ray; infinite if there is
+  // Those rectangles that the image may show; it shows nothing of the others. With a lens: all.
+  std::vector<Rectangle> InView(std::vector<Rectangle> rectangles) const;
+  // The depth (third coordinate in the camera, m) of the first rectangle on each ray; infinite if there is
   // none.
-  double FirstDepth(const Eigen::Vector3d& ray, std::span<const Rectangle> rectangles) const;
-  // The first point (camera frame) on the ray of a pixel uniform over the image; UnseenPoint() if the ray
-  // hits no rectangle.
-  Eigen::Vector3d DrawPoint(std::span<const Rectangle> rectangles, RandomStream& rng) const;
+  RayBlock::Numbers FirstDepths(const RayBlock& rays, std::span<const Rectangle> rectangles) const;
+  // The first points (camera frame) on the rays of pixels uniform over the image; UnseenPoint() for a ray
+  // that hits no rectangle.
+  void DrawPoints(std::span<const Rectangle> rectangles, RandomStream& rng, PointBlock* block) const;
 
  private:
   SceneCamera camera_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 #include "parameters/input_error.h"
 #include "simulator/scenes/scenes.h"
@@ -15,7 +16,7 @@ namespace {
 // Part 0: the plane left of the edge. Part 1: the plane right of it. The edge is vertical and crosses the
 // optical axis of camera 1. angles[part] is the angle between the plane and the line from the edge to the
 // camera.
-class TwoPlanesWorld : public PointwiseWorld {
+class TwoPlanesWorld : public World {
  public:
   TwoPlanesWorld(const SceneCamera& camera1, double edge_depth_m, const std::array<CosSin, 2>& angles,
                  double first_plane_share)
@@ -26,18 +27,24 @@ class TwoPlanesWorld : public PointwiseWorld {
 
   std::vector<double> PartShares() const override { return {first_plane_share_, 1.0 - first_plane_share_}; }
 
- private:
-  // The point where the ray of a pixel uniform over image 1 meets the plane. Points of the plane at s metres
+  // The points where the rays of pixels uniform over image 1 meet the plane. Points of the plane at s metres
   // from the edge have depth edge_depth_m - s cos and lie s sin to the side; their ratio must equal |x / z|
   // of the ray.
-  Eigen::Vector3d DrawCandidate(size_t part, RandomStream& rng) const override {
-    const Eigen::Vector3d ray = DrawRay(camera_, rng);
-    const double ratio = part == 0 ? -ray.x() : ray.x();
-    const double denominator = angles_[part].sin + ratio * angles_[part].cos;
-    if (ratio < 0.0 || denominator < 1e-9) return UnseenPoint();
-    return edge_depth_m_ * angles_[part].sin / denominator * ray;
+  void DrawCandidates(size_t part, size_t, RandomStream& rng, PointBlock* block) const override {
+    RayBlock rays;
+    DrawRays(camera_, rng, &rays);
+    const double cos = angles_[part].cos, sin = angles_[part].sin, edge_m = edge_depth_m_ * sin;
+    const double side = part == 0 ? -1.0 : 1.0;
+    RayBlock::Numbers depths_m;
+    for (size_t i = 0; i < PointBlock::kSize; ++i) {
+      const double ratio = side * rays.x[i], denominator = sin + ratio * cos, depth_m = edge_m / denominator;
+      const bool is_missed = (ratio < 0.0) | (denominator < 1e-9);
+      depths_m[i] = is_missed ? std::numeric_limits<double>::infinity() : depth_m;
+    }
+    SetOnRays(rays, depths_m, block);
   }
 
+ private:
   SceneCamera camera_;
   double edge_depth_m_;
   std::array<CosSin, 2> angles_;

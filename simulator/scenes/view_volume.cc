@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "parameters/input_error.h"
 
@@ -32,6 +33,36 @@ Eigen::Vector3d DrawRay(const SceneCamera& camera, RandomStream& rng) {
       fmt::format("cameras: of {} x {} px the lens shows next to nothing; give another focal_px, image size "
                   "or coefficients of the lens",
                   camera.width, camera.height));
+}
+
+void DrawRays(const SceneCamera& camera, RandomStream& rng, RayBlock* rays) {
+  if (camera.HasLens()) {
+    for (size_t i = 0; i < PointBlock::kSize; ++i) {
+      const Eigen::Vector3d ray = DrawRay(camera, rng);
+      rays->x[i] = ray.x();
+      rays->y[i] = ray.y();
+    }
+    return;
+  }
+  std::array<double, 2 * PointBlock::kSize> uniforms;
+  rng.FillUniform(uniforms);
+  const double cx = camera.cx, cy = camera.cy, fx = camera.fx, fy = camera.fy;
+  const double width_px = camera.width, height_px = camera.height;
+  for (size_t i = 0; i < PointBlock::kSize; ++i) {
+    rays->x[i] = (-0.5 + width_px * uniforms[2 * i + 1] - cx) / fx;
+    rays->y[i] = (-0.5 + height_px * uniforms[2 * i] - cy) / fy;
+  }
+}
+
+void SetOnRays(const RayBlock& rays, const RayBlock::Numbers& depths_m, PointBlock* block) {
+  const Eigen::Vector3d unseen = UnseenPoint();
+  for (size_t i = 0; i < PointBlock::kSize; ++i) {
+    const double depth_m = depths_m[i], x_m = depth_m * rays.x[i], y_m = depth_m * rays.y[i];
+    const bool is_finite = depth_m < std::numeric_limits<double>::infinity();
+    block->x_m[i] = is_finite ? x_m : unseen.x();
+    block->y_m[i] = is_finite ? y_m : unseen.y();
+    block->z_m[i] = is_finite ? depth_m : unseen.z();
+  }
 }
 
 namespace {

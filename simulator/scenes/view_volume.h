@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
 #include "parameters/parameter.h"
@@ -27,6 +28,19 @@ std::vector<Parameter> Parameters(DepthRange& depths);
 // the image.
 Eigen::Vector3d DrawRay(const SceneCamera& camera, RandomStream& rng);
 Eigen::Vector3d DrawRay(const Camera& without_its_lens, RandomStream& rng) = delete;
+
+// Viewing rays (x, y, 1), as arrays.
+struct RayBlock {
+  using Numbers = std::array<double, PointBlock::kSize>;  // one of each ray
+  Numbers x, y;
+};
+
+// Bit-identical to as many calls of DrawRay.
+void DrawRays(const SceneCamera& camera, RandomStream& rng, RayBlock* rays);
+void DrawRays(const Camera& without_its_lens, RandomStream& rng, RayBlock* rays) = delete;
+
+// The points at these depths on the rays; UnseenPoint() where the depth is infinite.
+void SetOnRays(const RayBlock& rays, const RayBlock::Numbers& depths_m, PointBlock* block);
 
 // Points uniform over image 1 and uniform in depth within the range; UnseenPoint() at a pixel that no ray
 // reaches.
