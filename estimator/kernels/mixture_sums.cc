@@ -58,8 +58,9 @@ HWY_INLINE NoiseScales LoadNoiseScales(const MatchBlocks& matches, int block, in
   return {Load(scales.scale + lane), Load(scales.inverse + lane)};
 }
 
-// The mixture's constants. They are computed once: within the loop over the matches the compiler would divide
-// again for every block.
+// What the mixture's density at a match is computed from, in every lane of a vector. MixtureParameters states
+// the model (s, w, q and the law of the noise); these are the inverses and products of its numbers. They are
+// computed once: within the loop over the matches the compiler would divide again for every block.
 struct MixtureConstants {
   Vec inverse_s2, inverse_noise;  // 1 / s^2; 1 / (s times the noise of the angle between two rays)
   Vec inverse_square;             // 1 / (s^2 dof), dof the degrees of freedom

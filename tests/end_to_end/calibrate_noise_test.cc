@@ -66,8 +66,10 @@ TEST_F(CalibrateNoiseProgram, SaysWhatIsLeftOfAFault) {
   std::smatch fault;
   ASSERT_TRUE(std::regex_search(written, fault, std::regex("focal_length: \\{.*uncertainty: ([^}]+)\\}")))
       << written;
-  const std::string left = fmt::format("+-{:.2g} % is left", 100.0 * std::stod(fault[1]));
-  EXPECT_NE(table.out.find(left), std::string::npos) << left << " is not in\n" << table.out;
+  const std::string remaining_uncertainty = fmt::format("+-{:.2g} % is left", 100.0 * std::stod(fault[1]));
+  EXPECT_NE(table.out.find(remaining_uncertainty), std::string::npos)
+      << remaining_uncertainty << " is not in\n"
+      << table.out;
 }
 
 TEST_F(CalibrateNoiseProgram, RefusesWhatItCannotUse) {
