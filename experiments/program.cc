@@ -1,5 +1,7 @@
 #include "experiments/program.h"
 
+#include <string>
+
 #include "experiments/commands/commands.h"
 #include "experiments/commands/run_command_line.h"
 #include "experiments/commands/twin_commands.h"
@@ -7,17 +9,14 @@
 namespace rcme {
 namespace {
 
-constexpr const char* kFirstSession =
+// The lines of a first session before and after kStudySession.
+constexpr const char* kBeforeAStudy =
     R"(  rcme ask                                                     which estimator, for your camera?
   rcme list studies                                            the installed studies
-  rcme run failure_vs_outliers --out run.sqlite                run one, or a study file of yours
-  rcme summarize run.sqlite                                    rates with exact intervals
-  rcme compare run.sqlite                                      each estimator against the first
-  rcme summarize run.sqlite --format csv --out summary.csv     the same for programs and figures
-  rcme plot failure_rate summary.csv --x outlier_ratio --out figure
-  rcme report run.sqlite --out report.html                     everything on one page
-  rcme failures run.sqlite                                     the trials that failed, as a list
-  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full
+)";
+
+constexpr const char* kAfterAStudy =
+    R"(  rcme replay run.sqlite --condition 0 --trial 7               one trial again, in full
   rcme show run.sqlite --condition 0 --trial 7                 the same trial as a picture
   rcme tune tune_mu_lambda --out tuned.yaml                    thresholds with a guarantee
   rcme audit --out audit                                       every claim of the paper, checked
@@ -78,7 +77,8 @@ void AddCommands(CLI::App& app) {
 }  // namespace
 
 int RunProgram(int argc, const char* const* argv, const char* installed_share) {
-  return RunCommandLine(argc, argv, {kFirstSession, AddCommands, ""}, installed_share);
+  const std::string first_session = std::string(kBeforeAStudy) + kStudySession + kAfterAStudy;
+  return RunCommandLine(argc, argv, {first_session.c_str(), AddCommands, ""}, installed_share);
 }
 
 }  // namespace rcme

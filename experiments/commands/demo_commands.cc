@@ -7,14 +7,7 @@ namespace rcme {
 namespace {
 
 constexpr CommandSet kDemoCommands = {
-    R"(  rcme run failure_vs_outliers --out run.sqlite                run one, or a study file of yours
-  rcme summarize run.sqlite                                    rates with exact intervals
-  rcme compare run.sqlite                                      each estimator against the first
-  rcme summarize run.sqlite --format csv --out summary.csv     the same for programs and figures
-  rcme plot failure_rate summary.csv --x outlier_ratio --out figure
-  rcme report run.sqlite --out report.html                     everything on one page
-  rcme failures run.sqlite                                     the trials that failed, as a list
-)",
+    kStudySession,
     [](CLI::App& app) {
       app.group("Studies and their results");  // of the commands that follow
       AddRunCommand(app);

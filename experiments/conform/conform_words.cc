@@ -190,12 +190,10 @@ std::string DescribeJudgedAnswers(const ConformReport& report) {
 
 std::string DescribeConformTruth(const ConformReport& report) {
   if (!report.has_real_truth || report.judged.empty()) return "";
-  const std::string text =
-      "The truth of real pairs is taken as exact: its errors count as errors of the estimator.";
   const auto num_inexact = std::ranges::count_if(
       report.judged, [](const JudgedAnswer& a) { return !std::isnan(a.row.nees_of_inexact_truth); });
-  if (num_inexact == 0)
-    return FormatParagraph(text + " No pair states how accurate its truth is (truth_sd).");
+  const std::string text = DescribeRealTruth(num_inexact > 0);
+  if (num_inexact == 0) return FormatParagraph(text);
   const auto num_open =
       std::ranges::count_if(report.judged, [](const JudgedAnswer& a) { return a.row.is_wrong_by_truth; });
   return FormatParagraph(fmt::format(

@@ -164,9 +164,7 @@ Table MakeTableOfConditions(const IntegrityReport& report, TableFor table_for, s
 std::string DescribeCounts(const IntegrityReport& report) {
   const IntegrityCounts all = CountAll(report);
   std::string text = fmt::format(
-      "{} on {}: {} trials, {} refused. Protection levels are for a risk of {:g} an answer; alert limits: "
-      "{:g} "
-      "deg of rotation, {:g} deg of direction.",
+      "{} on {}: {} trials, {} refused. Protection levels are for a risk of {:g} an answer; alert limits: {:g} deg of rotation, {:g} deg of direction.",
       report.estimator, report.study, all.tally.NumTrials(0) + all.num_unscored[0] + all.num_not_simulated,
       all.num_refusals, report.terms.risk, report.terms.rotation_limit_deg, report.terms.direction_limit_deg);
   if (all.num_invalid > 0)
@@ -186,10 +184,9 @@ std::string DescribeTruth(const IntegrityReport& report) {
   if (!report.has_real_truth) return "";
   const IntegrityCounts all = CountAll(report);
   const TruthSensitivity& sensitivity = all.truth_sensitivity;
-  std::string text =
-      "The truth of real pairs is taken as exact: its errors count as errors of the estimator.";
-  if (sensitivity.num_inexact[0] + sensitivity.num_inexact[1] == 0)
-    return FormatParagraph(text + " No pair states how accurate its truth is (truth_sd).");
+  const bool is_sd_stated = sensitivity.num_inexact[0] + sensitivity.num_inexact[1] > 0;
+  std::string text = DescribeRealTruth(is_sd_stated);
+  if (!is_sd_stated) return FormatParagraph(text);
   for (size_t q = 0; q < kNumIntegrityQuantities; ++q) {
     const auto percent = [](std::int64_t count, std::int64_t n) {
       return n == 0 ? 0.0 : 100.0 * static_cast<double>(count) / static_cast<double>(n);

@@ -24,4 +24,10 @@ TruthErrorDeg ComputeTruthErrorDeg(const Truth& truth) {
           scale_deg * GreatestSd(covariance.bottomRightCorner<2, 2>())};
 }
 
+std::string DescribeRealTruth(bool is_sd_stated) {
+  const std::string text =
+      "The truth of real pairs is taken as exact: its errors count as errors of the estimator.";
+  return is_sd_stated ? text : text + " No pair states how accurate its truth is (truth_sd).";
+}
+
 }  // namespace rcme

@@ -1,6 +1,8 @@
 // How far the errors of answers may be off because the given truth has an error of its own.
 #pragma once
 
+#include <string>
+
 #include "experiments/data/data_source.h"
 
 namespace rcme {
@@ -15,5 +17,8 @@ struct TruthErrorDeg {
   double rotation = 0.0, direction = 0.0;
 };
 TruthErrorDeg ComputeTruthErrorDeg(const Truth& truth);
+
+// How the truth of real pairs is taken, as sentences of a report. `is_sd_stated`: some pair states truth_sd.
+std::string DescribeRealTruth(bool is_sd_stated);
 
 }  // namespace rcme

@@ -1,11 +1,15 @@
 // The tools of a contract check: the estimator, the problems, and the clock of its calls.
 #pragma once
 
+#include <cstdint>
+#include <memory>
 #include <mutex>
+#include <string>
+#include <vector>
 
-#include "experiments/core/work/isolated_call.h"
 #include "experiments/audit/contract/contract_problems.h"
 #include "experiments/audit/contract/estimator_contract.h"
+#include "experiments/core/work/isolated_call.h"
 
 namespace rcme {
 

@@ -13,6 +13,9 @@
 namespace rcme {
 namespace {
 
+// Makes the connection exclusive, so no other run can use the file.
+constexpr const char* kTakeLock = "PRAGMA locking_mode = EXCLUSIVE; BEGIN IMMEDIATE; COMMIT";
+
 // Describes the plan's run in a file of earlier runs: trials that these planned stay planned, and their
 // notes stay.
 RunDescription Continued(const RunDescription& earlier, const StudyPlan& plan) {

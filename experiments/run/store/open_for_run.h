@@ -3,14 +3,11 @@
 #include <memory>
 #include <string>
 
-#include "experiments/run/store/result_file.h"
 #include "experiments/core/work/shard.h"
+#include "experiments/run/store/result_file.h"
 #include "experiments/study/study_plan.h"
 
 namespace rcme {
-
-// Makes the connection exclusive, so no other run can use the file.
-inline constexpr const char* kTakeLock = "PRAGMA locking_mode = EXCLUSIVE; BEGIN IMMEDIATE; COMMIT";
 
 // Throws InputError if `path` cannot be a result file.
 void CheckPathToWrite(const std::string& path);
