@@ -55,9 +55,8 @@ std::array<double, kNumModeTerms> ComputeModeTerms(const Contrast& a_against_b, 
 //   then worth less than its nats, and the more there is, the less each nat is worth. Hence the square root.
 // - A mode that needs less noise or explains more matches is more likely for that alone.
 // - The determinants are left out: the false motion of a plane is the one with the larger covariance.
-// - The prior's weights are 0.6 of the fitted ones, because cameras elsewhere may move otherwise than those
-// of
-//   the simulator.
+// - The prior's weights are 0.6 of the fitted ones, because cameras elsewhere may move otherwise than the
+//   simulator's.
 //
 // The prior says that cameras travel along their axes or across them rather than obliquely, and turn little.
 // It is fitted to the simulator's motions, a ninth of which have any direction. Real pairs agree in kind: of
