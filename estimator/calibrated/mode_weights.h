@@ -59,9 +59,9 @@ std::array<double, kNumModeTerms> ComputeModeTerms(const Contrast& a_against_b, 
 //   simulator's.
 //
 // The prior says that cameras travel along their axes or across them rather than obliquely, and turn little.
-// It is fitted to the simulator's motions, a ninth of which have any direction. Real pairs agree in kind: of
-// 234 with a known motion, 25 % travel within 18 deg of the axis and 11 % have a forwardness of 0.6 to 0.95,
-// where any direction would give 5 and 35 %.
+// It is fitted to the simulator's motions; of its eight kinds with a translation, two have any direction
+// (general, vanishing_baseline). Real pairs agree in kind: of 234 with a known motion, 25 % travel within
+// 18 deg of the axis and 11 % have a forwardness of 0.6 to 0.95, where any direction would give 5 and 35 %.
 double ModeLogOdds(const Contrast& a_against_b, const ModeTraits& a, const ModeTraits& b);
 
 // Evidence of a motion against no motion at all, nats: the log-likelihood of the matches, each by its density

@@ -109,7 +109,7 @@ def printable(text):
 
 @contextlib.contextmanager
 def rare_garbage_collection():
-    """A figure is a hundred thousand objects that live until it is written: looking through them takes a tenth of the time."""
+    """A figure is a hundred thousand objects that live until it is written: looking through them takes a tenth to a fifth of the time."""
     usual = gc.get_threshold()
     gc.set_threshold(100_000, 50, 1000)
     try:
