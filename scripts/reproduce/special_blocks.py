@@ -95,15 +95,20 @@ def pooled(spec):
 
 
 def verdicts(spec):
-    """A row per claim of the audit."""
-    rows = {row["claim"]: row for row in reversed(read_table(spec.argument))}
-    body = []
-    for row in reversed(rows.values()):
-        words = row["claim_verdict"]
+    """A row per claim of the audit, and how many of its numbers hold, are undecided and do not hold; `only`: what the claims begin with."""
+    rows, body = read_table(spec.argument), []
+    for claim in levels_of(rows, "claim"):
+        if not claim.startswith(tuple(spec.get("only").split(", "))):
+            continue
+        here = select(rows, f"claim={claim}")
+        words, found = here[0]["claim_verdict"], [row["verdict"] for row in here]
+        sides = {row["side"] for row in here if row["side"]}
         if "limit" in words:
-            words = f"limit only, up to {float(row['holds_up_to_sigma_px']):g} px"
-        body.append([row["claim"], row["reading"], words])
-    return markdown(["claim", "reading", "verdict"], body)
+            words = f"limit only, up to {float(here[0]['holds_up_to_sigma_px']):g} px"
+        elif words == "does not hold" and len(sides) == 1:
+            words += f": {sides.pop()}"
+        body.append([claim, here[0]["reading"], words, " / ".join(str(found.count(each)) for each in ("holds", "undecided", "does not hold"))])
+    return markdown(["claim", "reading", "verdict", "numbers that hold / undecided / do not"], body)
 
 
 def verdict_counts(spec):
