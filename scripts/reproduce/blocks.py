@@ -18,8 +18,7 @@ A page shows a block between two comments, and the file of the same name with `.
                     `where` conditions that hold for all of them
     text FILE       lines of a committed text file as they stand; `from` and `to` say with what they begin
     same PAGE NAME  the block NAME of another page, named from the root of the repository
-    made NAME       what made the result: command, commit, CPU minutes
-    list            every result
+    made NAME ...   what made the results: command, commit, CPU minutes
     ...             the kinds of special_blocks.py
 """
 

@@ -19,32 +19,28 @@ def version_words(entry):
     return f"{entry['commit']}, {entry['date']}" if entry else "not noted"
 
 
+MOST_SHOWN = 500  # characters of commands; longer ones stand in results.toml alone
+
+
 def made(spec):
-    """How the result is made again, and by what it was made."""
-    recipe, entry = read_recipes()[spec.argument], made_by().get(spec.argument, {})
+    """How results are made again, and by what they were made."""
+    return "\n\n".join(how_made(name) for name in spec.argument.split())
+
+
+def how_made(name):
+    recipe, entry = read_recipes()[name], made_by().get(name, {})
     minutes = entry.get("cpu_minutes", recipe.cpu_minutes)
+    older = ", an older one: not made again since" if "or before" in entry.get("commit", "") else ""
+    head = f"`scripts/results {recipe.name}` (about {minutes:g} CPU minutes; the committed one is of commit {version_words(entry)}{older})"
     commands = "\n".join("    " + command.replace("{out}/", "").replace(" --out {out}", " --out .")
                          for command in recipe.commands)
+    if len(commands) > MOST_SHOWN:
+        return f"{head} runs the commands of [results.toml](../results.toml)."
     places = {name: entry["what"] for name, entry in data().items() if "{" + name + "}" in commands}
     for name in places:
         commands = commands.replace("{" + name + "}", name)
-    meaning = "".join(f"\n\n`{name}` stands for the folder of {what}. The repository does not hold it; the environment variable "
-                      f"`RCME_{name}` says where it is." for name, what in places.items())
-    older = ", an older one: not made again since" if "or before" in entry.get("commit", "") else ""
-    return (f"`scripts/results {recipe.name}` (about {minutes:g} CPU minutes; the committed one is of commit "
-            f"{version_words(entry)}{older}) runs\n\n{commands}{meaning}")
-
-
-def all_results(_):
-    """Every result, what makes it, and what made it."""
-    entries = made_by()
-    body = []
-    for recipe in read_recipes().values():
-        entry = entries.get(recipe.name, {})
-        minutes = f"{entry.get('cpu_minutes', recipe.cpu_minutes):g}"
-        body.append([recipe.name, f"[{recipe.folder}]({recipe.folder}/README.md)",
-                     minutes + (" (long)" if recipe.is_long() else ""), version_words(entry)])
-    return markdown(["`scripts/results NAME`", "page", "CPU minutes, about", "made by commit"], body)
+    meaning = "".join(f"\n\n`{name}`: the folder of {what}, [not in the repository](../README.md#results)." for name, what in places.items())
+    return f"{head} runs\n\n{commands}{meaning}"
 
 
 def largest_sigma(spec):
@@ -148,20 +144,20 @@ def better(spec):
 
 
 def one_at_a_time(spec):
-    """A row per level of each factor, the others at their usual level."""
+    """A row where every factor is at its usual level, and one for each other level; `only` picks estimators."""
     rows = read_table(spec.argument)
     factors = [name for name, _ in spec.parts("factors")]
     base = dict(zip(factors, [level for level, _ in spec.parts("base")]))
-    estimators = [level for level in levels_of(rows, "estimator") if level != "scene"]
+    estimators = [name for name, _ in spec.parts("only")]
     cells = [word.strip() for word in spec.get("cells").split(",")]
-    body = []
+
+    def line(factor, level):
+        here = [row for row in rows if all(is_level(row[name], level if name == factor else base[name]) for name in factors)]
+        return [" / ".join(value_or_dash(here, estimator, cell) for cell in cells) for estimator in estimators]
+
+    body = [["(usual)", "", *line(factors[0], base[factors[0]])]]
     for factor in factors:
-        others = [name for name in factors if name != factor]
-        for level in levels_of(rows, factor):
-            here = [row for row in rows
-                    if row[factor] == level and all(is_level(row[name], base[name]) for name in others)]
-            body.append([factor, level] + [" / ".join(value_or_dash(here, estimator, cell) for cell in cells)
-                                           for estimator in estimators])
+        body += [[factor, level, *line(factor, level)] for level in levels_of(rows, factor) if not is_level(level, base[factor])]
     return markdown(["factor", "level"] + estimators, body)
 
 
@@ -313,7 +309,7 @@ def winners(spec):
     return markdown(["study", *head], body)
 
 
-SPECIAL = {"made": made, "list": all_results, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
+SPECIAL = {"made": made, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
            "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
            "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "against": against, "transfer": transfer,
            "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,

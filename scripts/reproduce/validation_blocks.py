@@ -8,7 +8,8 @@ from tables import levels_of, markdown, read_table, rms_over_sd, select, the_row
 
 def truth_free(spec):
     """Of each scene, for each table of `rcme validate` (tables: NAME as WORDS; ... of one folder, or NAME+NAME of several): the
-    share that the 95 % region covers, the same of the twins, and by what the covariances are too small; one test."""
+    share that the 95 % region covers, the same of the twins, and by what the covariances are too small; one test, without the
+    scenes that have no value."""
     tables = [([row for part in name.split("+") for row in read_table(part)], words)
               for name, words in spec.parts("tables")]
     body = []
@@ -23,7 +24,8 @@ def truth_free(spec):
             upper = float(row["upper"]) if row["upper"] else math.inf
             line.append(f"{covered} ({twins}) of {row['n']}; {float(row['value']):.2g} "
                         f"[{float(row['lower']):.2g}, {upper:.2g}], {row['verdict']}")
-        body.append(line)
+        if set(line[1:]) != {"-"}:
+            body.append(line)
     return markdown(["scene", *(words for _, words in tables)], body)
 
 
