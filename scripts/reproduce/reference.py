@@ -14,6 +14,7 @@ from study_schema import study_schema_text
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ROOT / "docs" / "reference"
 SCHEMA = ROOT / "docs" / "study.schema.json"
+MERGED = ("options", "settings")  # lists of what many take: one row for all whose other columns are equal
 TABLE = re.compile(r"(<!-- begin list: (\S+) -->\n).*?(<!-- end list: \2 -->)", re.DOTALL)
 
 
@@ -22,7 +23,19 @@ def list_as_markdown(program, name):
     lines = subprocess.run([program, "list", name, "--format", "markdown"], check=True, capture_output=True,
                            text=True).stdout.strip().splitlines()
     lines = [line for line in lines if not line.startswith("| poselib ")]
-    return "\n".join(re.sub(r"\b(OpenCV|OpenGV) [\d.]+\b", r"\1", line) for line in lines) + "\n"
+    lines = [re.sub(r"\b(OpenCV|OpenGV) [\d.]+\b", r"\1", line) for line in lines]
+    return "\n".join(merged(lines) if name in MERGED else lines) + "\n"
+
+
+def merged(lines):
+    """Rows that differ only in their first cell as one, with these cells in a list: "scene: plane, room; motion: forward"."""
+    takers = {}
+    for line in lines[2:]:
+        first, rest = line.removeprefix("| ").split(" | ", 1)
+        kind, colon, name = first.rpartition(": ")
+        takers.setdefault(rest, {}).setdefault(kind + colon, []).append(name)
+    rows = ["; ".join(kind + ", ".join(names) for kind, names in kinds.items()) + " | " + rest for rest, kinds in takers.items()]
+    return [*lines[:2], *("| " + row for row in rows)]
 
 
 def written_files(program):
