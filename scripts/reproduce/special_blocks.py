@@ -5,7 +5,7 @@ import json
 import re
 
 from recipes import MADE, RESULTS, ROOT, data, read_recipes
-from tables import as_number, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
+from tables import as_number, filled, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
 from validation_blocks import caught, closures, median_ratios, truth_free, validation_values
 
 REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
@@ -35,12 +35,12 @@ def how_made(name):
     commands = "\n".join("    " + command.replace("{out}/", "").replace(" --out {out}", " --out .")
                          for command in recipe.commands)
     if len(commands) > MOST_SHOWN:
-        return f"{head} runs the commands of [results.toml](../results.toml)."
+        return filled(f"{head} runs the commands of [results.toml](../results.toml).")
     places = {name: entry["what"] for name, entry in data().items() if "{" + name + "}" in commands}
     for name in places:
         commands = commands.replace("{" + name + "}", name)
     meaning = "".join(f"\n\n`{name}`: the folder of {what}, [not in the repository](../README.md#results)." for name, what in places.items())
-    return f"{head} runs\n\n{commands}{meaning}"
+    return filled(f"{head} runs") + f"\n\n{commands}{meaning}"
 
 
 def largest_sigma(spec):
@@ -204,12 +204,14 @@ def ratios(spec):
 
 
 def against(spec):
-    """The time of each stage, call and workload over that of a former commit, and memory: the JSON of `scripts/benchmark --against`."""
-    content = json.loads((RESULTS / spec.argument).read_text())
+    """The time of each stage, call and workload over that of a former commit, and memory: the JSON of `scripts/benchmark --against`. Only
+    what differs by more than a share `by`, and names that begin with `always`."""
+    content, by, always = json.loads((RESULTS / spec.argument).read_text()), float(spec.get("by", "0")), spec.get("always", "-")
     units = {"time": "us", "memory": "MB"}
     body = [[row["name"], f"{row['ratio']:.2f} [{row['lower']:.2f}, {row['upper']:.2f}]", *(f"{row[side]:.3g} {units[row['quantity']]}"
                                                                                       for side in ("before", "now"))]
-            for row in sorted((row for row in content["rows"] if "ratio" in row), key=lambda row: -row["ratio"])]
+            for row in sorted((row for row in content["rows"] if "ratio" in row), key=lambda row: -row["ratio"])
+            if abs(row["ratio"] - 1) >= by or row["name"].startswith(always)]
     return markdown(["stage or call", f"now / {content['against']}", content["against"], "now"], body)
 
 
