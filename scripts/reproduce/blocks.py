@@ -16,7 +16,8 @@ A page shows a block between two comments, and the file of the same name with `.
     table TABLE     the columns of `columns` ("column as Heading; format: NAME as Heading; ...") of the rows of `where`
     say             the lines below it, with numbers in braces: {TABLE: conditions | format}; `use` names a table and
                     `where` conditions that hold for all of them
-    text FILE       lines of a committed text file as they stand; `from` and `to` say with what they begin
+    text FILE       lines of a committed text file as they stand; `from` and `to` say with what the first and the last begin, `before`
+                    with what the line after them does
     same PAGE NAME  the block NAME of another page, named from the root of the repository
     made NAME ...   what made the results: command, commit, CPU minutes
     ...             the kinds of special_blocks.py
@@ -134,6 +135,8 @@ def text(spec):
         lines = lines[next(i for i, line in enumerate(lines) if line.startswith(spec.get("from"))):]
     if spec.get("to"):
         lines = lines[:next(i for i, line in enumerate(lines) if line.startswith(spec.get("to"))) + 1]
+    if spec.get("before"):
+        lines = lines[:next(i for i, line in enumerate(lines) if line.startswith(spec.get("before")))]
     return "```text\n" + "\n".join(lines).strip("\n") + "\n```"
 
 
