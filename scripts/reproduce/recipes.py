@@ -14,7 +14,7 @@ import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from audit_table import audit_csv, without_times
+from audit_table import TABLES, without_times
 
 ROOT = Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "results"
@@ -163,7 +163,7 @@ def content(path, table):
     """The bytes of a file that was made, as they are committed."""
     if not path.exists():
         raise ResultError(f"{path.name} was not written by the commands")
-    return audit_csv(json.loads(path.read_text())).encode() if table == "audit" else path.read_bytes()
+    return TABLES[table](json.loads(path.read_text())).encode() if table else path.read_bytes()
 
 
 def is_same(path, target, table):

@@ -10,6 +10,7 @@ import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts/reproduce"))
 
+from audit_table import fifths_csv  # noqa: E402
 from blocks import Spec, render  # noqa: E402
 from digests import difference, hash_of, trials_of  # noqa: E402
 from recipes import data, is_same, read_recipes, with_data  # noqa: E402
@@ -102,6 +103,14 @@ class TheData(unittest.TestCase):
         os.environ["RCME_PAIRS"] = "mine"
         self.addCleanup(os.environ.pop, "RCME_PAIRS", None)
         self.assertEqual(with_data("rcme twin {PAIRS} --out {out}"), "rcme twin mine --out {out}")
+
+
+class TheAudit(unittest.TestCase):
+    def test_the_coverage_by_difficulty_has_a_row_a_fifth(self):
+        fifth = {"bound_deg": [0.20711, 0.32849], "measured": 0.954821, "interval": [0.910449, 0.98188], "n": 930}
+        evidence = [{"conditions": {"sigma_px": "0.5", "num_matches": "100"}, "fifths_of_difficulty": [fifth, fifth]}, {"conditions": {}}]
+        lines = fifths_csv({"claims": [{"id": "a", "evidence": evidence}]}).splitlines()
+        self.assertEqual(lines[1:], [f"a,sigma_px 0.5; num_matches 100,{n},0.207,0.328,0.9548,0.9104,0.9819,930" for n in (1, 2)])
 
 
 class TheWords(unittest.TestCase):
