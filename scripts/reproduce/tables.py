@@ -134,7 +134,8 @@ FORMATS = {
     "share": share, "share4": lambda row: share(row, 4), "number": number, "scientific": scientific,
     "n": lambda row: f"{int(row['n']):,}", "natural": natural,
     "covered": covered, "rms_over_sd": rms_over_sd,
-    "wrong_and_right": lambda row: f"{row['does_not_hold']} / {row['holds']}", "verdict": lambda row: row["verdict"], "claim": lambda row: row["claim_verdict"],
+    "wrong_and_right": lambda row: f"{row['does_not_hold']} / {row['holds']}",
+    "verdict": lambda row: row["verdict"], "claim": lambda row: row["claim_verdict"],
 }
 
 
