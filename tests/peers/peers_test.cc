@@ -54,7 +54,8 @@ TEST_P(Peers, FindTheMotionOfExactMatches) {
 }
 
 // More than half, by an exact bound of false alarm rate .001, of trials with noise and a fifth of the matches
-// wrong: 43 of 60. A library that finds eight of ten has as many with probability .96, nine of ten with .9999.
+// wrong: 43 of 60. A library that finds eight of ten has as many with probability .96, nine of ten with
+// .9999.
 TEST_P(PeerLibraries, FindMostMotionsAmongWrongMatches) {
   constexpr int kNumTrials = 60;
   int num_near = 0;

@@ -29,7 +29,8 @@ class TempFolder {
   std::string Path(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
 
-  // Writes a file and returns its path. One that is there is removed first: written over, it would wait for the disk.
+  // Writes a file and returns its path. One that is there is removed first: written over, it would wait for
+  // the disk.
   std::string Write(const std::string& name, const std::string& bytes) const {
     std::error_code none;
     std::filesystem::remove(path_ / name, none);
