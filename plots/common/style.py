@@ -20,6 +20,8 @@ import numpy
 
 matplotlib.use("Agg")
 from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: E402  (after the choice of backend)
+from matplotlib.backends.backend_pdf import FigureCanvasPdf  # noqa: E402
+from matplotlib.backends.backend_svg import FigureCanvasSVG  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 from matplotlib.path import Path  # noqa: E402
 
@@ -297,6 +299,24 @@ def add_legend(figure, handles):
         legend.remove()
 
 
+def lay_out(figure, dpi):
+    """Leaves the panels where the layout puts them."""
+    FigureCanvasAgg(figure)  # measures the texts
+    figure.set_dpi(dpi)
+    if layout := figure.get_layout_engine():
+        layout.execute(figure)
+    figure.set_layout_engine("none")
+    for axes in figure.axes:
+        axes.apply_aspect()
+
+
+def print_as(kind, figure, file, metadata):
+    """`savefig` of a figure that is laid out, without the pass before it, which draws nothing and takes a third of the time."""
+    canvas = {"png": FigureCanvasAgg, "pdf": FigureCanvasPdf, "svg": FigureCanvasSVG}[kind](figure)
+    with matplotlib.rc_context({"svg.hashsalt": "rcme", "svg.fonttype": "path"}):
+        getattr(canvas, f"print_{kind}")(file, metadata=metadata)
+
+
 def written_as(figure, kind, path, dpi):
     """Writes one format; no dates or versions go in: the same input gives the same bytes."""
     if kind == "tikz":
@@ -306,8 +326,8 @@ def written_as(figure, kind, path, dpi):
         return
     no_stamp = {"png": {"Software": None}, "pdf": {"Creator": None, "Producer": None, "CreationDate": None},
                 "svg": {"Date": None, "Creator": None}}
-    with matplotlib.rc_context({"svg.hashsalt": "rcme", "svg.fonttype": "path"}):
-        figure.savefig(path, format=kind, dpi=dpi, metadata=no_stamp[kind])
+    figure.set_dpi(dpi)  # which the other formats change
+    print_as(kind, figure, path, no_stamp[kind])
 
 
 def save(figure, path_without_suffix, dpi=RC["savefig.dpi"]):
@@ -316,6 +336,8 @@ def save(figure, path_without_suffix, dpi=RC["savefig.dpi"]):
     All are written before the first takes its place, so a reader never meets half a file and a failure leaves what was
     there.
     """
+    lay_out(figure, dpi)
+
     def write(kind):
         return lambda part: written_as(figure, kind, part, dpi)
     files = {f"{path_without_suffix}.{kind}": write(kind) for kind in sheet.current().formats}

@@ -3,9 +3,7 @@
 import base64
 import io
 
-import matplotlib
-
-from common import sheet
+from common import sheet, style
 from common.command_line import PlotError
 from page.html import element
 
@@ -16,11 +14,8 @@ WIDE, NARROW, NARROW_SCREEN = 6.8, 3.4, "(max-width: 40rem)"  # inches of the fi
 def settle(figure):
     """Leaves the panels where the layout puts them, to a millionth of the figure: the last bits of its solver are not the same
     each time, and names within the file are hashes of them."""
-    if layout := figure.get_layout_engine():
-        layout.execute(figure)
-    figure.set_layout_engine("none")
+    style.lay_out(figure, figure.get_dpi())
     for axes in figure.axes:
-        axes.apply_aspect()
         axes.set_position([round(number, 6) for number in axes.get_position().bounds])
 
 
@@ -28,8 +23,7 @@ def data_uri(figure):
     """The figure as SVG; the same figure gives the same bytes."""
     picture = io.BytesIO()
     settle(figure)
-    with matplotlib.rc_context({"svg.hashsalt": "rcme", "svg.fonttype": "path"}):
-        figure.savefig(picture, format="svg", metadata={"Date": None, "Creator": None})
+    style.print_as("svg", figure, picture, {"Date": None, "Creator": None})
     return "data:image/svg+xml;base64," + base64.b64encode(picture.getvalue()).decode()
 
 

@@ -76,7 +76,7 @@ def digests_of(recipe, scratch, programs, known):
     out = scratch / recipe.name
     fresh(out)
     for command in recipe.digest:
-        run(command, out, programs)
+        run(command, out, programs, draws=False)
     found = {}
     for path in sorted(out.iterdir()):
         if not SKIPPED.search(path.name) and path.suffix in (".sqlite", ".json", ".csv", ".txt"):

@@ -131,14 +131,17 @@ def chosen(recipes, names, with_long):
 VERDICTS = ("integrity",)  # commands of `rcme` whose exit codes 1 and 3 are what they found
 
 
-def run(command, out, programs):
-    """Runs one command of a recipe; "> FILE" at its end keeps what it prints."""
+def run(command, out, programs, draws=True):
+    """Runs one command of a recipe; "> FILE" at its end keeps what it prints. Without `draws` a program finds no Python that
+    starts, and leaves its figures out."""
     words = shlex.split(with_data(command.replace("{out}", str(out))))
     target = None
     if len(words) > 2 and words[-2] == ">":
         target, words = words[-1], words[:-2]
-    program = programs / words[0] if "/" not in words[0] else Path(words[0])
-    done = subprocess.run([str(program), *words[1:]], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    is_ours = "/" not in words[0]
+    program = programs / words[0] if is_ours else Path(words[0])
+    environment = {**os.environ, "PYTHONHOME": "/nowhere"} if is_ours and not draws else None
+    done = subprocess.run([str(program), *words[1:]], cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     if done.returncode != 0 and not (done.returncode in (1, 3) and words[1] in VERDICTS):
         last = done.stderr.decode(errors="replace").strip().splitlines()[-3:]
         raise ResultError(f"'{command}' ended with {done.returncode}: " + " / ".join(last))

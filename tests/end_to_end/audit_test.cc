@@ -15,6 +15,7 @@
 
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/temp_folder.h"
+#include "tests/test_support/without_python.h"
 
 namespace rcme {
 namespace {
@@ -46,6 +47,7 @@ TEST(Audit, PrintsTheTableAndWritesPageDataAndFigures) {
 }
 
 TEST(Audit, GivesTheSameBytesForAnyNumberOfThreads) {
+  const WithoutPython without_figures;
   const TempFolder folder;
   std::string first;
   for (const char* threads : {"1", "2"}) {
@@ -86,6 +88,7 @@ ProgramResult MergeAudit(const std::vector<std::string>& options, const std::vec
 }
 
 TEST(Audit, InShardsGivesTheSameBytes) {
+  const WithoutPython without_figures;
   const TempFolder folder;
   std::ofstream(folder.Path("study.yaml"))
       << "name: mine\ndata: {scene: uniform_volume, num_matches: 20, sigma_px: 0.1}\n"

@@ -12,6 +12,7 @@
 #include "tests/test_support/result_formats.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/small_study.h"
+#include "tests/test_support/without_python.h"
 
 namespace rcme {
 namespace {
@@ -81,6 +82,7 @@ TEST_F(Format, OfTimes) {
 }
 
 TEST_F(Format, OfAnAudit) {
+  const WithoutPython without_figures;
   ExpectFormatsAgree({"audit", "--plan", "--only", "sigma_p"});
   ExpectFormatsAgree({"audit", "--only", "sampson.dof_1", "--out", out_});
 }

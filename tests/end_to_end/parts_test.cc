@@ -14,6 +14,7 @@
 
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/tuned_study.h"
+#include "tests/test_support/without_python.h"
 
 namespace rcme {
 namespace {
@@ -134,6 +135,7 @@ class Parts : public testing::Test {
     }
   }
 
+  const WithoutPython without_figures_;
   TempFolder folder_;
   std::string round_ = folder_.Path("round.json");
   std::string study_ = folder_.Write("study.yaml", TunedYaml("  target: failure\n"

@@ -12,6 +12,7 @@
 #include "tests/test_support/result_formats.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/tuned_study.h"
+#include "tests/test_support/without_python.h"
 
 namespace rcme {
 namespace {
@@ -71,6 +72,7 @@ TEST_F(TuneProgram, SuggestsARunOnOtherTrials) {
 }
 
 TEST_F(TuneProgram, TheSameBytesWhateverTheThreads) {
+  const WithoutPython without_figures;
   std::vector<std::string> files, outs;
   for (const char* threads : {"1", "2"}) {
     const std::string figures = folder_.Path("figures");

@@ -42,7 +42,7 @@ constexpr std::uint32_t kNumShards = 2;
 
 int NumDamages() {
   const char* number = std::getenv("RCME_DAMAGES");
-  return number ? std::atoi(number) : 50;
+  return number ? std::atoi(number) : 25;
 }
 
 // The parts of a work, and all that is made of them.

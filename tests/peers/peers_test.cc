@@ -54,9 +54,10 @@ TEST_P(Peers, FindTheMotionOfExactMatches) {
 }
 
 // More than half, by an exact bound of false alarm rate .001, of trials with noise and a fifth of the matches
-// wrong.
+// wrong: 43 of 60. A library that finds eight of ten has as many with probability .96, nine of ten with
+// .9999.
 TEST_P(PeerLibraries, FindMostMotionsAmongWrongMatches) {
-  constexpr int kNumTrials = 100;
+  constexpr int kNumTrials = 60;
   int num_near = 0;
   for (std::uint32_t trial = 0; trial < kNumTrials; ++trial) {
     RelativePose pose_true;
@@ -130,7 +131,7 @@ TEST_P(PeerLibraries, GiveTheSameBytesOnEveryThread) {
     std::vector<std::jthread> threads;
     for (std::uint32_t thread = 0; thread < 4; ++thread) {
       threads.emplace_back([&, thread] {
-        for (std::uint32_t k = 0; k < 8; ++k) {
+        for (std::uint32_t k = 0; k < 4; ++k) {
           const std::uint32_t trial = (thread + k) % 4;
           RandomStream rng({1, 0, trial, 4});
           const auto difference = FirstDifference(alone[trial], estimator->Estimate(problems[trial], rng));

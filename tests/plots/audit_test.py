@@ -23,7 +23,7 @@ from page_structure import Structure
 from audit_figures.audit_file import CLAIM_VERDICTS, TARGET_VERDICTS
 from audit_figures.look import LOOKS
 from fake_audit import SIGMAS, claim, coverage, evidence, fake_audit, target
-from matplotlib.figure import Figure
+from common import style
 from audit_drawn import Written, caption_of, fake_figure, file_with, shown_texts, texts_of
 
 
@@ -55,10 +55,10 @@ class WrittenFiles(Written):
             self.assertEqual(run(), first)
 
     def test_a_failed_write_says_so_and_leaves_nothing_half_written(self):
-        def disk_full(figure, path, **options):
+        def disk_full(figure, kind, path, dpi):
             pathlib.Path(path).write_bytes(b"half")
             raise OSError(28, "No space left on device")
-        with mock.patch.object(Figure, "savefig", disk_full):
+        with mock.patch.object(style, "written_as", disk_full):
             self.assert_refused(self.run_main(), "cannot write", "No space left on device")
 
     def test_help_teaches_with_an_example(self):

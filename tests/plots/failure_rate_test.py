@@ -13,7 +13,6 @@ from plot_test_case import PLOTS, PlotTestCase
 import failure_rate
 from common import style
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from common.summary_csv import read_summary, text_of_cell, where
 
@@ -115,16 +114,16 @@ class WrittenFiles(FailureRateTest):
         old = {f"{self.out.name}.{kind}": b"old" for kind in ("png", "pdf")}
         for name, content in old.items():
             (self.folder / name).write_bytes(content)
-        whole = Figure.savefig
+        whole = style.written_as
 
-        def disk_full(figure, path, **options):
+        def disk_full(figure, kind, path, dpi):
             self.assertNotIn(os.path.basename(path), old)  # never written in place
-            if options["format"] == "png":
-                return whole(figure, path, **options)
+            if kind == "png":
+                return whole(figure, kind, path, dpi)
             pathlib.Path(path).write_bytes(b"%PDF half")
             raise OSError(28, "No space left on device")
 
-        with mock.patch.object(Figure, "savefig", disk_full):
+        with mock.patch.object(style, "written_as", disk_full):
             code, _, err = self.run_main()
         self.assertEqual(code, 2)
         self.assertIn("No space left on device", err)

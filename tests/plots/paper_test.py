@@ -181,10 +181,12 @@ class Formats(PlotTestCase, WithCases):
     def setUpClass(cls):
         """{name of a file: its text}, of every kind."""
         cls.tikz = {}
-        for number, case in enumerate(cls.cases):
+        for kind, case in {case[0]: case for case in cls.cases}.items():
             code, _, figures = run_script(*cls().arguments(*case, "--width", str(WIDTHS[0])))
-            assert code == 0, case[0]
-            cls.tikz |= {f"{number}_{case[0]}_{name}.tikz": tikz.tikz_of(figure) for name, figure in sorted(figures.items())}
+            assert code == 0, kind
+            for name, figure in sorted(figures.items()):
+                style.lay_out(figure, style.RC["savefig.dpi"])  # as it is saved
+                cls.tikz[f"{kind}_{name}.tikz"] = tikz.tikz_of(figure)
 
     def test_every_format_is_written_alone_and_twice_alike(self):
         case = self.cases[0]

@@ -29,8 +29,11 @@ class TempFolder {
   std::string Path(const std::string& name) const { return (path_ / name).string(); }
   std::string path() const { return path_.string(); }
 
-  // Writes a file and returns its path.
+  // Writes a file and returns its path. One that is there is removed first: written over, it would wait for
+  // the disk.
   std::string Write(const std::string& name, const std::string& bytes) const {
+    std::error_code none;
+    std::filesystem::remove(path_ / name, none);
     std::ofstream file(path_ / name, std::ios::binary);
     file << bytes;
     file.close();

@@ -253,8 +253,10 @@ int CountVerdicts(const Check& check, Verdict verdict, std::uint32_t num_repetit
   return count;
 }
 
+// Sound twins take most of the time, as they need all their trials. One that is called faulty in three of ten
+// seeds is seen with probability .94; one false alarm among all of them has probability .03 at most.
 TEST(PlantedFaults, AreCaughtAndTheirSoundTwinsAreNot) {
-  constexpr int kNumSound = 15, kNumFaulty = 40;
+  constexpr int kNumSound = 8, kNumFaulty = 40;
   std::string table = "| fault | caught (95 % interval) | sound twin called faulty |\n|---|---|---|\n";
   std::map<std::string, int> alarms_of;
   for (const SoundTwin& twin : SoundTwins())
