@@ -31,7 +31,7 @@ class ExactSum {
   mutable int num_added_ = 0;  // since the last carry: a digit holds 2^30 of them
 };
 
-// Like Moments (stats/moments.h). Numbers beyond 1e150 count as infinite in the squares.
+// Like Moments (stats/moments.h). Numbers beyond 1e150 count as infinite, so that no square is.
 class ExactMoments {
  public:
   // Throws std::invalid_argument for NaN.

@@ -23,6 +23,7 @@ ExchangeabilityTest::ExchangeabilityTest(std::span<const double> reference, size
     : seen_(num_features), log_capital_(kNumBets * num_features, 0.0), rng_(rng) {
   if (num_features == 0 || reference.size() % num_features != 0)
     throw std::invalid_argument("observations need features, each as many");
+  capital_ = greatest_ = 1.0 / static_cast<double>(num_features);
   for (size_t i = 0; i < reference.size(); ++i) seen_[i % num_features].push_back(Ordered(reference[i]));
   for (std::vector<double>& values : seen_) std::ranges::sort(values);
 }
@@ -46,9 +47,13 @@ void ExchangeabilityTest::Add(std::span<const double> features) {
     seen.insert(last, x);
   }
   ++n_;
-  double sum = 0.0;
-  for (const double log_capital : log_capital_) sum += std::exp(std::min(log_capital, 700.0));
-  capital_ = std::min(sum / static_cast<double>(log_capital_.size()), 1e300);
+  double greatest_sum = 0.0;
+  for (size_t first = 0; first < log_capital_.size(); first += kNumBets) {
+    double sum = 0.0;
+    for (size_t i = first; i < first + kNumBets; ++i) sum += std::exp(std::min(log_capital_[i], 700.0));
+    greatest_sum = std::max(greatest_sum, sum);
+  }
+  capital_ = std::min(greatest_sum / static_cast<double>(log_capital_.size()), 1e300);
   greatest_ = std::max(greatest_, capital_);
 }
 

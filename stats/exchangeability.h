@@ -2,11 +2,14 @@
 // Nouretdinov & Gammerman 2003), valid at any number of looks.
 //
 // For each feature compute the p-value of a new observation among all earlier ones, with ties broken at
-// random. Under exchangeability it is uniform and independent of the earlier p-values. The observation then
-// joins the earlier ones. A gambler who bets that p-values are small has the capital prod of e p^(e-1), of
-// mean 1. Each feature has three gamblers, for large values, small values and both ends, each with e = .5.
-// The mean of all capitals is a martingale too, so
-//   P(the mean capital ever reaches 1 / a | exchangeable) <= a      (Ville 1939).
+// random. Under exchangeability it is uniform and independent of the earlier p-values of this feature. The
+// observation then joins the earlier ones. A gambler who bets that p-values are small has the capital prod of
+// e p^(e-1), of mean 1. Each feature has three gamblers, for large values, small values and both ends, each
+// with e = .5. The mean of a feature's three capitals is a martingale given its earlier p-values, so
+//   P(the mean capital of a feature ever reaches k / a | exchangeable) <= a / k      (Ville 1939)
+// and none of k features reaches k / a with probability at least 1 - a (Bonferroni). Capitals of different
+// features may not be averaged: the p-values of one feature may tell something of the next one of another,
+// so that the average is no martingale.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +30,8 @@ class ExchangeabilityTest {
   // Throws std::invalid_argument for a different number of features.
   void Add(std::span<const double> features);
 
-  // The mean capital now, and its greatest so far: at least 1 / a with probability at most a.
+  // The greatest mean capital of a feature, divided by the number of features: now, and its greatest so far,
+  // which reaches 1 / a with probability at most a.
   double capital() const { return capital_; }
   double greatest_capital() const { return greatest_; }
   // Anytime-valid p-value.
@@ -42,7 +46,7 @@ class ExchangeabilityTest {
   std::vector<std::vector<double>> seen_;  // per feature, ascending
   std::vector<double> log_capital_;        // per feature and bet
   RandomStream rng_;
-  double capital_ = 1.0, greatest_ = 1.0;
+  double capital_, greatest_;
   size_t n_ = 0;
 };
 

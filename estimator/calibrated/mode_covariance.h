@@ -23,9 +23,10 @@ Vector5d EffectiveMatches(const Mode& mode, const Explanation& explanation, cons
 //   smaller than its error by a factor of 1 - h (HC3, MacKinnon and White 1985).
 // - Along a direction in which the mean variance of all residuals gives a greater S, S is that one: a few
 //   matches that decide a direction estimate their own variance poorly.
-// - A match is an outlier with probability w (influence.h). It would have moved the motion by H^-1 J' psi /
-//   ((1 - h) s), and without it its information is missing. By the law of total variance S grows by w (psi^2
-//   / (1 - h)^2 + p v / (1 - h)) / s^2 J'J.
+// - A match is an outlier with probability w / 2 (influence.h; w is about twice too great). It would have
+//   moved the motion by H^-1 J' p psi / ((1 - h) s), and without it its information is missing. By the law of
+//   total variance S grows by w / 2 ((p psi)^2 / (1 - h)^2 + p v / (1 - h)) / s^2 J'J. The factor 1 - w / 2
+//   of the first term is left out.
 // - The variance along each principal axis is multiplied by k / (k - 2), because the variance is estimated. k
 //   is the effective number of matches of the axis if that is below thirty, else the degrees of freedom.
 //

@@ -27,8 +27,10 @@ struct PartnerDependence {
 // - The rank of a match's b among those that are greater than its a, of the first 128 matches of the problem,
 //   right or wrong. With a small parallax its b is one of the next.
 //
-// For random partners, each statistic is about standard normal. The second test takes the values of b in the
-// problem as fixed.
+// For random partners, order_z is about standard normal. The second test takes the values of b in the problem
+// as fixed, and its variance is that of independent ranks. But no two matches have the same partner, so that
+// rank_z varies less: if all a are less than all b, its variance is (N - n) / (N - 1) for n tested matches of
+// N, and 0 if all are tested, whose ranks are a permutation. The fitted constants are for this form.
 PartnerDependence FindPartnerDependence(const MotionProblem& problem, const RelativePose& pose,
                                         std::span<const size_t> some);
 

@@ -54,10 +54,10 @@ void LookForStrangeAnswers(const ConformRule& rule, const std::vector<AnswerRow>
   finding->num_looked_at = static_cast<std::int64_t>(test.n());
   finding->p_value = std::min(1.0, 2.0 * test.PValue());
   finding->feature = VisibleFeatureNames()[rule.familiar_features[test.StrongestFeature()]];
-  // Each answer multiplies the bettor's capital by at most sqrt(n) / 2, n: familiar answers and itself.
+  // An answer hardly multiplies a feature's capital by more than sqrt(n) / 2, n: familiar answers and itself.
   const double num_familiar = static_cast<double>(rule.familiar.size() / width);
   const double greatest = std::pow(0.5 * std::sqrt(num_familiar + 1.0), finding->num_looked_at);
-  finding->could_notice = greatest >= 2.0 / kShiftLevel;
+  finding->could_notice = greatest >= 2.0 * static_cast<double>(width) / kShiftLevel;
 }
 
 void LookForRefusals(const ConformRule& rule, const std::vector<AskedProblem>& problems,

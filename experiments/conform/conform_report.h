@@ -36,7 +36,8 @@ struct ConformReport {
   std::optional<PromiseFinding> kept;  // of a check
 };
 
-// Runs two tests, each at half the level: one of the visible features, one of the refusal rate.
+// Runs two tests, each at half the level: one of the visible features (each at an equal part of that half),
+// one of the refusal rate.
 ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers);
 
 // LoadToCheck reads a rule to check; LoadModels reads a rule whose models are to be used again (nothing for

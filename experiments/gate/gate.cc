@@ -1,6 +1,7 @@
 #include "experiments/gate/gate.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +29,6 @@ class GateEvidence {
 
   // `scene`: its number from 0 if trials share scenes, else negative.
   void Add(const std::optional<double>& of_old, const std::optional<double>& of_new, std::int64_t scene) {
-    num_old_ += of_old.has_value();
-    num_new_ += of_new.has_value();
     if (!of_new || (!of_old && !test_.is_limit)) return;
     if (of_old) old_.Add(*of_old);
     new_.Add(*of_new);
@@ -57,7 +56,6 @@ class GateEvidence {
     row.of_new = Level(new_);
     if (log_growth_.n() > 0) row.size_ratio = std::exp(log_growth_.mean());
     if (row.n == 0) {
-      RequireBothOrNone();
       row.verdict = GateVerdict::kNotMeasured;
       row.difference = kNaN;
       row.interval = {kNaN, kNaN};
@@ -87,16 +85,8 @@ class GateEvidence {
                                                      : numbers.sum / static_cast<double>(n);
   }
 
-  void RequireBothOrNone() const {
-    if (num_old_ == 0 && num_new_ == 0) return;
-    throw InputError(fmt::format(
-        "{}: no trial has it of both versions ({} of the old one, {} of the new one); leave it out with --of",
-        test_.quantity.name, num_old_, num_new_));
-  }
-
   GateTest test_;
-  std::int64_t num_old_ = 0, num_new_ = 0;  // trials that give a number, paired or not
-  Numbers old_, new_;                       // the numbers of the pairs
+  Numbers old_, new_;  // the numbers of the pairs
   ScoreMean differences_;
   Moments log_growth_;
   std::vector<SceneMean> scenes_;
@@ -156,6 +146,18 @@ GateLook BeforeFirstLook(const std::vector<GateTest>& tests) {
   return look;
 }
 
+void RequireMeasured(const GateLook& look) {
+  std::vector<std::string> names;
+  for (const GateRow& row : look.rows) {
+    if (row.n > 0) return;
+    names.push_back(row.test.Name());
+  }
+  throw InputError(
+      fmt::format("gate: no trial has {} of both versions; choose other quantities with --of, such as "
+                  "failure and refusal",
+                  fmt::join(names, " or ")));
+}
+
 // Greater is worse.
 int RankOutcome(TrialOutcome outcome) {
   return outcome == TrialOutcome::kSuccess ? 0 : outcome == TrialOutcome::kRefusal ? 1 : 2;
@@ -205,6 +207,7 @@ GateLook LookUntilDecided(const ReadableRun& run, const std::vector<GateTest>& t
     const std::int64_t num_rounds = std::min(next, max_rounds);
     if (!grow(num_rounds)) return look;
     look = TakeGateLook(run, tests, num_rounds);
+    if (num_rounds == max_rounds) RequireMeasured(look);
     if (look.verdict != GateVerdict::kUndecided || num_rounds == max_rounds) return look;
   }
 }

@@ -56,8 +56,8 @@ struct GateLook {
 };
 
 // Tests the first `num_rounds` trials of every condition. The old version is the run's first estimator, the
-// new version its last; a run of one estimator allows only limits. Throws InputError if trials are weighted,
-// or if no trial gives a pair for a test although some give a number of one version.
+// new version its last; a run of one estimator allows only limits. A test without a pair is not measured, and
+// the others decide. Throws InputError if trials are weighted.
 GateLook TakeGateLook(const ReadableRun& run, const std::vector<GateTest>& tests, std::int64_t num_rounds);
 
 // Extends the run to `num_rounds` trials of every condition; false: the time limit was reached.
@@ -65,7 +65,7 @@ using GrowRun = std::function<bool(std::int64_t num_rounds)>;
 
 // Looks after about 200 trials, at least 20 of every condition, and then each time after a quarter more,
 // until the verdict is decided, `max_rounds` is reached or `grow` returns false. Without a first look every
-// test is undecided after 0 trials.
+// test is undecided after 0 trials. Throws InputError if no test is measured at `max_rounds`.
 GateLook LookUntilDecided(const ReadableRun& run, const std::vector<GateTest>& tests, std::int64_t max_rounds,
                           const GrowRun& grow);
 

@@ -132,12 +132,18 @@ std::string ListQuantities(const GateReport& report, GateVerdict verdict) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+std::string WhyNotMeasured(const GateReport& report) {
+  return fmt::format("no trial has it of {}", report.old_label.empty() ? "the version" : "both versions");
+}
+
 // "; not judged: error, time": the quantities that the verdict does not cover; empty if it covers all.
 std::string ListNotJudged(const GateReport& report) {
   std::vector<std::string> left_out = GateQuantityNames();
   for (const GateRow& row : report.look.rows) std::erase(left_out, row.test.quantity.name);
   const std::string not_measured = ListQuantities(report, GateVerdict::kNotMeasured);
-  return (not_measured.empty() ? "" : "; no trial has: " + not_measured) +
+  return (not_measured.empty()
+              ? ""
+              : fmt::format("; not measured, because {}: {}", WhyNotMeasured(report), not_measured)) +
          (left_out.empty() ? "" : fmt::format("; not judged: {}", fmt::join(left_out, ", ")));
 }
 
@@ -269,7 +275,8 @@ std::string GateAsJUnit(const GateReport& report) {
     text += fmt::format("<testcase classname=\"{}\" name=\"{}\">", name, XmlText(row.test.Name()));
     if (row.verdict == GateVerdict::kWorse) text += fmt::format("<failure message=\"{}\"/>", what);
     if (row.verdict == GateVerdict::kUndecided) text += fmt::format("<error message=\"{}\"/>", what);
-    if (row.verdict == GateVerdict::kNotMeasured) text += "<skipped/>";
+    if (row.verdict == GateVerdict::kNotMeasured)
+      text += fmt::format("<skipped message=\"{}\"/>", WhyNotMeasured(report));
     if (row.verdict == GateVerdict::kNotWorse) text += fmt::format("<system-out>{}</system-out>", what);
     text += "</testcase>\n";
   }

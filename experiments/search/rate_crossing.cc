@@ -17,6 +17,7 @@
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -56,22 +57,32 @@ Study MakeStudyAt(Study study, const CrossingQuestion& question, const std::stri
   return study;
 }
 
-// The conditions, which are the same for every value of the setting. Whole plans are made only here, in the
-// middle and at both ends, so that a value that is not allowed is reported before any trial.
-StudyPlan PlanConditions(const Study& study, const CrossingQuestion& question, const Scale& scale) {
+// The conditions, which are the same for every value of the setting.
+struct PlannedConditions {
+  StudyPlan plan;
+  bool is_drawn_by_level = true;  // whether the setting is one of the data, in the names of their streams
+};
+
+// Whole plans are made only here, in the middle and at both ends, so that a value that is not allowed is
+// reported before any trial.
+PlannedConditions PlanConditions(const Study& study, const CrossingQuestion& question, const Scale& scale) {
   const auto plan_at = [&](double place) {
     return MakePlan(MakeStudyAt(study, question, scale.TextAt(place)));
   };
-  StudyPlan plan = plan_at(0.5);
+  PlannedConditions planned{plan_at(0.5)};
+  const std::vector<Condition>& conditions = planned.plan.conditions;
+  std::vector<std::vector<Condition>> at_ends;
   for (const double end : {0.0, 1.0}) {
-    const StudyPlan at_end = plan_at(end);
-    if (!std::ranges::equal(plan.conditions, at_end.conditions, {}, &Condition::levels, &Condition::levels))
+    at_ends.push_back(plan_at(end).conditions);
+    if (!std::ranges::equal(conditions, at_ends.back(), {}, &Condition::levels, &Condition::levels))
       throw InputError(
           fmt::format("solve: conditions: `given` leaves other draws at {} = {} than at {}; give "
                       "other --from and --to",
                       question.setting, scale.TextAt(end), scale.TextAt(0.5)));
   }
-  return plan;
+  for (size_t c = 0; c < conditions.size(); ++c)
+    planned.is_drawn_by_level &= at_ends[0][c].stream_key != at_ends[1][c].stream_key;
+  return planned;
 }
 
 // Whether the setting takes only whole numbers; then the middle between two of them is refused.
@@ -101,12 +112,13 @@ void CheckTrial(const TrialResult& result, const CrossingQuestion& question) {
 class Asker {
  public:
   Asker(const Study& study, const CrossingQuestion& question, const Scale& scale,
-        const std::vector<std::string>& condition, size_t estimator, int num_threads, KeptSteps* steps,
-        std::optional<Progress>* progress, std::int64_t total, std::int64_t* num_done)
+        const std::vector<std::string>& condition, bool is_drawn_by_level, size_t estimator, int num_threads,
+        KeptSteps* steps, std::optional<Progress>* progress, std::int64_t total, std::int64_t* num_done)
       : study_(study),
         question_(question),
         scale_(scale),
         condition_(condition),
+        is_drawn_by_level_(is_drawn_by_level),
         num_threads_(num_threads),
         steps_(steps),
         progress_(progress),
@@ -139,11 +151,20 @@ class Asker {
     std::int64_t num_events = 0, num_trials = 0;
   };
 
+  // A setting that does not enter the names of the streams is added to them: otherwise all levels would have
+  // the same trials, and the interval needs independent ones.
+  StudyPlan MakePlanAt(const std::string& level) const {
+    StudyPlan plan = MakeConditionPlan(MakeStudyAt(study_, question_, level), condition_);
+    std::uint64_t& key = plan.conditions.front().stream_key;
+    if (!is_drawn_by_level_) key = HashToStreamKey(fmt::format("{}\n{}={}", key, question_.setting, level));
+    return plan;
+  }
+
   // Counts the events in trials first, ..., first + num_trials - 1.
   Events Count(const std::string& level, std::int64_t first, std::int64_t num_trials) {
     if (!*progress_) progress_->emplace("trials", total_, *num_done_);
     std::optional<StudyPlan>& made = levels_[level].plan;
-    if (!made) made = MakeConditionPlan(MakeStudyAt(study_, question_, level), condition_);
+    if (!made) made = MakePlanAt(level);
     const StudyPlan& plan = *made;
     const Condition& condition = plan.conditions.front();
     std::atomic<std::int64_t> num_events = 0, num_simulated = 0;
@@ -163,6 +184,7 @@ class Asker {
   const CrossingQuestion& question_;
   const Scale& scale_;
   std::vector<std::string> condition_;  // the levels of the condition
+  bool is_drawn_by_level_;
   int num_threads_;
   KeptSteps* steps_;
   std::optional<Progress>* progress_;  // starts with the first trial whose result is not kept
@@ -209,7 +231,7 @@ WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question) {
 CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& question, int num_threads,
                              KeptSteps* steps) {
   const Scale scale(question, IsWhole(study, question));
-  const StudyPlan plan = PlanConditions(study, question, scale);
+  const auto [plan, is_drawn_by_level] = PlanConditions(study, question, scale);
   RequireIndependentTrials(plan);
   CrossingAnswer answer{plan.factor_names, {}};
   std::optional<Progress> progress;
@@ -218,8 +240,8 @@ CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& questio
       static_cast<std::int64_t>(plan.conditions.size() * study.estimators.size()) * question.num_trials;
   for (const Condition& condition : plan.conditions) {
     for (size_t e = 0; e < study.estimators.size(); ++e) {
-      Asker asker(study, question, scale, condition.levels, e, num_threads, steps, &progress, total,
-                  &num_done);
+      Asker asker(study, question, scale, condition.levels, is_drawn_by_level, e, num_threads, steps,
+                  &progress, total, &num_done);
       Crossing found =
           FindCrossing([&](double place, std::int64_t number) { return asker.Ask(place, number); },
                        question.rate, question.num_trials);

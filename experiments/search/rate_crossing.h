@@ -40,8 +40,9 @@ struct CrossingAnswer {
 // The work; its steps are batches of trials at one level.
 WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question);
 
-// A pure function of study and question. Every level has its own scenes, even with `common_scenes`, because
-// the intervals need independent trials. At one level, all estimators get the same trials.
+// A pure function of study and question. Every level has trials of its own, whatever the setting and even
+// with `common_scenes`, because the intervals need independent trials. At one level, all estimators get the
+// same trials.
 //
 // Throws InputError for a setting that the study does not have or that is not a number, for real pairs, for
 // weighted trials, for repeated scenes, and if the event needs a truth that is unknown. Throws Stopped.

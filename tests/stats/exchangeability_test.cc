@@ -53,6 +53,24 @@ TEST(Exchangeability, NoticesAWiderSpread) {
   EXPECT_GE(CountAlarms([](double x) { return 3.0 * x; }).alarms, 380);
 }
 
+// Each feature is tested at a k-th of the level: copies of a feature add nothing but their number.
+TEST(Exchangeability, EveryFeatureHasItsPartOfTheLevel) {
+  RandomStream rng({.seed = 5, .purpose = 414});
+  std::vector<double> reference(1000), tripled;
+  for (double& x : reference) {
+    x = rng.Normal();
+    tripled.insert(tripled.end(), 3, x);
+  }
+  ExchangeabilityTest one(reference, 1, rng), three(tripled, 3, rng);
+  for (int i = 0; i < 30; ++i) {
+    const std::vector<double> next(3, 1.2 + 0.001 * i);  // in the upper part, where ties hardly matter
+    one.Add({next.data(), 1});
+    three.Add(next);
+  }
+  EXPECT_LT(one.PValue(), 0.01);
+  EXPECT_NEAR(three.PValue() / one.PValue(), 3.0, 0.5);
+}
+
 // Ties are broken at random: features that are always equal say nothing.
 TEST(Exchangeability, HoldsWithTies) {
   std::int64_t alarms = 0;

@@ -172,6 +172,32 @@ TEST(Gate, ALimitNeedsNoOldVersion) {
   EXPECT_EQ(Look(MakeRun(one_percent, 3000), tests, 3000).verdict, GateVerdict::kWorse);
 }
 
+// A new version that refuses every problem has no region, error or probability, and is worse all the same.
+TEST(Gate, RefusingEverythingIsWorse) {
+  const auto make = [](std::uint32_t, std::uint32_t) {
+    return std::vector{MakeGateRecord(false), MakeGateRecord(false, true)};
+  };
+  GateReport report;
+  report.new_label = "new", report.old_label = "old";
+  report.num_conditions = kConditions;
+  report.look = Look(MakeRun(make, 100), MakeGateTests(GateQuantityNames(), {}), 100);
+  EXPECT_EQ(report.look.verdict, GateVerdict::kWorse);
+  for (const GateRow& row : report.look.rows) {
+    const std::string& name = row.test.quantity.name;
+    EXPECT_EQ(row.verdict == GateVerdict::kWorse, name == "refusal") << name;
+    EXPECT_EQ(row.verdict == GateVerdict::kNotMeasured,
+              name == "miscoverage" || name == "probability" || name == "error")
+        << name;
+  }
+  EXPECT_NE(GateSentence(report).find("not measured, because no trial has it of both versions: miscoverage, "
+                                      "probability, error"),
+            std::string::npos)
+      << GateSentence(report);
+  EXPECT_NE(GateAsJUnit(report).find("failures=\"1\""), std::string::npos);
+  EXPECT_NE(GateAsJUnit(report).find("skipped=\"3\""), std::string::npos);
+  EXPECT_NE(GateAsJson(report).find("\"not measured\""), std::string::npos);
+}
+
 TEST(Gate, WhatOnlyOneVersionStatesCannotBeJudged) {
   const auto make = [](std::uint32_t, std::uint32_t) {
     std::vector<TrialRecord> records(2, MakeGateRecord(false));
@@ -180,7 +206,8 @@ TEST(Gate, WhatOnlyOneVersionStatesCannotBeJudged) {
   };
   const ReadableRun run = MakeRun(make, 100);
   const std::vector<GateTest> probability = MakeGateTests({"probability"}, {});
-  EXPECT_TRUE(ThrowsInputError([&] { TakeGateLook(run, probability, 100); }, {"--of"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Look(run, probability, 100); }, {"no trial has probability", "--of"}));
+  EXPECT_EQ(TakeGateLook(run, probability, 50).rows.front().verdict, GateVerdict::kNotMeasured);
   const auto neither = [](std::uint32_t, std::uint32_t) {
     std::vector<TrialRecord> records(2, MakeGateRecord(false));
     for (TrialRecord& record : records) record.failure_probability = std::nan("");

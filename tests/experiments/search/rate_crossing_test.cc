@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <string>
+#include <vector>
+
 #include "experiments/study/study_file.h"
 #include "tests/test_support/expect_input_error.h"
 
@@ -54,6 +58,40 @@ TEST(FindCrossings, AreTheSameWithFewerConditions) {
     EXPECT_EQ(both.crossings[2 + e].levels, std::vector<std::string>{"4"});
     EXPECT_EQ(both.crossings[2 + e].estimate, second.crossings[e].estimate);
     EXPECT_EQ(both.crossings[2 + e].interval.lower, second.crossings[e].interval.lower);
+  }
+}
+
+std::vector<double> errors_of_answers;
+
+bool NoteError(const TrialRecord& record, const FailureBounds& bounds) {
+  if (!HasRefused(record)) errors_of_answers.push_back(record.rotation_error_deg);
+  return !(record.direction_error_deg <= bounds.max_direction_error_deg);
+}
+
+// The intervals assume independent trials at all levels. Failure bounds and options of estimators do not
+// change what is drawn; an answer is here the same for 60 and for 61 samples, unless the trial is another.
+TEST(FindCrossings, NoTwoLevelsShareATrial) {
+  const Study study = ParseStudy(
+      "name: apart\ndata: {scene: plane, motion: sideways, num_matches: 20}\n"
+      "failure: {max_direction_error_deg: 3}\nestimators: [{name: standard}]\n",
+      "apart.yaml");
+  struct Range {
+    std::string setting;
+    double from, to;
+  };
+  for (const auto& [setting, from, to] :
+       {Range{"max_direction_error_deg", 1, 40}, Range{"standard.num_iterations", 60, 61},
+        Range{"outlier_ratio", 0.1, 0.5}}) {
+    CrossingQuestion question{.setting = setting, .from = from, .to = to};
+    question.is_falling = setting != "outlier_ratio";
+    question.event = {"noted", "", NoteError, true};
+    question.rate = 0.3;
+    question.num_trials = 100;
+    errors_of_answers.clear();
+    FindCrossings(study, question, 1, nullptr);
+    EXPECT_GT(errors_of_answers.size(), 50U) << setting;
+    const std::set<double> different(errors_of_answers.begin(), errors_of_answers.end());
+    EXPECT_EQ(different.size(), errors_of_answers.size()) << setting;
   }
 }
 
