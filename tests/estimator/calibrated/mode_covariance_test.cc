@@ -66,6 +66,8 @@ FittedMode FitWhereTheBasisTurns(std::uint32_t trial) {
   Eigen::Vector3d& t = f.mode.pose.t;
   t.x() = t.y() = 0.5 * (t.x() + t.y());
   t.normalize();
+  f.mode.inverse_hessian =
+      SumPosterior(f.matches, f.mode.used, f.prior, f.mode.pose, f.mode.mixture).hessian.inverse();
   return f;
 }
 
