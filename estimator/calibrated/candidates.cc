@@ -41,13 +41,14 @@ double StartScale(const MatchBlocks& matches, const Mode& mode) {
   EvaluateTerms(matches, mode.pose, &terms, kScaleMatches);
   const auto n = static_cast<size_t>(std::min(matches.num_matches(), kScaleMatches));
   const MixtureParameters& m = mode.mixture;
-  const double wrong = (1.0 - m.inlier_ratio) * m.outlier_density;
+  const double wrong = (1.0 - m.inlier_ratio) * m.outlier_density;  // of r (mixture_parameters.h)
   double best = m.scale, greatest = -std::numeric_limits<double>::infinity();
   for (const double factor : {0.25, 0.5, 1.0, 2.0, 4.0, 8.0}) {
     const double scale = factor * m.noise.scale_of_gaussian;
     double product = 1.0, log_likelihood = 0.0;
     for (size_t i = 0; i < n; ++i) {
-      product *= m.inlier_ratio * NoiseDensity(m.noise, terms.residual[i] / scale) / scale + wrong;
+      product *= m.inlier_ratio * NoiseDensity(m.noise, terms.residual[i] / scale) / scale +
+                 wrong * matches.NoiseScaleAt(i);
       if (i % 32 == 31) log_likelihood += std::log(product), product = 1.0;
     }
     log_likelihood += std::log(product);

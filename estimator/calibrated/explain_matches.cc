@@ -81,7 +81,7 @@ class ModeList {
   }
   void AddTwistedPair(size_t i) {
     const RelativePose pose = modes_[i].mode.pose;
-    const std::optional<Eigen::Vector3d> plane =
+    const std::optional<VisiblePlane> plane =
         FindPlane(problem_, pose, modes_[i].explanation.probability, kPlanarShare);
     const std::optional<RelativePose> other = plane ? OtherMotionOfPlane(pose, *plane) : std::nullopt;
     if (!other) return;

@@ -15,7 +15,7 @@ constexpr double kScaleRange = 8.0;  // s stays within this factor of 1
 // Tolerated decrease of the likelihood in a step, nats. The gradient does not include c(z), which may
 // decrease for a match near an epipole.
 constexpr double kTolerance = 1.0;
-constexpr double kNegligibleDecrement = 4e-4, kSmallDecrement = 1.0;  // twice the gain of a full step, nats
+constexpr double kNegligibleDecrement = 4e-4, kSmallDecrement = 1.0;  // twice the gain of a Newton step, nats
 constexpr double kPriorWrongNear = 5.0;  // weight of the prior of q, in outliers with small residuals
 
 // One step of expectation-maximisation. The motion takes five degrees of freedom of the residuals.
@@ -36,6 +36,9 @@ MixtureParameters Updated(const MixtureParameters& old, const MixtureSums& sums,
                                     std::max(10.0 * prior.uniform_density, 0.5 / kNearResidual));
   return next;
 }
+
+// g' H^-1 g: the squared length of the undamped step to the optimum, in standard deviations.
+double Decrement(const MixtureSums& sums) { return sums.gradient.dot(sums.hessian.llt().solve(sums.gradient)); }
 
 }  // namespace
 
@@ -98,8 +101,7 @@ bool ModeFit::Step() {
     }
   }
   damping_ = std::max(0.1 * damping_, 1e-6);
-  decrement_ = -move.dot(at_.gradient);
-  is_converged_ = decrement_ < kNegligibleDecrement &&
+  is_converged_ = Decrement(at_) < kNegligibleDecrement &&
                   std::abs(mixture.scale - mode_->mixture.scale) < 2e-3 * mixture.scale;
   mode_->pose = pose;
   mode_->mixture = mixture;
@@ -113,7 +115,7 @@ bool ModeFit::Finish() {
   mode_->log_likelihood = at_.log_likelihood;
   mode_->hessian = at_.hessian;
   mode_->inverse_hessian = llt.solve(Matrix5d::Identity());
-  return decrement_ < kSmallDecrement && mode_->inverse_hessian.allFinite();
+  return Decrement(at_) < kSmallDecrement && mode_->inverse_hessian.allFinite();
 }
 
 bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,

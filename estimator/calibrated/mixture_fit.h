@@ -3,8 +3,6 @@
 // of outliers.
 #pragma once
 
-#include <limits>
-
 #include "estimator/calibrated/mode.h"
 #include "estimator/kernels/mixture_sums.h"
 #include "estimator/motion_prior.h"
@@ -42,10 +40,10 @@ class ModeFit {
           MixtureUpdate update = MixtureUpdate::kAll);
   // Returns false if no further step is possible; then the mode must not be used.
   bool Step();
-  // Whether the last step was negligible: below 0.02 standard deviations of the motion and 0.2 % of the
-  // scale.
+  // Whether the last step began within 0.02 standard deviations of the optimum, by the gradient and the Hessian
+  // without damping, and changed the scale by less than 0.2 %.
   bool is_converged() const { return is_converged_; }
-  // Returns whether the fit converged: the last step was below one standard deviation, and the Hessian can be
+  // Returns whether the fit converged: the optimum is within one standard deviation, and the Hessian can be
   // inverted.
   bool Finish();
 
@@ -57,11 +55,10 @@ class ModeFit {
   int num_used_;
   MixtureSums at_;
   double damping_ = 1e-3;
-  double decrement_ = std::numeric_limits<double>::infinity();
   bool is_converged_ = false;
 };
 
-// Takes steps until one is negligible, at most `max_steps`. Returns false if a step fails, else what Finish
+// Takes steps until it has converged, at most `max_steps`. Returns false if a step fails, else what Finish
 // returns.
 bool FitMode(const MatchBlocks& matches, const MixturePrior& prior, int max_steps, Mode* mode,
              MixtureUpdate update = MixtureUpdate::kAll);

@@ -55,8 +55,10 @@ Matrix5d WidenedForFew(const Matrix5d& root, const Matrix5d& inverse, const Mode
 }  // namespace
 
 Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode, const MixturePrior& prior) {
-  const auto gradient_at = [&](const Vector5d& step) {
-    return SumPosteriorGradient(matches, mode.used, prior, Retract(mode.pose, step), mode.mixture);
+  const auto gradient_at = [&](const Vector5d& step) -> Vector5d {
+    const RelativePose moved = Retract(mode.pose, step);
+    return TransportTangent(moved, mode.pose) *
+           SumPosteriorGradient(matches, mode.used, prior, moved, mode.mixture);
   };
   const Matrix5d root = mode.inverse_hessian.llt().matrixL();
   Matrix5d whitened;

@@ -93,10 +93,10 @@ double WrongCoherence(const MotionProblem& problem, const Split& split) {
 
 double PlanarShare(const MotionProblem& problem, const Split& split, const ExplainedMode& answer) {
   const RelativePose& pose = answer.mode.pose;
-  const std::optional<Eigen::Vector3d> plane = FindPlane(problem, pose, answer.explanation.probability, 0.0);
+  const std::optional<VisiblePlane> plane = FindPlane(problem, pose, answer.explanation.probability, 0.0);
   const size_t n = std::min(split.right.size(), kMostCompared);
   if (!plane || n == 0) return 0.0;
-  const Eigen::Matrix3d H = pose.R + pose.t * plane->transpose();
+  const Eigen::Matrix3d H = pose.R + pose.t * plane->n.transpose();
   const MixtureParameters& m = answer.mode.mixture;
   const double noise_rad = problem.sigma_px * m.scale / m.noise.scale_of_gaussian *
                            std::sqrt(1.0 / (problem.camera1.fx * problem.camera1.fy) +
@@ -236,7 +236,7 @@ void CheckRightMatches(const Split& split, const ExplainedMode& answer, ModelChe
   double probability = 0.0, gain = 0.0;
   for (const size_t i : split.right) {
     probability += e.probability[i];
-    gain += std::log(e.inlier_density[i] / answer.mode.mixture.outlier_density);
+    gain += std::log(e.inlier_density[i] / WrongDensity(e, i, answer.mode.mixture.outlier_density));
     check->greatest_leverage = std::max(check->greatest_leverage, e.leverage[i]);
   }
   check->mean_probability = probability / static_cast<double>(split.right.size());

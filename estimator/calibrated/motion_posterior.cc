@@ -273,7 +273,9 @@ PosteriorCovariance Covariance(const MotionPosterior& posterior) {
   for (const MotionComponent& component : posterior.components) {
     if (!component.is_answer) continue;
     const Vector5d away = LocalCoordinates(posterior.answer, component.mean);
-    covariance.of_answer += component.weight * (component.covariance + away * away.transpose());
+    const Matrix5d to_answer = TransportTangent(component.mean, posterior.answer);
+    covariance.of_answer += component.weight * (to_answer * component.covariance * to_answer.transpose() +
+                                                away * away.transpose());
   }
   for (const PosePoint& point : MakePosePoints(posterior)) {
     if (point.is_answer && posterior.cells.empty()) continue;  // in closed form, above

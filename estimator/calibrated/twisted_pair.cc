@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/geometry/triangulation.h"
@@ -46,19 +47,20 @@ std::vector<DepthSample> DepthSamples(const MotionProblem& problem, const Relati
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> FindPlane(const MotionProblem& problem, const RelativePose& pose,
-                                         const std::vector<double>& probability, double least_share) {
+std::optional<VisiblePlane> FindPlane(const MotionProblem& problem, const RelativePose& pose,
+                                      const std::vector<double>& probability, double least_share) {
   const std::vector<DepthSample> samples = DepthSamples(problem, pose, probability);
   if (samples.size() < 5) return std::nullopt;
-  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+  Eigen::Vector3d plane = Eigen::Vector3d::Zero(), sum_of_near;
   int num_near = 0;
   for (int refit = 0; refit <= kRefits; ++refit) {
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
     Eigen::Vector3d moment = Eigen::Vector3d::Zero();
     num_near = 0;
+    sum_of_near.setZero();
     for (const DepthSample& sample : samples) {
       const double u = (sample.inverse_depth - plane.dot(sample.ray1)) / sample.sd;
-      num_near += std::abs(u) <= kTwistPlaneBound;
+      if (std::abs(u) <= kTwistPlaneBound) ++num_near, sum_of_near += sample.ray1;
       const double robust = refit == 0 ? 1.0 : 1.0 / (1.0 + u * u / (kTwistPlaneBound * kTwistPlaneBound));
       const double weight = robust * robust * sample.weight / (sample.sd * sample.sd);
       information += weight * sample.ray1 * sample.ray1.transpose();
@@ -68,11 +70,11 @@ std::optional<Eigen::Vector3d> FindPlane(const MotionProblem& problem, const Rel
     if (!plane.allFinite()) return std::nullopt;
   }
   if (num_near < least_share * static_cast<double>(samples.size())) return std::nullopt;
-  return plane;
+  return VisiblePlane{plane, sum_of_near / std::max(num_near, 1)};
 }
 
-std::optional<RelativePose> OtherMotionOfPlane(const RelativePose& pose, const Eigen::Vector3d& plane) {
-  const Eigen::Matrix3d H0 = pose.R + pose.t * plane.transpose();
+std::optional<RelativePose> OtherMotionOfPlane(const RelativePose& pose, const VisiblePlane& plane) {
+  const Eigen::Matrix3d H0 = pose.R + pose.t * plane.n.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(Eigen::Matrix3d(H0.transpose() * H0));
   const double middle = std::sqrt(eigen.eigenvalues()(1));
   if (!(middle > 1e-9)) return std::nullopt;
@@ -96,9 +98,8 @@ std::optional<RelativePose> OtherMotionOfPlane(const RelativePose& pose, const E
     const Eigen::Matrix3d R = W * U.transpose();
     const Eigen::Vector3d normal = v2.cross(u);
     Eigen::Vector3d t = (H - R) * normal;
-    // The plane n has t n' = H - R and lies in front of camera 1, as the given one does: n is normal or
-    // -normal.
-    if (normal.dot(plane) < 0.0) t = -t;
+    // The plane n with t n' = H - R is normal or -normal. Its points lie in front of camera 1: n'ray1 > 0.
+    if (normal.dot(plane.ray1) < 0.0) t = -t;
     if (!(t.norm() > 1e-9)) continue;
     const RelativePose found{R, t.normalized()};
     const double distance = LocalCoordinates(pose, found).norm();

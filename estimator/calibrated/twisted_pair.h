@@ -15,13 +15,19 @@
 
 namespace rcme {
 
-// The plane n (baselines^-1, in camera 1's frame) near which most of the matches lie, by reweighted least
-// squares of their inverse depths n'ray1. `probability`: that a match is an inlier. Nullopt if less than
-// `least_share` of the inliers lie near it.
-std::optional<Eigen::Vector3d> FindPlane(const MotionProblem& problem, const RelativePose& pose,
-                                         const std::vector<double>& probability, double least_share);
+// In camera 1's frame.
+struct VisiblePlane {
+  Eigen::Vector3d n;     // n'X = 1, baselines^-1
+  Eigen::Vector3d ray1;  // the mean ray to its points
+};
+
+// The plane near which most of the matches lie, by reweighted least squares of their inverse depths n'ray1.
+// `probability`: that a match is an inlier. Nullopt if less than `least_share` of the inliers lie near it.
+std::optional<VisiblePlane> FindPlane(const MotionProblem& problem, const RelativePose& pose,
+                                      const std::vector<double>& probability, double least_share);
 
 // The other motion that explains the plane; nullopt for a pure rotation, whose H has only one decomposition.
-std::optional<RelativePose> OtherMotionOfPlane(const RelativePose& pose, const Eigen::Vector3d& plane);
+// The translation has the sign with which camera 1 sees the plane's points in front of it.
+std::optional<RelativePose> OtherMotionOfPlane(const RelativePose& pose, const VisiblePlane& plane);
 
 }  // namespace rcme

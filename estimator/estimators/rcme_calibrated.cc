@@ -374,7 +374,9 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       const Vector5d away = LocalCoordinates(pose, mode.pose);
       const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check, prior);
       if (spreads != nullptr) (*spreads)[i] = covariance;
-      verdict.pose_cov += weight * (covariance + away * away.transpose());
+      const Matrix5d to_answer = TransportTangent(mode.pose, pose);
+      verdict.pose_cov +=
+          weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
       within += weight;
     }
     verdict.pose_cov /= within;

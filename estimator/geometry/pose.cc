@@ -56,6 +56,19 @@ Vector5d LocalCoordinates(const RelativePose& pose, const RelativePose& other) {
   return tangent;
 }
 
+Matrix5d TransportTangent(const RelativePose& from, const RelativePose& to) {
+  if (from.t == to.t) return Matrix5d::Identity();
+  const Eigen::Matrix<double, 3, 2> at_from = DirectionBasis(from.t);
+  // The rotation that takes from.t to to.t, applied to vectors normal to from.t. Opposite directions are
+  // joined by any great circle.
+  const double both = 1.0 + from.t.dot(to.t);
+  Eigen::Matrix<double, 3, 2> moved = at_from;
+  if (both > 1e-12) moved -= (from.t + to.t) * (to.t.transpose() * at_from) / both;
+  Matrix5d transport = Matrix5d::Identity();
+  transport.bottomRightCorner<2, 2>() = DirectionBasis(to.t).transpose() * moved;
+  return transport;
+}
+
 double RotationAngleBetween(const Eigen::Matrix3d& R_a, const Eigen::Matrix3d& R_b) {
   return Eigen::AngleAxisd(R_a * R_b.transpose()).angle();
 }

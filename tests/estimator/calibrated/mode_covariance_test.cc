@@ -51,6 +51,53 @@ TEST(SandwichCovariance, DoesNotDependOnTheAssumedSigma) {
   for (int k = 0; k < 5; ++k) EXPECT_NEAR(b(k, k) / a(k, k), 1.0, 0.25);
 }
 
+// Forward motion; the optimum's direction is moved, by less than its standard deviation, to where the two
+// coordinates across the axis are equal: there DirectionBasis turns by 90 deg.
+FittedMode FitWhereTheBasisTurns(std::uint32_t trial) {
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2813});
+  RandomProblem random = MakeRandomProblem(rng, {.num_matches = 200});
+  const RelativePose pose{RotationFromVector({0.02, -0.01, 0.03}), Eigen::Vector3d(0.1, 0.1, 1.0).normalized()};
+  for (size_t i = 0; i < random.points_in_cam1.size(); ++i) {
+    random.problem.matches[i] =
+        ProjectToBoth(random.points_in_cam1[i], pose, random.problem.camera1, random.problem.camera2);
+  }
+  AddNoise(0.3, rng, &random.problem);
+  FittedMode f = FitFromTruth(random.problem, pose);
+  Eigen::Vector3d& t = f.mode.pose.t;
+  t.x() = t.y() = 0.5 * (t.x() + t.y());
+  t.normalize();
+  f.mode.inverse_hessian =
+      SumPosterior(f.matches, f.mode.used, f.prior, f.mode.pose, f.mode.mixture).hessian.inverse();
+  return f;
+}
+
+// Second differences of the likelihood itself, over steps of a tenth of a standard deviation.
+Matrix5d InverseOfSecondDifferences(const FittedMode& f) {
+  const Matrix5d root = f.mode.inverse_hessian.llt().matrixL();
+  constexpr double kStep = 0.1;
+  const auto cost_at = [&](int i, double a, int j, double b) {
+    const Vector5d step = kStep * (a * root.col(i) + b * root.col(j));
+    return -SumLogPosterior(f.matches, f.mode.used, f.prior, Retract(f.mode.pose, step), f.mode.mixture);
+  };
+  Matrix5d hessian;
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      hessian(i, j) = (cost_at(i, 1, j, 1) - cost_at(i, 1, j, -1) - cost_at(i, -1, j, 1) + cost_at(i, -1, j, -1)) /
+                      (4.0 * kStep * kStep);
+    }
+  }
+  return root * hessian.inverse() * root.transpose();
+}
+
+TEST(InverseOfObserved, IsThatOfTheLikelihoodWhereTheBasisTurns) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const FittedMode f = FitWhereTheBasisTurns(trial);
+    ASSERT_TRUE(f.has_converged);
+    const Matrix5d expected = InverseOfSecondDifferences(f);
+    EXPECT_LT((InverseOfObserved(f.matches, f.mode) - expected).norm(), 0.02 * expected.norm()) << trial;
+  }
+}
+
 // 200 matches of points twenty times as far as the first eight, on which the direction rests alone.
 FittedMode FitFewNear(std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2812});

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "estimator/geometry/essential_matrix.h"
+#include "estimator/geometry/triangulation.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
@@ -48,7 +49,7 @@ TEST(OtherMotionOfPlane, HasTheSameHomography) {
     const RelativePose pose = RandomPose(rng, 30.0);
     const Eigen::Vector3d plane = rng.Uniform(0.05, 0.5) * RandomDirection(rng);
     const Eigen::Matrix3d H0 = pose.R + pose.t * plane.transpose();
-    const std::optional<RelativePose> other = OtherMotionOfPlane(pose, plane);
+    const std::optional<RelativePose> other = OtherMotionOfPlane(pose, {plane, plane});
     ASSERT_TRUE(other);
     EXPECT_NEAR(other->t.norm(), 1.0, 1e-12);
     EXPECT_LT((other->R * other->R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
@@ -60,7 +61,8 @@ TEST(OtherMotionOfPlane, HasTheSameHomography) {
     EXPECT_LT(beside_t.norm(), 1e-7) << trial;
     EXPECT_GT(LocalCoordinates(pose, *other).norm(), 1e-6) << trial;
     // The twist of the other one is the first again, up to the direction's sign.
-    const std::optional<RelativePose> back = OtherMotionOfPlane(*other, rest.transpose() * other->t);
+    const Eigen::Vector3d n = rest.transpose() * other->t;
+    const std::optional<RelativePose> back = OtherMotionOfPlane(*other, {n, n});
     ASSERT_TRUE(back);
     EXPECT_LT((back->R - pose.R).norm(), 1e-6) << trial;
     EXPECT_LT(back->t.cross(pose.t).norm(), 1e-6) << trial;
@@ -69,20 +71,55 @@ TEST(OtherMotionOfPlane, HasTheSameHomography) {
 
 TEST(OtherMotionOfPlane, OfAPureRotationIsNone) {
   EXPECT_FALSE(OtherMotionOfPlane({RotationFromVector({0.1, 0.2, 0.3}), Eigen::Vector3d::UnitX()},
-                                  Eigen::Vector3d::Zero()));
+                                  {Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()}));
 }
 
-// Matches of the plane follow both motions without a residual, and lie in front of the cameras in both.
+// Matches without noise follow the motion without a residual. If `points_in_front`, they lie in front of both
+// cameras.
+void ExpectExplains(const RelativePose& pose, const MotionProblem& problem, bool points_in_front) {
+  const Eigen::Matrix3d E = EssentialFromPose(pose);
+  for (const Correspondence& match : problem.matches) {
+    const Eigen::Vector3d ray1 = problem.camera1.Ray(match.x1_px), ray2 = problem.camera2.Ray(match.x2_px);
+    EXPECT_NEAR(ray2.dot(E * ray1), 0.0, 1e-9);
+    const double inverse_depth = InverseDepth(pose, ray1, ray2);
+    EXPECT_TRUE(!points_in_front || inverse_depth > 0.0);
+    EXPECT_TRUE(!points_in_front || (pose.R * ray1 + inverse_depth * pose.t).z() > 0.0);
+  }
+}
+
 TEST(OtherMotionOfPlane, ExplainsTheMatchesOfThePlane) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const PlaneCase c = MakePlane(trial, 0.0, 0.0);
-    const std::optional<RelativePose> other = OtherMotionOfPlane(c.random.pose_true, c.plane);
-    ASSERT_TRUE(other);
-    const Eigen::Matrix3d E = EssentialFromPose(*other);
     const MotionProblem& problem = c.random.problem;
-    for (const Correspondence& match : problem.matches) {
-      EXPECT_NEAR(problem.camera2.Ray(match.x2_px).dot(E * problem.camera1.Ray(match.x1_px)), 0.0, 1e-9);
+    const std::vector<double> right(problem.matches.size(), 0.99);
+    const std::optional<VisiblePlane> plane = FindPlane(problem, c.random.pose_true, right, 0.9);
+    ASSERT_TRUE(plane);
+    const std::optional<RelativePose> other = OtherMotionOfPlane(c.random.pose_true, *plane);
+    ASSERT_TRUE(other);
+    ExpectExplains(*other, problem, false);
+  }
+}
+
+// A road 1.5 baselines below a camera (y down) that moves forward. The plane of
+// the other motion has a normal more than 90 deg from the given one: the points decide on which side it lies.
+TEST(OtherMotionOfPlane, HasThePointsInFrontOfTheCameras) {
+  RandomStream rng({.seed = 1, .purpose = 2733});
+  const Camera camera{700.0, 700.0, 319.5, 239.5, 640, 480};
+  for (int trial = 0; trial < 50; ++trial) {
+    const RelativePose pose{RotationFromVector(0.05 * RandomDirection(rng)),
+                            Eigen::Vector3d(rng.Uniform(-0.05, 0.05), 0.0, -1.0).normalized()};
+    const Eigen::Vector3d road(rng.Uniform(-0.02, 0.02), 1.0 / 1.5, 0.0);
+    MotionProblem problem{{}, camera, camera, kTwistedSigmaPx};
+    for (int i = 0; i < 60; ++i) {
+      const Eigen::Vector3d ray(rng.Uniform(-0.4, 0.4), rng.Uniform(0.1, 0.3), 1.0);
+      problem.matches.push_back(ProjectToBoth(ray / road.dot(ray), pose, camera, camera));
     }
+    const std::optional<VisiblePlane> plane = FindPlane(problem, pose, std::vector<double>(60, 0.99), 0.9);
+    ASSERT_TRUE(plane) << trial;
+    EXPECT_LT((plane->n - road).norm(), 1e-6);
+    const std::optional<RelativePose> other = OtherMotionOfPlane(pose, *plane);
+    ASSERT_TRUE(other) << trial;
+    ExpectExplains(*other, problem, true);
   }
 }
 
@@ -96,9 +133,9 @@ TEST(FindPlane, FindsThePlaneOfNoisyMatches) {
           ProjectToBoth(2.0 * ray, c.random.pose_true, c.random.problem.camera1, c.random.problem.camera2);
     }
     const std::vector<double> right(c.random.problem.matches.size(), 0.99);
-    const std::optional<Eigen::Vector3d> plane = FindPlane(c.random.problem, c.random.pose_true, right, 0.6);
+    const std::optional<VisiblePlane> plane = FindPlane(c.random.problem, c.random.pose_true, right, 0.6);
     ASSERT_TRUE(plane) << trial;
-    EXPECT_LT((*plane - c.plane).norm(), 0.02) << trial;
+    EXPECT_LT((plane->n - c.plane).norm(), 0.02) << trial;
     EXPECT_FALSE(FindPlane(c.random.problem, c.random.pose_true, right, 0.97)) << trial;
   }
 }
@@ -125,10 +162,10 @@ TEST(FindPlane, WeighsMatchesByTheirNoise) {
         ProjectToBoth(ray / (0.8 * c.plane.dot(ray)), c.random.pose_true, problem.camera1, problem.camera2);
     problem.noise_scale[i] = 1000.0;
   }
-  const std::optional<Eigen::Vector3d> plane =
+  const std::optional<VisiblePlane> plane =
       FindPlane(problem, c.random.pose_true, std::vector<double>(120, 0.99), 0.6);
   ASSERT_TRUE(plane);
-  EXPECT_LT((*plane - c.plane).norm(), 1e-3);
+  EXPECT_LT((plane->n - c.plane).norm(), 1e-3);
 }
 
 // 80 matches of the plane z = 5 ahead and 40 at the edges of a wide image, x = 1.7 focal lengths from the
@@ -158,9 +195,9 @@ TEST(FindPlane, CountsWideMatchesByTheNoiseOfTheirDepth) {
   for (const double off_sds : {2.0, 6.0}) {
     const MotionProblem problem = WideImageOfPlane(off_sds, pose);
     EXPECT_EQ(FindPlane(problem, pose, right, 0.8).has_value(), off_sds < 3.0);
-    const std::optional<Eigen::Vector3d> plane = FindPlane(problem, pose, right, 0.6);
+    const std::optional<VisiblePlane> plane = FindPlane(problem, pose, right, 0.6);
     ASSERT_TRUE(plane);
-    EXPECT_LT((*plane - Eigen::Vector3d(0.0, 0.0, 0.2)).norm(), 0.005);
+    EXPECT_LT((plane->n - Eigen::Vector3d(0.0, 0.0, 0.2)).norm(), 0.005);
   }
 }
 

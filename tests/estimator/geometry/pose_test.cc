@@ -153,6 +153,29 @@ TEST(LocalCoordinates, LengthsAreTheAngles) {
   }
 }
 
+// The great circle from a to b leaves a in the direction of b's coordinates around a, and arrives at b in the
+// direction opposite to a's around b.
+TEST(TransportTangent, KeepsTheDirectionOfAGreatCircle) {
+  RandomStream rng({.seed = 1, .purpose = 2814});
+  int num_bases_differ = 0;
+  for (int i = 0; i < 300; ++i) {
+    const RelativePose a = RandomPose(rng, 180.0);
+    Vector5d near;
+    for (double& x : near) x = 0.01 * rng.Normal();
+    const RelativePose b = i % 2 == 0 ? RandomPose(rng, 180.0) : Retract(a, near);
+    const Matrix5d transport = TransportTangent(a, b);
+    EXPECT_LT((transport * transport.transpose() - Matrix5d::Identity()).norm(), 1e-10);
+    EXPECT_GT(transport.determinant(), 0.0);
+    EXPECT_EQ((transport.topLeftCorner<3, 3>() - Eigen::Matrix3d::Identity()).norm(), 0.0);
+    const Vector5d leaves = LocalCoordinates(a, b), arrives = -LocalCoordinates(b, a);
+    EXPECT_LT((transport * leaves - arrives).tail<2>().norm(), 1e-10 * leaves.tail<2>().norm() + 1e-10);
+    num_bases_differ += (transport - Matrix5d::Identity()).norm() > 0.5;
+  }
+  EXPECT_GT(num_bases_differ, 50);
+  const RelativePose pose = RandomPose(rng, 180.0), opposite{pose.R, -pose.t};
+  EXPECT_TRUE(TransportTangent(pose, opposite).allFinite());
+}
+
 TEST(Angles, ByHand) {
   EXPECT_EQ(AngleBetween(Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitX()), 0.0);
   EXPECT_NEAR(AngleBetween(Eigen::Vector3d::UnitX(), 5.0 * Eigen::Vector3d::UnitY()), kPi / 2, 1e-15);
