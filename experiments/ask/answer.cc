@@ -11,10 +11,13 @@
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/statistics/quantity_table.h"
+#include "experiments/statistics/readable_run.h"
 #include "experiments/statistics/summarize.h"
+#include "experiments/trial/trial_measure.h"
 #include "parameters/input_error.h"
 #include "stats/equivalence.h"
 #include "stats/paired_sample_size.h"
+#include "stats/stream_median.h"
 
 namespace rcme {
 namespace {
@@ -38,16 +41,56 @@ Estimate WidenForChoice(Estimate share, int num_estimators) {
   return share;
 }
 
+// Without a true direction the rotation is all that there is to find. An answer that refuses the direction
+// then counts as one that gives the rotation.
+ReadableRun ReadForQuestion(const ResultStore& store, bool has_direction) {
+  if (has_direction) return ReadRun(store);
+  return {store.Description(), [&store](const VisitTrial& visit) {
+            store.ForEachTrial([&](const ProblemRecord& problem, std::vector<TrialRecord> records) {
+              for (TrialRecord& record : records) {
+                if (record.status == MotionStatus::kDirectionNotObservable) record.status = MotionStatus::kOk;
+              }
+              visit(problem, records);
+            });
+          }};
+}
+
+// What the trials say of one estimator.
+struct Outcomes {
+  std::int64_t n = 0, num_successes = 0;  // of the trials that are scored
+  StreamMedian error_deg;
+
+  void Add(const TrialRecord& record, const FailureBounds& bounds) {
+    static const TrialMeasure& max_error = *std::ranges::find(
+        TrialErrors(), TrialMeasure::Quantity::kMaxError, &TrialMeasure::quantity);
+    if (!IsScored(record)) return;
+    ++n;
+    num_successes += HasSucceeded(record, bounds);
+    if (const std::optional<double> error = max_error.Of(record)) error_deg.Add(*error);
+  }
+  Estimate Success() const {
+    return {.value = static_cast<double>(num_successes) / static_cast<double>(n), .n = n};
+  }
+};
+
+std::vector<Outcomes> CountOutcomes(const ReadableRun& run) {
+  std::vector<Outcomes> outcomes(run.description.estimators.size());
+  run.for_each_trial([&](const ProblemRecord&, const std::vector<TrialRecord>& records) {
+    for (size_t e = 0; e < outcomes.size(); ++e) outcomes[e].Add(records[e], run.description.failure);
+  });
+  return outcomes;
+}
+
 // The best first.
-std::vector<AskedEstimator> ListRanked(const RunDescription& run, const Summary& summary, double sigma_px) {
-  const auto num_estimators = static_cast<int>(run.estimators.size());
+std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& summary, double sigma_px) {
+  const std::vector<DescribedEstimator>& estimators = run.description.estimators;
+  const std::vector<Outcomes> outcomes = CountOutcomes(run);
   std::vector<AskedEstimator> ranked;
-  for (const DescribedEstimator& estimator : run.estimators) {
-    const std::string& label = estimator.label;
-    ranked.push_back({label, WidenForChoice(FindEstimate(summary, label, "success"), num_estimators),
-                      FindEstimate(summary, label, "mean_time_ms").value,
-                      FindEstimate(summary, label, "max_error_median_deg").value,
-                      DescribeInlierThreshold(estimator.name, estimator.options, sigma_px)});
+  for (size_t e = 0; e < estimators.size(); ++e) {
+    const std::string& label = estimators[e].label;
+    ranked.push_back({label, WidenForChoice(outcomes[e].Success(), static_cast<int>(estimators.size())),
+                      FindEstimate(summary, label, "mean_time_ms").value, outcomes[e].error_deg.median(),
+                      DescribeInlierThreshold(estimators[e].name, estimators[e].options, sigma_px)});
   }
   RankEstimators(&ranked);
   return ranked;
@@ -151,26 +194,28 @@ void RankEstimators(std::vector<AskedEstimator>* estimators) {
   });
 }
 
-Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px) {
-  const RunDescription description = run.Description();
+Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most) {
+  const ReadableRun readable = ReadForQuestion(run, HasDirection(question));
+  const RunDescription& description = readable.description;
   if (description.conditions.size() != 1)
     throw InputError(fmt::format("ask: {}: has {} conditions; an answer is of one", description.study,
                                  description.conditions.size()));
   const Summary summary = Summarize(run, /*with_times=*/true);
-  const std::vector<AskedEstimator> ranked = ListRanked(description, summary, sigma_px);
+  const std::vector<AskedEstimator> ranked = ListRanked(readable, summary, question.sigma_px);
   Answer answer;
   answer.num_trials = summary.num_trials_done;
   answer.num_estimators = static_cast<int>(ranked.size());
+  answer.has_direction = HasDirection(question);
   answer.at_most = at_most;
   answer.failure = description.failure;
   answer.best = ranked.front();
   if (ranked.size() > 1) {
-    const Comparison comparison = Compare(run, answer.best.label, {.compared = {"failure_or_refusal"}});
+    const Comparison comparison = Compare(readable, answer.best.label, {.compared = {"failure_or_refusal"}});
     answer.next = ranked[1];
     answer.alike = FindAlike(ranked, comparison);
     answer.difference = DescribeDifference(comparison, answer.next->label, answer.alike.size());
   }
-  AddStated(run, summary, &answer);
+  if (answer.has_direction) AddStated(run, summary, &answer);
   const std::string& best = answer.best.label;
   answer.sharpness = {FindEstimate(summary, best, "sd_over_crb").value,
                       FindEstimate(summary, best, "rotation_sd_deg").value,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "experiments/ask/accept_rule.h"
+#include "experiments/ask/question.h"
 #include "experiments/core/table/table.h"
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/coverage_verdict.h"
@@ -41,6 +42,9 @@ struct Answer {
   std::int64_t num_trials = 0;
   int num_estimators = 0;
   FailureBounds failure;
+  // False: success is that of the rotation, whether or not the answer has a direction; P is not judged, as it
+  // is the probability that rotation or direction is wrong.
+  bool has_direction = true;
   AskedEstimator best;
   std::vector<AskedEstimator> alike;   // others whose success is not significantly below that of the best
   std::optional<AskedEstimator> next;  // the second in rank
@@ -64,6 +68,6 @@ void RankEstimators(std::vector<AskedEstimator>* estimators);
 double RoundToTwoDigits(double value);
 
 // Throws InputError if the run has several conditions or a damaged trial.
-Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px);
+Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most);
 
 }  // namespace rcme

@@ -38,6 +38,7 @@ std::string JudgeStated(const Estimate& measured, double stated, double margin) 
 
 // What can be promised of accepted answers.
 std::string DescribeAcceptRule(const Answer& a) {
+  if (!a.has_direction) return "no P is judged: it is of rotation and direction, and the motion has no direction";
   if (a.stating.empty()) return a.best.label + " states no P: nothing to accept by";
   if (!a.rule) {
     return fmt::format(
@@ -133,6 +134,7 @@ std::string DescribeNext(const Answer& a) {
 }
 
 std::string DescribeCoverage(const Answer& a) {
+  if (!a.has_direction) return "coverage is of rotation and direction, and the motion has no direction";
   const std::string sharpness = a.sharpness.IsKnown() ? "; " + DescribeSharpness(a.sharpness) : "";
   if (std::isnan(a.coverage.value)) return "coverage is not known" + sharpness;
   return fmt::format("its 95 % region contains the truth in {}: {}{}", FormatEstimate(a.coverage, kPercent),
@@ -156,6 +158,19 @@ Lines DescribeAnswer(const Answer& a) {
   return lines;
 }
 
+std::string DescribeSuccess(const Answer& a) {
+  const std::string rotation =
+      fmt::format("Success: an error of at most {:g} deg of rotation", a.failure.max_rotation_error_deg);
+  if (!a.has_direction)
+    return rotation +
+           ". The motion has no direction, so\n"
+           "an answer that refuses to give one succeeds by its rotation. Intervals hold\n";
+  return fmt::format(
+      "{} and {:g} deg of direction. P: the\n"
+      "probability of failure that an estimator states with its answer. Intervals hold\n",
+      rotation, a.failure.max_direction_error_deg);
+}
+
 // What the words of the table mean.
 std::string DescribeTerms(const Answer& a) {
   const std::string promise =
@@ -164,11 +179,9 @@ std::string DescribeTerms(const Answer& a) {
                    "choice included.",
                    100.0 * a.at_most)
              : std::string();
-  return fmt::format(
-      "Success: an error of at most {:g} deg of rotation and {:g} deg of direction. P: the\n"
-      "probability of failure that an estimator states with its answer. Intervals hold\n"
-      "with 95 % although the same trials chose the estimator among {}.{}\n",
-      a.failure.max_rotation_error_deg, a.failure.max_direction_error_deg, a.num_estimators, promise);
+  return DescribeSuccess(a) +
+         fmt::format("with 95 % although the same trials chose the estimator among {}.{}\n", a.num_estimators,
+                     promise);
 }
 
 nlohmann::ordered_json EstimatorAsJson(const AskedEstimator& estimator) {

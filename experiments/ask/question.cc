@@ -130,6 +130,8 @@ std::string DescribeQuestion(const Question& q) {
                      q.num_matches);
 }
 
+bool HasDirection(const Question& question) { return question.motion != "pure_rotation"; }
+
 std::string MakeStudyText(const Question& q, int trials) {
   return fmt::format(
       R"(# Written by `rcme ask`. Change it as you like: rcme list settings, rcme list estimators.

@@ -43,6 +43,9 @@ bool ParseShare(const std::string& text, double* share);
 // Parses the texts into `question`. Throws InputError that names the option and the allowed values.
 void ReadTexts(const AskedTexts& texts, Question* question);
 
+// Whether the true motion has a direction of translation, without which nobody can find one.
+bool HasDirection(const Question& question);
+
 // The study that answers the question, as YAML: one condition with `trials` trials, for rcme_calibrated and
 // its usual alternatives. Unknown names are refused when the study is read.
 std::string MakeStudyText(const Question& question, int trials);

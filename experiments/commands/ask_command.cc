@@ -104,8 +104,8 @@ void RunAsk(AskArguments arguments) {
   ReadTexts(arguments.texts, &arguments.question);
   MakeResultFolder(arguments.out);
   RunQuestion(arguments);
-  const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.at_most,
-                                       arguments.question.sigma_px);
+  const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.question,
+                                       arguments.at_most);
   const std::string question = DescribeQuestion(arguments.question);
   PrintResult(MakeAnswerResult(answer, question, arguments.out), arguments.format);
 }

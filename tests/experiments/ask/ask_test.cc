@@ -162,6 +162,7 @@ class AnswerOfRun : public testing::Test {
  protected:
   struct Outcome {
     double error_deg, failure_probability = kNaN;
+    MotionStatus status = MotionStatus::kOk;
   };
   // Adds trials of which each has these outcomes.
   void Add(int num_trials, const std::vector<Outcome>& outcomes) {
@@ -170,9 +171,9 @@ class AnswerOfRun : public testing::Test {
         TrialRecord record;
         record.trial = num_trials_;
         record.estimator = static_cast<std::uint32_t>(&outcome - outcomes.data());
-        record.status = MotionStatus::kOk;
+        record.status = outcome.status;
         record.rotation_error_deg = outcome.error_deg;
-        record.direction_error_deg = 0.01;
+        record.direction_error_deg = HasDirection(question_) ? 0.01 : kNaN;
         record.failure_probability = outcome.failure_probability;
         record.seconds = 0.001;
         records_.push_back(record);
@@ -185,11 +186,12 @@ class AnswerOfRun : public testing::Test {
     Study study = ParseStudy(yaml, "asked.yaml");
     study.trials = static_cast<int>(num_trials_);
     AddRecords(*std::make_unique<ResultStore>(ResultStore::OpenForRun(path_, MakePlan(study))), records_);
-    return AnswerQuestion(ResultStore::OpenForReading(path_), 0.05, 0.5);
+    return AnswerQuestion(ResultStore::OpenForReading(path_), question_, 0.05);
   }
 
   TempFolder folder_;
   std::string path_ = folder_.Path("run.sqlite");
+  Question question_;
   std::uint32_t num_trials_ = 0;
   std::vector<TrialRecord> records_;
 };
@@ -224,6 +226,25 @@ TEST_F(AnswerOfRun, TwoOfThreeAreTied) {
   EXPECT_EQ(json["alike"][0]["label"], "standard");
   EXPECT_EQ(json["stating"]["accept"]["accepted"], 200);
   EXPECT_FALSE(json.contains("accept")) << "the best states no probability";
+}
+
+// standard gives a direction that is not there, ours refuses it and is as right; third has a wrong rotation.
+TEST_F(AnswerOfRun, WithoutADirectionTheRotationIsTheAnswer) {
+  question_.motion = "pure_rotation";
+  constexpr MotionStatus kRefused = MotionStatus::kDirectionNotObservable;
+  Add(60, {{0.1, 0.2}, {0.1, 0.0, kRefused}, {9.0, kNaN, kRefused}});
+  const Answer answer = Ask();
+  EXPECT_EQ(answer.best.success.value, 1.0);
+  ASSERT_EQ(answer.alike.size(), 1u) << "refusing the direction is right, a rotation off by 9 deg is not";
+  EXPECT_EQ(answer.alike[0].success.value, 1.0);
+  EXPECT_EQ(answer.stating, "");
+  const std::string words = JoinWords(answer);
+  EXPECT_EQ(words.find("Trust in P"), std::string::npos) << words;
+  EXPECT_EQ(words.find("15 deg"), std::string::npos) << words;
+  EXPECT_NE(words.find("an answer that refuses to give one succeeds by its rotation"), std::string::npos)
+      << words;
+  const Answer of_direction = AnswerQuestion(ResultStore::OpenForReading(path_), Question(), 0.05);
+  EXPECT_EQ(of_direction.alike.size(), 0u) << "where there is a direction, refusing it is no success";
 }
 
 // ours fails in one trial of 40: one discordant trial says nothing.
