@@ -22,6 +22,11 @@
 namespace rcme {
 namespace {
 
+constexpr const char* kErrorMeasure = "max_error_median_deg";
+
+// Times that differ by less are alike: they depend on what else the machine does.
+constexpr double kAlikeTimes = 1.1;
+
 // A quantity of an estimator with its n; an empty Estimate if the summary lacks it.
 Estimate FindEstimate(const Summary& summary, const std::string& label, const std::string& quantity) {
   for (const SummaryRow& row : summary.rows) {
@@ -61,8 +66,8 @@ struct Outcomes {
   StreamMedian error_deg;
 
   void Add(const TrialRecord& record, const FailureBounds& bounds) {
-    static const TrialMeasure& max_error = *std::ranges::find(
-        TrialErrors(), TrialMeasure::Quantity::kMaxError, &TrialMeasure::quantity);
+    static const TrialMeasure& max_error =
+        *std::ranges::find(TrialErrors(), TrialMeasure::Quantity::kMaxError, &TrialMeasure::quantity);
     if (!IsScored(record)) return;
     ++n;
     num_successes += HasSucceeded(record, bounds);
@@ -81,6 +86,19 @@ std::vector<Outcomes> CountOutcomes(const ReadableRun& run) {
   return outcomes;
 }
 
+// The difference of an estimator's errors from those of the reference, on the same trials.
+Estimate FindErrorDifference(const Comparison& comparison, const std::string& label) {
+  for (const ComparisonRow& row : comparison.rows) {
+    if (row.estimator == label && row.event == kErrorMeasure)
+      return {.value = row.difference, .interval = row.interval, .n = row.n};
+  }
+  return {};
+}
+
+bool HasGreaterErrors(const Comparison& comparison, const std::string& label) {
+  return FindErrorDifference(comparison, label).interval.lower > 0.0;
+}
+
 // The best first.
 std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& summary, double sigma_px) {
   const std::vector<DescribedEstimator>& estimators = run.description.estimators;
@@ -90,9 +108,17 @@ std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& su
     const std::string& label = estimators[e].label;
     ranked.push_back({label, WidenForChoice(outcomes[e].Success(), static_cast<int>(estimators.size())),
                       FindEstimate(summary, label, "mean_time_ms").value, outcomes[e].error_deg.median(),
+                      FindEstimate(summary, label, "failure_probability").n.value_or(0) > 0,
                       DescribeInlierThreshold(estimators[e].name, estimators[e].options, sigma_px)});
   }
-  RankEstimators(&ranked);
+  std::vector<Comparison> comparisons;
+  for (const AskedEstimator& estimator : ranked)
+    comparisons.push_back(Compare(run, estimator.label, {.compared = {kErrorMeasure}}));
+  RankEstimators(&ranked, [&](const AskedEstimator& worse, const AskedEstimator& better) {
+    return std::ranges::any_of(comparisons, [&](const Comparison& comparison) {
+      return comparison.reference == better.label && HasGreaterErrors(comparison, worse.label);
+    });
+  });
   return ranked;
 }
 
@@ -177,21 +203,30 @@ CoverageVerdict JudgeChosenCoverage(const Estimate& coverage, const Answer& answ
 
 }  // namespace
 
-double RoundToTwoDigits(double value) {
-  if (!std::isfinite(value) || value <= 0.0) return value;
-  const double step = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  return step * std::round(value / step);
-}
-
-void RankEstimators(std::vector<AskedEstimator>* estimators) {
+void RankEstimators(std::vector<AskedEstimator>* estimators, const HasGreaterError& has_greater_error) {
   const auto last_if_nan = [](double value) {
     return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
   };
   std::ranges::stable_sort(*estimators, {}, [&](const AskedEstimator& estimator) {
-    return std::array{last_if_nan(-estimator.success.value),
-                      last_if_nan(RoundToTwoDigits(estimator.median_error_deg)),
-                      last_if_nan(estimator.time_ms)};
+    return std::array{last_if_nan(-estimator.success.value), last_if_nan(estimator.time_ms)};
   });
+  for (auto first = estimators->begin(); first != estimators->end(); ++first) {
+    const auto end_of_ties = std::find_if(first, estimators->end(), [&](const AskedEstimator& other) {
+      return other.success.value != first->success.value;
+    });
+    const auto is_candidate = [&](const AskedEstimator& estimator) {
+      return std::none_of(first, end_of_ties,
+                          [&](const AskedEstimator& other) { return has_greater_error(estimator, other); });
+    };
+    auto chosen = std::find_if(first, end_of_ties, is_candidate);
+    if (chosen == end_of_ties) continue;
+    const auto stating = std::find_if(chosen, end_of_ties, [&](const AskedEstimator& estimator) {
+      return estimator.states_p && estimator.time_ms <= kAlikeTimes * chosen->time_ms &&
+             is_candidate(estimator);
+    });
+    if (stating != end_of_ties) chosen = stating;
+    std::rotate(first, chosen, chosen + 1);
+  }
 }
 
 Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most) {
@@ -211,6 +246,8 @@ Answer AnswerQuestion(const ResultStore& run, const Question& question, double a
   answer.best = ranked.front();
   if (ranked.size() > 1) {
     const Comparison comparison = Compare(readable, answer.best.label, {.compared = {"failure_or_refusal"}});
+    answer.error_difference = FindErrorDifference(
+        Compare(readable, answer.best.label, {.compared = {kErrorMeasure}}), ranked[1].label);
     answer.next = ranked[1];
     answer.alike = FindAlike(ranked, comparison);
     answer.difference = DescribeDifference(comparison, answer.next->label, answer.alike.size());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct AskedEstimator {
   Estimate success;                // share of all trials; the intervals of all estimators hold jointly
   double time_ms = 0.0;            // mean of a call
   double median_error_deg = kNaN;  // median of max(rotation error, direction error); NaN: unknown
+  bool states_p = false;           // the probability of failure of its answers
   std::string inlier_threshold;    // DescribeInlierThreshold; empty: unknown
 };
 
@@ -49,7 +51,8 @@ struct Answer {
   std::vector<AskedEstimator> alike;   // others whose success is not significantly below that of the best
   std::optional<AskedEstimator> next;  // the second in rank
   std::optional<AskedDifference> difference;
-  double at_most = 0.0;  // the greatest failure rate of accepted answers, from the question
+  Estimate error_difference;  // median difference of the errors of `next` from those of the best, deg
+  double at_most = 0.0;       // the greatest failure rate of accepted answers, from the question
   // The label of the estimator that `rule`, `stated` and `failed` describe: the best if it states a
   // probability of failure, else the first in `alike` that does; empty if none does.
   std::string stating;
@@ -60,12 +63,13 @@ struct Answer {
   StatedSharpness sharpness;
 };
 
-// Sorts the best first: by success, then by the median error rounded to two digits (unknown: last), then by
-// the time of a call.
-void RankEstimators(std::vector<AskedEstimator>* estimators);
+// Whether the errors of the first are greater than those of the second, on the same trials and by more than
+// chance.
+using HasGreaterError = std::function<bool(const AskedEstimator&, const AskedEstimator&)>;
 
-// Rounds to two significant digits: 0.1234 -> 0.12, 2994 -> 3000.
-double RoundToTwoDigits(double value);
+// Sorts the best first: by success; of those that succeed equally often an estimator comes before those with
+// greater errors; then by the time of a call; of those that are about as fast one that states P comes first.
+void RankEstimators(std::vector<AskedEstimator>* estimators, const HasGreaterError& has_greater_error);
 
 // Throws InputError if the run has several conditions or a damaged trial.
 Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most);

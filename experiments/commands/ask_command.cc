@@ -129,8 +129,8 @@ void AddAskCommand(CLI::App& app) {
   command->footer(R"(Writes a study of one condition, runs as many trials as the time allows, and answers in
 about ten lines: the estimator that succeeds most often among rcme_calibrated, tuned
 RCME, MSAC, OpenCV's MAGSAC and OpenGV's RANSAC, and which of the others the trials
-cannot tell from it (of those that succeed as often, the one of the least median error
-leads, then the fastest); up to which stated probability of failure to accept answers;
+cannot tell from it (of those that succeed as often the fastest leads whose errors are
+not greater by more than chance); up to which stated probability of failure to accept answers;
 whether probabilities and covariances are right; what it takes for an inlier; and how
 many trials tell the first two apart. Without the first five options it asks for them
 at a terminal.
