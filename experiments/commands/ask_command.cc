@@ -100,6 +100,7 @@ void RunAsk(AskArguments arguments) {
     throw InputError(fmt::format("ask: {}: missing; give {}, or answer at a terminal",
                                  fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them"));
   }
+  ReadTexts(arguments.texts, &arguments.question);
   AskForMissing(std::cin, std::cerr, &arguments.texts);
   ReadTexts(arguments.texts, &arguments.question);
   MakeResultFolder(arguments.out);

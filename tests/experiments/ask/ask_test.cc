@@ -30,11 +30,13 @@ TEST(Ask, AsksForWhatIsMissingAlone) {
   AskedTexts texts = Corridor();
   texts.focal_px = texts.scene = "";
   EXPECT_EQ(MissingOptions(texts), (std::vector<std::string>{"--focal", "--scene"}));
-  std::istringstream in("\n  900 \ncorridor\n");
+  std::istringstream in("\n900px\n  900 \ncorridoor\ncorridor\n");
   std::ostringstream out;
   AskForMissing(in, out, &texts);
   EXPECT_EQ(texts.focal_px, "900") << "an empty line is asked again, blanks around are left out";
   EXPECT_EQ(texts.scene, "corridor");
+  for (const std::string refused : {"'900px' is not allowed", "'corridoor' is not a scene"})
+    EXPECT_NE(out.str().find(refused), std::string::npos) << "asked again at once\n" << out.str();
   EXPECT_EQ(out.str().find("Size of an image"), std::string::npos);
   EXPECT_TRUE(MissingOptions(texts).empty());
   texts.wrong = "";
