@@ -147,6 +147,14 @@ void ReadTexts(const AskedTexts& texts, Question* question) {
   }
 }
 
+void CheckOutliers(const Question& question) {
+  if (question.outliers != "repeated_texture" || question.scene == "lattice") return;
+  throw InputError(fmt::format(
+      "--outliers: 'repeated_texture' is not allowed with --scene {}, in which nothing is repeated; give --scene "
+      "lattice, or other outliers such as clustered_both",
+      question.scene));
+}
+
 std::string DescribeQuestion(const Question& q) {
   return fmt::format("{} x {} px, f {:g} px, noise {:g} px; {}{}; {:g} % wrong ({}) of {} matches",
                      q.image_width, q.image_height, q.focal_px, q.sigma_px, q.scene,

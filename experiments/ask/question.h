@@ -44,6 +44,9 @@ bool ParseShare(const std::string& text, double* share);
 // values.
 void ReadTexts(const AskedTexts& texts, Question* question);
 
+// Throws InputError if the scene cannot have such wrong matches.
+void CheckOutliers(const Question& question);
+
 // Whether the true motion has a direction of translation, without which nobody can find one.
 bool HasDirection(const Question& question);
 

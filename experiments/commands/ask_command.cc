@@ -18,6 +18,7 @@
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/run_study.h"
 #include "experiments/study/study_file.h"
+#include "experiments/study/study_plan.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "simulator/motion_registry.h"
@@ -46,6 +47,15 @@ std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
 }
 
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
+
+// Throws InputError if the simulator cannot make the question's problems, before anything is written.
+void RequireSimulable(const AskArguments& arguments) {
+  const std::string path = arguments.out + "/study.yaml";
+  const StudyPlan plan = MakePlan(ParseStudy(MakeStudyText(arguments.question, kPilotTrials), path), path);
+  const Condition& condition = plan.conditions[0];
+  for (std::uint32_t trial = 0; trial < kPilotTrials; ++trial)
+    condition.source->Make(NameOfScene(plan, condition, trial));
+}
 
 // Runs the question's study up to `trials` trials and keeps those that the result file already has. If the
 // file belongs to another question, nothing is written, not even study.yaml.
@@ -103,6 +113,8 @@ void RunAsk(AskArguments arguments) {
   ReadTexts(arguments.texts, &arguments.question);
   AskForMissing(std::cin, std::cerr, &arguments.texts);
   ReadTexts(arguments.texts, &arguments.question);
+  CheckOutliers(arguments.question);
+  RequireSimulable(arguments);
   MakeResultFolder(arguments.out);
   RunQuestion(arguments);
   const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.question,

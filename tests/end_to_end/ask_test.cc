@@ -79,6 +79,8 @@ TEST_F(AskProgram, RefusesWhatIsNoCamera) {
   EXPECT_THAT(result.err, HasSubstr("give WIDTHxHEIGHT"));
   EXPECT_THAT(Ask({"--image", "640x480", "--at-most", "500%"}).err,
               HasSubstr("--at-most: '500%' is not allowed; give a number in [1e-06, 0.5]"));
+  EXPECT_THAT(Ask({"--image", "640x480", "--outliers", "repeated_texture"}).err,
+              HasSubstr("with --scene corridor, in which nothing is repeated; give --scene lattice"));
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("asked")));
 }
 

@@ -80,6 +80,16 @@ TEST(Ask, ReadsTheTextsAndRefusesWhatIsNone) {
   }
 }
 
+TEST(Ask, OnlyALatticeHasRepeatedTexture) {
+  Question question;
+  question.scene = "room";
+  CheckOutliers(question);
+  question.outliers = "repeated_texture";
+  EXPECT_THROW(CheckOutliers(question), InputError);
+  question.scene = "lattice";
+  CheckOutliers(question);
+}
+
 TEST(Ask, TheStudyIsTheQuestion) {
   Question question;
   ReadTexts(Corridor(), &question);
