@@ -84,6 +84,14 @@ TEST_F(AskProgram, RefusesWhatIsNoCamera) {
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("asked")));
 }
 
+// As all other messages do.
+TEST(WrongOptions, ArePrecededByTheProgram) {
+  EXPECT_THAT(RunRcme({"failures"}).err, testing::StartsWith("rcme: run is required"));
+  EXPECT_THAT(RunRcme({"ask", "--trials", "no"}).err, testing::StartsWith("rcme: --trials: "));
+  EXPECT_THAT(RunRcme({"ask", "--nonsense"}).err,
+              testing::StartsWith("rcme: the following arguments were not expected: --nonsense"));
+}
+
 // Every failure that the list has is a failure of the replay, and the program of one of them is written.
 TEST(Failures, AreThoseOfReplay) {
   TempFolder folder;
