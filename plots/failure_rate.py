@@ -9,7 +9,7 @@ import sys
 
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import of_estimators, read_summary, where
-from rates.lines import draw
+from rates.lines import Choices, draw
 
 EXAMPLE = """
 example:
@@ -41,7 +41,13 @@ def parse(arguments):
     parser.add_argument("--log-y", action="store_true", default=None,
                         help="logarithmic y axis (default: of a quantity whose rates are small)")
     parser.add_argument("--linear-y", action="store_false", dest="log_y", help="linear y axis")
+    parser.add_argument("--floor", type=float, metavar="RATE",
+                        help="where a logarithmic y axis ends; rates of exactly zero stand there, with their intervals")
+    parser.add_argument("--names", metavar="A,B", help="write the names of these estimators alone (default: of all)")
     options = parser.parse_args(arguments)
+    if options.floor is not None and not 0 < options.floor < 1:
+        parser.error(f"--floor {options.floor:g}: give a rate above 0 and below 1, such as 0.0002.")
+    options.names = None if options.names is None else names_of("--names", options.names, "rcme")
     options.quantities = names_of("--quantities", options.quantities, "failure")
     options.estimators = [] if options.estimators is None else names_of("--estimators", options.estimators, "rcme")
     check_figure_path(options.out)
@@ -50,7 +56,7 @@ def parse(arguments):
 
 def draw_for(options):
     summary = of_estimators(where(read_summary(options.summary), options.where), options.estimators)
-    return draw(summary, options.x, options.quantities, options.log_y)
+    return draw(summary, options.x, options.quantities, options.log_y, Choices(options.floor, options.names))
 
 
 def main(arguments=None):

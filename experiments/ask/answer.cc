@@ -11,13 +11,21 @@
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/statistics/quantity_table.h"
+#include "experiments/statistics/readable_run.h"
 #include "experiments/statistics/summarize.h"
+#include "experiments/trial/trial_measure.h"
 #include "parameters/input_error.h"
 #include "stats/equivalence.h"
 #include "stats/paired_sample_size.h"
+#include "stats/stream_median.h"
 
 namespace rcme {
 namespace {
+
+constexpr const char* kErrorMeasure = "max_error_median_deg";
+
+// Times that differ by less are alike: they depend on what else the machine does.
+constexpr double kAlikeTimes = 1.1;
 
 // A quantity of an estimator with its n; an empty Estimate if the summary lacks it.
 Estimate FindEstimate(const Summary& summary, const std::string& label, const std::string& quantity) {
@@ -38,18 +46,79 @@ Estimate WidenForChoice(Estimate share, int num_estimators) {
   return share;
 }
 
-// The best first.
-std::vector<AskedEstimator> ListRanked(const RunDescription& run, const Summary& summary, double sigma_px) {
-  const auto num_estimators = static_cast<int>(run.estimators.size());
-  std::vector<AskedEstimator> ranked;
-  for (const DescribedEstimator& estimator : run.estimators) {
-    const std::string& label = estimator.label;
-    ranked.push_back({label, WidenForChoice(FindEstimate(summary, label, "success"), num_estimators),
-                      FindEstimate(summary, label, "mean_time_ms").value,
-                      FindEstimate(summary, label, "max_error_median_deg").value,
-                      DescribeInlierThreshold(estimator.name, estimator.options, sigma_px)});
+// Without a true direction the rotation is all that there is to find. An answer that refuses the direction
+// then counts as one that gives the rotation.
+ReadableRun ReadForQuestion(const ResultStore& store, bool has_direction) {
+  if (has_direction) return ReadRun(store);
+  return {store.Description(), [&store](const VisitTrial& visit) {
+            store.ForEachTrial([&](const ProblemRecord& problem, std::vector<TrialRecord> records) {
+              for (TrialRecord& record : records) {
+                if (record.status == MotionStatus::kDirectionNotObservable) record.status = MotionStatus::kOk;
+              }
+              visit(problem, records);
+            });
+          }};
+}
+
+// What the trials say of one estimator.
+struct Outcomes {
+  std::int64_t n = 0, num_successes = 0;  // of the trials that are scored
+  StreamMedian error_deg;
+
+  void Add(const TrialRecord& record, const FailureBounds& bounds) {
+    static const TrialMeasure& max_error =
+        *std::ranges::find(TrialErrors(), TrialMeasure::Quantity::kMaxError, &TrialMeasure::quantity);
+    if (!IsScored(record)) return;
+    ++n;
+    num_successes += HasSucceeded(record, bounds);
+    if (const std::optional<double> error = max_error.Of(record)) error_deg.Add(*error);
   }
-  RankEstimators(&ranked);
+  Estimate Success() const {
+    return {.value = static_cast<double>(num_successes) / static_cast<double>(n), .n = n};
+  }
+};
+
+std::vector<Outcomes> CountOutcomes(const ReadableRun& run) {
+  std::vector<Outcomes> outcomes(run.description.estimators.size());
+  run.for_each_trial([&](const ProblemRecord&, const std::vector<TrialRecord>& records) {
+    for (size_t e = 0; e < outcomes.size(); ++e) outcomes[e].Add(records[e], run.description.failure);
+  });
+  return outcomes;
+}
+
+// The difference of an estimator's errors from those of the reference, on the same trials.
+Estimate FindErrorDifference(const Comparison& comparison, const std::string& label) {
+  for (const ComparisonRow& row : comparison.rows) {
+    if (row.estimator == label && row.event == kErrorMeasure)
+      return {.value = row.difference, .interval = row.interval, .n = row.n};
+  }
+  return {};
+}
+
+bool HasGreaterErrors(const Comparison& comparison, const std::string& label) {
+  return FindErrorDifference(comparison, label).interval.lower > 0.0;
+}
+
+// The best first.
+std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& summary, double sigma_px) {
+  const std::vector<DescribedEstimator>& estimators = run.description.estimators;
+  const std::vector<Outcomes> outcomes = CountOutcomes(run);
+  std::vector<AskedEstimator> ranked;
+  for (size_t e = 0; e < estimators.size(); ++e) {
+    const std::string& label = estimators[e].label;
+    ranked.push_back({label, WidenForChoice(outcomes[e].Success(), static_cast<int>(estimators.size())),
+                      FindEstimate(summary, label, "mean_time_ms").value, outcomes[e].error_deg.median(),
+                      FindEstimate(summary, label, "failure_probability").n.value_or(0) > 0,
+                      DescribeInlierThreshold(estimators[e].name, estimators[e].options, sigma_px)});
+  }
+  std::vector<Comparison> comparisons;
+  for (const AskedEstimator& estimator : ranked)
+    comparisons.push_back(Compare(run, estimator.label, {.compared = {kErrorMeasure}}));
+  RankEstimators(&ranked, [&](const AskedEstimator& worse, const AskedEstimator& better) {
+    return std::ranges::any_of(comparisons, [&](const Comparison& comparison) {
+      return comparison.reference == better.label && HasGreaterErrors(comparison, worse.label);
+    });
+  });
   return ranked;
 }
 
@@ -134,43 +203,56 @@ CoverageVerdict JudgeChosenCoverage(const Estimate& coverage, const Answer& answ
 
 }  // namespace
 
-double RoundToTwoDigits(double value) {
-  if (!std::isfinite(value) || value <= 0.0) return value;
-  const double step = std::pow(10.0, std::floor(std::log10(value)) - 1.0);
-  return step * std::round(value / step);
-}
-
-void RankEstimators(std::vector<AskedEstimator>* estimators) {
+void RankEstimators(std::vector<AskedEstimator>* estimators, const HasGreaterError& has_greater_error) {
   const auto last_if_nan = [](double value) {
     return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
   };
   std::ranges::stable_sort(*estimators, {}, [&](const AskedEstimator& estimator) {
-    return std::array{last_if_nan(-estimator.success.value),
-                      last_if_nan(RoundToTwoDigits(estimator.median_error_deg)),
-                      last_if_nan(estimator.time_ms)};
+    return std::array{last_if_nan(-estimator.success.value), last_if_nan(estimator.time_ms)};
   });
+  for (auto first = estimators->begin(); first != estimators->end(); ++first) {
+    const auto end_of_ties = std::find_if(first, estimators->end(), [&](const AskedEstimator& other) {
+      return other.success.value != first->success.value;
+    });
+    const auto is_candidate = [&](const AskedEstimator& estimator) {
+      return std::none_of(first, end_of_ties,
+                          [&](const AskedEstimator& other) { return has_greater_error(estimator, other); });
+    };
+    auto chosen = std::find_if(first, end_of_ties, is_candidate);
+    if (chosen == end_of_ties) continue;
+    const auto stating = std::find_if(chosen, end_of_ties, [&](const AskedEstimator& estimator) {
+      return estimator.states_p && estimator.time_ms <= kAlikeTimes * chosen->time_ms &&
+             is_candidate(estimator);
+    });
+    if (stating != end_of_ties) chosen = stating;
+    std::rotate(first, chosen, chosen + 1);
+  }
 }
 
-Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px) {
-  const RunDescription description = run.Description();
+Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most) {
+  const ReadableRun readable = ReadForQuestion(run, HasDirection(question));
+  const RunDescription& description = readable.description;
   if (description.conditions.size() != 1)
     throw InputError(fmt::format("ask: {}: has {} conditions; an answer is of one", description.study,
                                  description.conditions.size()));
   const Summary summary = Summarize(run, /*with_times=*/true);
-  const std::vector<AskedEstimator> ranked = ListRanked(description, summary, sigma_px);
+  const std::vector<AskedEstimator> ranked = ListRanked(readable, summary, question.sigma_px);
   Answer answer;
   answer.num_trials = summary.num_trials_done;
   answer.num_estimators = static_cast<int>(ranked.size());
+  answer.has_direction = HasDirection(question);
   answer.at_most = at_most;
   answer.failure = description.failure;
   answer.best = ranked.front();
   if (ranked.size() > 1) {
-    const Comparison comparison = Compare(run, answer.best.label, {.compared = {"failure_or_refusal"}});
+    const Comparison comparison = Compare(readable, answer.best.label, {.compared = {"failure_or_refusal"}});
+    answer.error_difference = FindErrorDifference(
+        Compare(readable, answer.best.label, {.compared = {kErrorMeasure}}), ranked[1].label);
     answer.next = ranked[1];
     answer.alike = FindAlike(ranked, comparison);
     answer.difference = DescribeDifference(comparison, answer.next->label, answer.alike.size());
   }
-  AddStated(run, summary, &answer);
+  if (answer.has_direction) AddStated(run, summary, &answer);
   const std::string& best = answer.best.label;
   answer.sharpness = {FindEstimate(summary, best, "sd_over_crb").value,
                       FindEstimate(summary, best, "rotation_sd_deg").value,

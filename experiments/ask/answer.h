@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "experiments/ask/accept_rule.h"
+#include "experiments/ask/question.h"
 #include "experiments/core/table/table.h"
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/coverage_verdict.h"
@@ -22,6 +24,7 @@ struct AskedEstimator {
   Estimate success;                // share of all trials; the intervals of all estimators hold jointly
   double time_ms = 0.0;            // mean of a call
   double median_error_deg = kNaN;  // median of max(rotation error, direction error); NaN: unknown
+  bool states_p = false;           // the probability of failure of its answers
   std::string inlier_threshold;    // DescribeInlierThreshold; empty: unknown
 };
 
@@ -41,11 +44,15 @@ struct Answer {
   std::int64_t num_trials = 0;
   int num_estimators = 0;
   FailureBounds failure;
+  // False: success is that of the rotation, whether or not the answer has a direction; P is not judged, as it
+  // is the probability that rotation or direction is wrong.
+  bool has_direction = true;
   AskedEstimator best;
   std::vector<AskedEstimator> alike;   // others whose success is not significantly below that of the best
   std::optional<AskedEstimator> next;  // the second in rank
   std::optional<AskedDifference> difference;
-  double at_most = 0.0;  // the greatest failure rate of accepted answers, from the question
+  Estimate error_difference;  // median difference of the errors of `next` from those of the best, deg
+  double at_most = 0.0;       // the greatest failure rate of accepted answers, from the question
   // The label of the estimator that `rule`, `stated` and `failed` describe: the best if it states a
   // probability of failure, else the first in `alike` that does; empty if none does.
   std::string stating;
@@ -56,14 +63,15 @@ struct Answer {
   StatedSharpness sharpness;
 };
 
-// Sorts the best first: by success, then by the median error rounded to two digits (unknown: last), then by
-// the time of a call.
-void RankEstimators(std::vector<AskedEstimator>* estimators);
+// Whether the errors of the first are greater than those of the second, on the same trials and by more than
+// chance.
+using HasGreaterError = std::function<bool(const AskedEstimator&, const AskedEstimator&)>;
 
-// Rounds to two significant digits: 0.1234 -> 0.12, 2994 -> 3000.
-double RoundToTwoDigits(double value);
+// Sorts the best first: by success; of those that succeed equally often an estimator comes before those with
+// greater errors; then by the time of a call; of those that are about as fast one that states P comes first.
+void RankEstimators(std::vector<AskedEstimator>* estimators, const HasGreaterError& has_greater_error);
 
 // Throws InputError if the run has several conditions or a damaged trial.
-Answer AnswerQuestion(const ResultStore& run, double at_most, double sigma_px);
+Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most);
 
 }  // namespace rcme

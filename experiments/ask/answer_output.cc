@@ -38,6 +38,8 @@ std::string JudgeStated(const Estimate& measured, double stated, double margin) 
 
 // What can be promised of accepted answers.
 std::string DescribeAcceptRule(const Answer& a) {
+  if (!a.has_direction)
+    return "no P is judged: it is of rotation and direction, and the motion has no direction";
   if (a.stating.empty()) return a.best.label + " states no P: nothing to accept by";
   if (!a.rule) {
     return fmt::format(
@@ -65,13 +67,17 @@ std::int64_t CountSuccesses(const AskedEstimator& estimator) {
 
 bool IsTied(const AskedEstimator& a, const AskedEstimator& b) { return a.success.value == b.success.value; }
 
-// Why the best ranks before estimators with the same success rate.
+// Why the best ranks before an estimator with the same success rate.
 std::string DescribeTieBreak(const Answer& a) {
-  if (!a.next || !IsTied(a.best, *a.next) || !std::isfinite(a.best.median_error_deg)) return "";
-  const double error = RoundToTwoDigits(a.best.median_error_deg);
-  const bool needs_time = error == RoundToTwoDigits(a.next->median_error_deg);
-  return fmt::format("; {} leads by median error, {:g} deg{}", a.best.label, error,
-                     needs_time ? ", then by time" : "");
+  if (!a.next || !IsTied(a.best, *a.next)) return "";
+  const Estimate& error = a.error_difference;
+  if (error.interval.lower > 0.0) {
+    return fmt::format("; {} leads: the errors of {} are greater by {:.2g} deg [{:.2g}, {:.2g}]",
+                       a.best.label, a.next->label, error.value, error.interval.lower, error.interval.upper);
+  }
+  const char* const reason =
+      a.best.time_ms <= a.next->time_ms ? "it is faster" : "it states P and is as fast";
+  return fmt::format("; {} leads: {}, the errors of {} are alike", a.best.label, reason, a.next->label);
 }
 
 // Names the estimators that are not significantly worse than the best.
@@ -95,8 +101,12 @@ std::string DescribeTies(const Answer& a) {
                      fmt::join(counts, ", "), DescribeTieBreak(a));
 }
 
+// Rounds to two significant digits.
 std::int64_t RoundTrials(std::int64_t trials) {
-  return std::llround(RoundToTwoDigits(static_cast<double>(trials)));
+  const auto number = static_cast<double>(trials);
+  if (number <= 0.0) return trials;
+  const double step = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
+  return std::llround(step * std::round(number / step));
 }
 
 // The numbers of trials that tell the first two apart, and that show a difference of kPlainDifference.
@@ -133,10 +143,12 @@ std::string DescribeNext(const Answer& a) {
 }
 
 std::string DescribeCoverage(const Answer& a) {
+  if (!a.has_direction) return "coverage is of rotation and direction, and the motion has no direction";
   const std::string sharpness = a.sharpness.IsKnown() ? "; " + DescribeSharpness(a.sharpness) : "";
-  if (std::isnan(a.coverage.value)) return "coverage is not known" + sharpness;
-  return fmt::format("its 95 % region contains the truth in {}: {}{}", FormatEstimate(a.coverage, kPercent),
-                     DescribeCoverageVerdict(a.coverage_verdict), sharpness);
+  if (std::isnan(a.coverage.value)) return "coverage of " + a.best.label + " is not known" + sharpness;
+  return fmt::format("the 95 % region of {} contains the truth in {}: {}{}", a.best.label,
+                     FormatEstimate(a.coverage, kPercent), DescribeCoverageVerdict(a.coverage_verdict),
+                     sharpness);
 }
 
 Lines DescribeAnswer(const Answer& a) {
@@ -146,14 +158,28 @@ Lines DescribeAnswer(const Answer& a) {
   if (a.next) lines.emplace_back("Next best", DescribeNext(a));
   lines.emplace_back("Accept if", DescribeAcceptRule(a));
   if (!a.stating.empty()) lines.emplace_back("Trust in P", DescribeTrust(a));
-  if (!a.best.inlier_threshold.empty()) lines.emplace_back("Inlier threshold", a.best.inlier_threshold);
+  if (!a.best.inlier_threshold.empty())
+    lines.emplace_back("Inlier threshold", a.best.label + ": " + a.best.inlier_threshold);
   lines.emplace_back("Covariance", DescribeCoverage(a));
   lines.emplace_back(
       "Time",
-      fmt::format("{:.3g} ms a call{}", a.best.time_ms,
+      fmt::format("{}: {:.3g} ms a call{}", a.best.label, a.best.time_ms,
                   a.next ? fmt::format("; {}: {:.3g} ms", a.next->label, a.next->time_ms) : std::string()));
   lines.emplace_back("Trials", DescribeTrials(a));
   return lines;
+}
+
+std::string DescribeSuccess(const Answer& a) {
+  const std::string rotation =
+      fmt::format("Success: an error of at most {:g} deg of rotation", a.failure.max_rotation_error_deg);
+  if (!a.has_direction)
+    return rotation +
+           ". The motion has no direction, so\n"
+           "an answer that refuses to give one succeeds by its rotation. Intervals hold\n";
+  return fmt::format(
+      "{} and {:g} deg of direction. P: the\n"
+      "probability of failure that an estimator states with its answer. Intervals hold\n",
+      rotation, a.failure.max_direction_error_deg);
 }
 
 // What the words of the table mean.
@@ -164,11 +190,9 @@ std::string DescribeTerms(const Answer& a) {
                    "choice included.",
                    100.0 * a.at_most)
              : std::string();
-  return fmt::format(
-      "Success: an error of at most {:g} deg of rotation and {:g} deg of direction. P: the\n"
-      "probability of failure that an estimator states with its answer. Intervals hold\n"
-      "with 95 % although the same trials chose the estimator among {}.{}\n",
-      a.failure.max_rotation_error_deg, a.failure.max_direction_error_deg, a.num_estimators, promise);
+  return DescribeSuccess(a) +
+         fmt::format("with 95 % although the same trials chose the estimator among {}.{}\n", a.num_estimators,
+                     promise);
 }
 
 nlohmann::ordered_json EstimatorAsJson(const AskedEstimator& estimator) {

@@ -15,17 +15,6 @@
 namespace rcme {
 namespace {
 
-struct AskedText {
-  const char *option, *question;
-  std::string AskedTexts::*text;
-};
-constexpr AskedText kAskedTexts[] = {
-    {"--image", "Size of an image in px, such as 1280x720", &AskedTexts::image},
-    {"--focal", "Focal length in px, such as 900", &AskedTexts::focal_px},
-    {"--noise", "Noise of a point in px, per coordinate, such as 0.7", &AskedTexts::sigma_px},
-    {"--scene", "Scene, such as corridor, room, street, plane or uniform_volume", &AskedTexts::scene},
-    {"--wrong", "Share of wrong matches, such as 0.4 or 40%", &AskedTexts::wrong}};
-
 double ReadNumber(const char* option, const std::string& text, double least, double greatest) {
   double value = 0.0;
   if (ParseReal(text, &value) && value >= least && value <= greatest) return value;
@@ -66,6 +55,46 @@ void ReadSize(const std::string& text, int* width, int* height) {
       Quoted(text)));
 }
 
+void ReadScene(const std::string& text, std::string* scene) {
+  std::vector<std::string> scenes;
+  for (const SceneEntry& entry : SceneRegistry()) scenes.push_back(entry.name);
+  if (std::ranges::count(scenes, text) == 0) {
+    throw InputError(fmt::format("--scene: {} is not a scene{}; give one of: {}", Quoted(text),
+                                 DidYouMean(text, scenes), fmt::join(scenes, ", ")));
+  }
+  *scene = text;
+}
+
+struct AskedText {
+  const char *option, *question;
+  std::string AskedTexts::*text;
+  void (*read)(const std::string& text, Question* question);
+};
+constexpr AskedText kAskedTexts[] = {
+    {"--image", "Size of an image in px, such as 1280x720", &AskedTexts::image,
+     [](const std::string& text, Question* q) { ReadSize(text, &q->image_width, &q->image_height); }},
+    {"--focal", "Focal length in px, such as 900", &AskedTexts::focal_px,
+     [](const std::string& text, Question* q) { q->focal_px = ReadNumber("--focal", text, 1.0, 1e6); }},
+    {"--noise", "Noise of a point in px, per coordinate, such as 0.7", &AskedTexts::sigma_px,
+     [](const std::string& text, Question* q) { q->sigma_px = ReadNumber("--noise", text, 0.001, 100.0); }},
+    {"--scene", "Scene, such as corridor, room, street, plane or uniform_volume", &AskedTexts::scene,
+     [](const std::string& text, Question* q) { ReadScene(text, &q->scene); }},
+    {"--wrong", "Share of wrong matches, such as 0.4 or 40%", &AskedTexts::wrong,
+     [](const std::string& text, Question* q) { q->outlier_ratio = ReadShare("--wrong", text, 0.95); }}};
+
+// Whether the answer of a person can be used; says on `out` why not.
+bool IsUsable(const AskedText& asked, const std::string& text, std::ostream& out) {
+  if (text.empty()) return false;
+  try {
+    Question unused;
+    asked.read(text, &unused);
+    return true;
+  } catch (const InputError& error) {
+    out << error.what() << '\n';
+    return false;
+  }
+}
+
 // Reads a line without its end; false at the end of input.
 bool ReadTypedLine(std::istream& in, std::string* line) {
   bool is_there = false;
@@ -89,15 +118,17 @@ std::vector<std::string> MissingOptions(const AskedTexts& texts) {
 void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts) {
   for (const AskedText& asked : kAskedTexts) {
     std::string& text = texts->*asked.text;
-    while (text.empty()) {
+    if (!text.empty()) continue;
+    do {
       out << asked.question << ": " << std::flush;
+      text.clear();
       if (!ReadTypedLine(in, &text)) {
         throw InputError(
             fmt::format("ask: give {}, or answer at a terminal", fmt::join(MissingOptions(*texts), ", ")));
       }
       const size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
       text = begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
-    }
+    } while (!IsUsable(asked, text, out));
   }
 }
 
@@ -110,17 +141,18 @@ bool ParseShare(const std::string& text, double* share) {
 }
 
 void ReadTexts(const AskedTexts& texts, Question* question) {
-  ReadSize(texts.image, &question->image_width, &question->image_height);
-  question->focal_px = ReadNumber("--focal", texts.focal_px, 1.0, 1e6);
-  question->sigma_px = ReadNumber("--noise", texts.sigma_px, 0.001, 100.0);
-  question->outlier_ratio = ReadShare("--wrong", texts.wrong, 0.95);
-  std::vector<std::string> scenes;
-  for (const SceneEntry& entry : SceneRegistry()) scenes.push_back(entry.name);
-  if (std::ranges::count(scenes, texts.scene) == 0) {
-    throw InputError(fmt::format("--scene: {} is not a scene{}; give one of: {}", Quoted(texts.scene),
-                                 DidYouMean(texts.scene, scenes), fmt::join(scenes, ", ")));
+  for (const AskedText& asked : kAskedTexts) {
+    const std::string& text = texts.*asked.text;
+    if (!text.empty()) asked.read(text, question);
   }
-  question->scene = texts.scene;
+}
+
+void CheckOutliers(const Question& question) {
+  if (question.outliers != "repeated_texture" || question.scene == "lattice") return;
+  throw InputError(fmt::format(
+      "--outliers: 'repeated_texture' is not allowed with --scene {}, in which nothing is repeated; give --scene "
+      "lattice, or other outliers such as clustered_both",
+      question.scene));
 }
 
 std::string DescribeQuestion(const Question& q) {
@@ -129,6 +161,8 @@ std::string DescribeQuestion(const Question& q) {
                      q.motion.empty() ? "" : ", motion " + q.motion, 100.0 * q.outlier_ratio, q.outliers,
                      q.num_matches);
 }
+
+bool HasDirection(const Question& question) { return question.motion != "pure_rotation"; }
 
 std::string MakeStudyText(const Question& q, int trials) {
   return fmt::format(

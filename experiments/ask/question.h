@@ -30,8 +30,8 @@ struct Question {
   std::uint64_t seed = 1;
 };
 
-// Asks on `out` for each missing text and reads it as a line of `in`. Throws InputError that names the
-// options of the missing texts if `in` ends early.
+// Asks on `out` for each missing text and reads it as a line of `in`; says why a text cannot be used and asks
+// again. Throws InputError that names the options of the missing texts if `in` ends early.
 void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts);
 
 // The options of the missing texts: {"--focal"}.
@@ -40,8 +40,15 @@ std::vector<std::string> MissingOptions(const AskedTexts& texts);
 // Parses a share, also in percent: 0.4 for "0.4", "40%" and "40 %". Returns false if the text is not a share.
 bool ParseShare(const std::string& text, double* share);
 
-// Parses the texts into `question`. Throws InputError that names the option and the allowed values.
+// Parses the texts that are given into `question`. Throws InputError that names the option and the allowed
+// values.
 void ReadTexts(const AskedTexts& texts, Question* question);
+
+// Throws InputError if the scene cannot have such wrong matches.
+void CheckOutliers(const Question& question);
+
+// Whether the true motion has a direction of translation, without which nobody can find one.
+bool HasDirection(const Question& question);
 
 // The study that answers the question, as YAML: one condition with `trials` trials, for rcme_calibrated and
 // its usual alternatives. Unknown names are refused when the study is read.

@@ -18,6 +18,7 @@
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/run_study.h"
 #include "experiments/study/study_file.h"
+#include "experiments/study/study_plan.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "simulator/motion_registry.h"
@@ -46,6 +47,15 @@ std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
 }
 
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
+
+// Throws InputError if the simulator cannot make the question's problems, before anything is written.
+void RequireSimulable(const AskArguments& arguments) {
+  const std::string path = arguments.out + "/study.yaml";
+  const StudyPlan plan = MakePlan(ParseStudy(MakeStudyText(arguments.question, kPilotTrials), path), path);
+  const Condition& condition = plan.conditions[0];
+  for (std::uint32_t trial = 0; trial < kPilotTrials; ++trial)
+    condition.source->Make(NameOfScene(plan, condition, trial));
+}
 
 // Runs the question's study up to `trials` trials and keeps those that the result file already has. If the
 // file belongs to another question, nothing is written, not even study.yaml.
@@ -100,12 +110,15 @@ void RunAsk(AskArguments arguments) {
     throw InputError(fmt::format("ask: {}: missing; give {}, or answer at a terminal",
                                  fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them"));
   }
+  ReadTexts(arguments.texts, &arguments.question);
   AskForMissing(std::cin, std::cerr, &arguments.texts);
   ReadTexts(arguments.texts, &arguments.question);
+  CheckOutliers(arguments.question);
+  RequireSimulable(arguments);
   MakeResultFolder(arguments.out);
   RunQuestion(arguments);
-  const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.at_most,
-                                       arguments.question.sigma_px);
+  const Answer answer = AnswerQuestion(ResultStore::OpenForReading(ResultPath(arguments)), arguments.question,
+                                       arguments.at_most);
   const std::string question = DescribeQuestion(arguments.question);
   PrintResult(MakeAnswerResult(answer, question, arguments.out), arguments.format);
 }
@@ -129,8 +142,8 @@ void AddAskCommand(CLI::App& app) {
   command->footer(R"(Writes a study of one condition, runs as many trials as the time allows, and answers in
 about ten lines: the estimator that succeeds most often among rcme_calibrated, tuned
 RCME, MSAC, OpenCV's MAGSAC and OpenGV's RANSAC, and which of the others the trials
-cannot tell from it (of those that succeed as often, the one of the least median error
-leads, then the fastest); up to which stated probability of failure to accept answers;
+cannot tell from it (of those that succeed as often the fastest leads whose errors are
+not greater by more than chance); up to which stated probability of failure to accept answers;
 whether probabilities and covariances are right; what it takes for an inlier; and how
 many trials tell the first two apart. Without the first five options it asks for them
 at a terminal.

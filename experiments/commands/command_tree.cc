@@ -165,7 +165,7 @@ std::string DescribeUnexpected(const CLI::App& app) {
   return fmt::format(
       "{}{}{}{}{}\n",
       is_command ? fmt::format("rcme: there is no command {}\n", Quoted(words.front()))
-                 : fmt::format("The following arguments were not expected: {}\n",
+                 : fmt::format("rcme: the following arguments were not expected: {}\n",
                                Printable(fmt::format("{}", fmt::join(words, " ")))),
       SuggestionsFor(app), footer, footer.empty() ? "" : "\n",
       is_command ? "rcme --help lists the commands." : "Run with --help for more information.");

@@ -35,7 +35,8 @@ Examples:
       ->check(MakeChoiceValidator(TrialEventNames()))
       ->capture_default_str();
   command
-      ->add_option("--estimators", arguments->query.estimators, "labels a,b,... of estimators; default: all")
+      ->add_option("--estimators,--estimator", arguments->query.estimators,
+                   "labels a,b,... of estimators; default: all")
       ->delimiter(',');
   CLI::Option* condition =
       command

@@ -74,6 +74,9 @@ int RunCommandLine(int argc, const char* const* argv, const CommandSet& commands
       "rcme"};
   app.set_version_flag("--version", "rcme " RCME_VERSION);
   app.get_formatter()->column_width(34);
+  app.failure_message([](const CLI::App* parsed, const CLI::Error& error) {
+    return "rcme: " + CLI::FailureMessage::simple(parsed, error);
+  });
   app.require_subcommand(0, 1);  // of `rcme plot audit` the second word is no command
   commands.add(app);
   app.footer(commands.footer);  // not of each command

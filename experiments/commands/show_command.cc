@@ -136,7 +136,7 @@ Examples:
       ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
       ->required();
   command
-      ->add_option("--estimators", arguments->estimators,
+      ->add_option("--estimators,--estimator", arguments->estimators,
                    "labels a,b,... of the estimators to draw, a row of images each")
       ->delimiter(',')
       ->allow_extra_args(false);

@@ -1,10 +1,12 @@
 """Rates and scores against one factor: a line with an interval band per estimator, or marks with bars where levels are words."""
 
 import itertools
+from dataclasses import dataclass
 
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from common import direct_labels, style
+from common.command_line import PlotError
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
 from rates.selection import (DRAWN_KINDS, NUMBER_KINDS, check_factor, check_no_repetition, fixed_levels, interval_in_words,
                              kind_in_words, n_in_words, select_rates, title_of, with_sharpness)
@@ -14,6 +16,15 @@ LEAST = {"sd_over_crb": 1}  # below it no covariance is right
 SMALL = 0.02  # where half of the rates that are not zero lie below it, a linear axis shows them all as nothing
 STATED = dict(color="0.35", linewidth=0.9, linestyle=style.DASHED, zorder=1, label="_stated")
 WANTED = ("success",)  # rates that are near one where all is well
+
+
+@dataclass(frozen=True)
+class Choices:
+    """`floor`: where a logarithmic axis ends, and rates of zero stand; None: by the least rate. `names`: the estimators
+    that are named; None: all."""
+
+    floor: float = None
+    names: tuple = None
 
 
 def draw_line(axes, points, look):
@@ -45,6 +56,16 @@ def draw_upper_limits(axes, zeros, looks):
                 axes.plot([row.x], [row.upper], **mark, transform=axes.transData + aside, clip_on=False, zorder=4)
 
 
+def draw_zeros(axes, zeros, looks, floor):
+    """Open marks of rates that are zero on the floor of the axis, and lines up to their upper bounds."""
+    for _, at_one_x in zeros.groupby("x"):
+        for position, row in enumerate(at_one_x.itertuples()):
+            place = axes.transData + abreast(axes, position, len(at_one_x), 24)
+            _, mark = looks[row.estimator].upper_limit()
+            axes.vlines(row.x, floor, row.upper, color=looks[row.estimator].color, linewidth=1, transform=place, zorder=4)
+            axes.plot([row.x], [floor], **mark, transform=place, clip_on=False, zorder=4)
+
+
 def are_numbers(points):
     """Of any size, where rates are between 0 and 1."""
     return points.kind.isin(NUMBER_KINDS).any()
@@ -56,13 +77,16 @@ def is_small(points):
     return len(positive) > 0 and positive.median() < SMALL
 
 
-def draw_panel(axes, points, looks, axis, room, log_y):
+def draw_panel(axes, points, looks, axis, room, log_y, floor=None):
     """One quantity in one panel, all estimators; the y values of rates are fractions, their tick labels per cent."""
     points = points.sort_values("x", kind="stable")
     if log_y:
         axes.set_yscale("log", nonpositive="clip")
         is_zero = points.value == 0
-        draw_upper_limits(axes, points[is_zero], looks)
+        if floor is None:
+            draw_upper_limits(axes, points[is_zero], looks)
+        else:
+            draw_zeros(axes, points[is_zero], looks, floor)
         points = points.assign(value=points.value.mask(is_zero), lower=points.lower.mask(is_zero))
     for position, (estimator, look) in enumerate(looks.items()):
         of_estimator = points[points.estimator == estimator]
@@ -78,17 +102,20 @@ def draw_panel(axes, points, looks, axis, room, log_y):
         axes.yaxis.set_major_formatter(FuncFormatter(lambda fraction, _: f"{100 * fraction:g}"))
 
 
-def set_y_limits(column_of_axes, points, log_y):
-    """From zero; on a logarithmic axis from half of the least value that is drawn."""
+def set_y_limits(column_of_axes, points, log_y, floor=None):
+    """From zero; on a logarithmic axis from the floor, else from half of the least value that is drawn."""
     if not log_y:
         column_of_axes[0].set_ylim(bottom=0, top=None if points[["value", "upper"]].max().max() > 0 else 1)
         return
     drawn = points.value.where(points.value > 0, points.upper)
     smallest = min(drawn.dropna(), default=0.1)
-    column_of_axes[0].set_ylim(smallest / 2, 1)
+    column_of_axes[0].set_ylim(floor or smallest / 2, 1)
     for axes in column_of_axes:
         axes.yaxis.set_major_locator(LogLocator(numticks=12))
         axes.yaxis.set_minor_formatter(NullFormatter())
+        if floor and (points.value == 0).any():
+            decades = [10.0 ** power for power in range(-12, 1) if 10.0 ** power > floor]
+            axes.set_yticks([floor, *decades], ["0", *(f"{100 * decade:g}" for decade in decades)])
 
 
 def with_content(rows, quantities):
@@ -107,13 +134,13 @@ def rates_of(rows):
     return rows[rows.kind.isin(DRAWN_KINDS)]
 
 
-def caption_of(rows, other_factors, is_numeric, has_arrows, left_out):
+def caption_of(rows, other_factors, is_numeric, zeros, left_out):
     rates = rates_of(rows)
     kinds = ([interval_in_words(rates)] if len(rates) else []) + [
         words for kind, words in NUMBER_KINDS.items() if (rows.kind == kind).any()]
     return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, "point"),
                       f"{'bands' if is_numeric else 'bars'}: {', '.join(kinds)} intervals"] +
-                     (["arrows: rate zero, at its upper bound"] if has_arrows else []) +
+                     ([zeros] if zeros else []) +
                      [f"dashed: the stated level, {100 * level:g} %" for quantity, level in STATED_LEVELS.items()
                       if quantity in set(rows.quantity)] +
                      [f"dashed: {least}, below which no covariance is right" for quantity, least in LEAST.items()
@@ -133,7 +160,15 @@ def ends_of(points, looks, log_y):
     return ends
 
 
-def draw(summary, x, quantities, log_y=None):
+def with_names(looks, choices):
+    """The looks of the estimators that are named."""
+    unknown = [name for name in choices.names or () if name not in looks]
+    if unknown:
+        raise PlotError(f"--names {unknown[0]}: no such estimator is drawn; allowed: {', '.join(looks)}.")
+    return {name: look for name, look in looks.items() if choices.names is None or name in choices.names}
+
+
+def draw(summary, x, quantities, log_y=None, choices=Choices()):
     """The whole figure: quantities side by side, one row of panels per combination of the other factors. Names stand beside
     the lines where there is one panel abreast and room, in a legend elsewhere. `log_y` None: where rates are small."""
     check_factor(summary, "--x", x)
@@ -152,11 +187,12 @@ def draw(summary, x, quantities, log_y=None):
     drawn = {quantity: rows[rows.quantity == quantity] for quantity in quantities}
     is_log = {quantity: is_small(drawn[quantity]) if log_y is None else log_y for quantity in quantities}
     for (r, (levels, part)), (c, quantity) in itertools.product(enumerate(parts), enumerate(quantities)):
-        draw_panel(panels[r, c], part[part.quantity == quantity], looks, axis, axis.room(len(quantities)), is_log[quantity])
+        draw_panel(panels[r, c], part[part.quantity == quantity], looks, axis, axis.room(len(quantities)), is_log[quantity],
+                   choices.floor)
         title = next(letters) + title_of(quantity) + (f", {levels}" if levels else "")
         panels[r, c].set_title(style.title_lines(title, len(quantities)))
     for c, quantity in enumerate(quantities):
-        set_y_limits(panels[:, c], drawn[quantity], is_log[quantity])
+        set_y_limits(panels[:, c], drawn[quantity], is_log[quantity], choices.floor)
     for axes in style.bottom_panels(panels):
         axis.prepare(axes, len(quantities))  # the x axis is shared by all panels
     left = style.left_panels(panels)
@@ -164,11 +200,15 @@ def draw(summary, x, quantities, log_y=None):
         points = drawn[quantities[c]]
         if any(axes is one for one in left):
             axes.set_ylabel(title_of(quantities[c]) if are_numbers(points) else f"{kind_in_words(rates_of(rows))} (%)")
+    named = with_names(looks, choices)
     has_names = axis.is_numeric and len(quantities) == 1 and len(parts) <= 2 and direct_labels.make_room(
-        figure, len(parts), [look.label for look in looks.values()])
-    has_arrows = any(is_log[quantity] and (drawn[quantity].value == 0).any() for quantity in quantities)
-    style.add_legend_and_caption(figure, [] if has_names else panels[0, 0].get_legend_handles_labels()[0],
-                                 caption_of(rows, other_factors, axis.is_numeric, has_arrows, left_out))
+        figure, len(parts), [look.label for look in named.values()])
+    has_zeros = any(is_log[quantity] and (drawn[quantity].value == 0).any() for quantity in quantities)
+    handles = [handle for handle in panels[0, 0].get_legend_handles_labels()[0]
+               if handle.get_label() in {look.label for look in named.values()}]
+    zeros = "arrows: rate zero, at its upper bound" if choices.floor is None else "open marks: rate zero"
+    style.add_legend_and_caption(figure, [] if has_names else handles,
+                                 caption_of(rows, other_factors, axis.is_numeric, zeros if has_zeros else "", left_out))
     for axes, (_, part) in zip(panels[:, 0], parts if has_names else []):
-        direct_labels.add(axes, ends_of(part[part.quantity == quantities[0]], looks, is_log[quantities[0]]))
+        direct_labels.add(axes, ends_of(part[part.quantity == quantities[0]], named, is_log[quantities[0]]))
     return figure

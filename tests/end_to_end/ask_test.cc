@@ -79,7 +79,17 @@ TEST_F(AskProgram, RefusesWhatIsNoCamera) {
   EXPECT_THAT(result.err, HasSubstr("give WIDTHxHEIGHT"));
   EXPECT_THAT(Ask({"--image", "640x480", "--at-most", "500%"}).err,
               HasSubstr("--at-most: '500%' is not allowed; give a number in [1e-06, 0.5]"));
+  EXPECT_THAT(Ask({"--image", "640x480", "--outliers", "repeated_texture"}).err,
+              HasSubstr("with --scene corridor, in which nothing is repeated; give --scene lattice"));
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("asked")));
+}
+
+// As all other messages do.
+TEST(WrongOptions, ArePrecededByTheProgram) {
+  EXPECT_THAT(RunRcme({"failures"}).err, testing::StartsWith("rcme: run is required"));
+  EXPECT_THAT(RunRcme({"ask", "--trials", "no"}).err, testing::StartsWith("rcme: --trials: "));
+  EXPECT_THAT(RunRcme({"ask", "--nonsense"}).err,
+              testing::StartsWith("rcme: the following arguments were not expected: --nonsense"));
 }
 
 // Every failure that the list has is a failure of the replay, and the program of one of them is written.

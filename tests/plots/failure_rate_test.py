@@ -192,6 +192,23 @@ class DrawnValues(FailureRateTest):
         self.assertEqual(caption, "Study demo; sigma = 1 px; n = 0\u2013400 per point; "
                                   "bands: exact 95 % (Clopper-Pearson) intervals.")
 
+    def test_on_a_logarithmic_axis_with_a_floor_a_zero_stands_there(self):
+        options = failure_rate.parse([self.write(TABLE), "--x", "outlier_ratio", "--out", str(self.out), "--log-y",
+                                      "--quantities", "failure", "--floor", "0.001", "--names", "mine"])
+        figure = failure_rate.draw_for(options)
+        axes = figure.axes[0]
+        marks = [line.get_xydata().tolist() for line in axes.lines if line.get_label() == "_marker"]
+        self.assertEqual(marks, [[[0.0, 0.001]], [[0.0, 0.001]]])
+        self.assertEqual((axes.get_ylim()[0], axes.get_yticklabels()[0].get_text()), (0.001, "0"))
+        self.assertIn("open marks: rate zero", figure.texts[0].get_text())
+        self.assertEqual([text.get_text() for text in axes.texts], ["mine"], "the other line has no name")
+
+    def test_floor_and_names_are_checked(self):
+        for arguments, fault in ((("--floor", "0"), "--floor 0"), (("--names", "rcme"), "--names rcme")):
+            code, _, err = self.run_main(*arguments)
+            self.assertNotEqual(code, 0)
+            self.assertIn(fault, err)
+
     def test_on_a_logarithmic_axis_a_zero_is_an_arrow_at_its_upper_bound(self):
         figure = self.draw(log_y=True)
         failure = figure.axes[0]

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "estimator/conform/conform_estimator.h"
+#include "estimator/conform/conform_file.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/real/answer/motion_words.h"
 #include "experiments/real/answer/refusal_advice.h"
@@ -71,11 +73,16 @@ std::string FoundText(const RelativePose& pose, const MotionSpread& spread) {
   return text;
 }
 
-// The bounds of a stated probability are options of the estimator.
+// The bounds of a stated probability are options of the estimator, for `conform` a part of its file.
 std::string BoundsText(const EstimatorSpec& spec) {
-  const auto rotation = FindSetting(spec.options, "max_rotation_error_deg");
-  const auto direction = FindSetting(spec.options, "max_direction_error_deg");
-  if (!rotation || !direction) return "wrong";
+  std::optional<std::string> rotation = FindSetting(spec.options, "max_rotation_error_deg");
+  std::optional<std::string> direction = FindSetting(spec.options, "max_direction_error_deg");
+  if (spec.name == kConformEstimator) {
+    const ConformRule rule = ReadConformFile(FindSetting(spec.options, "file").value_or("")).rule;
+    rotation = fmt::format("{}", rule.max_rotation_error_deg);
+    direction = fmt::format("{}", rule.max_direction_error_deg);
+  }
+  if (!rotation || !direction) return "beyond the bounds that the estimator was made for";
   return fmt::format("rotation off by more than {} deg or direction by {} deg", *rotation, *direction);
 }
 

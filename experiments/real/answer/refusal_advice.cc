@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "estimator/conform/conform_estimator.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -81,7 +82,9 @@ std::vector<std::string> AdviceFor(const MotionEstimate& estimate, const Estimat
       advice.push_back(kCheckCalibration);
       break;
     case MotionStatus::kTooUncertain:
-      advice.push_back("see the motion with its probability: --set max_failure_probability=1");
+      advice.push_back(
+          fmt::format("see the motion with its probability: --set {}",
+                      spec.name == kConformEstimator ? "accept_rule=ignore" : "max_failure_probability=1"));
       advice.push_back("more matches, or images from places further apart");
       break;
     case MotionStatus::kPlanarScene:

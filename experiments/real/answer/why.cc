@@ -64,7 +64,7 @@ struct Distance {
 // Describes the score of a motion: its inliers, and the number by which the estimator chooses.
 std::string ScoreWords(const ScoredMotion& motion) {
   const InlierScore& score = motion.score;
-  const std::string words = fmt::format("{} inliers", score.num_inliers);
+  const std::string words = fmt::format("{} matches that pass its test", score.num_inliers);
   switch (motion.decides) {
     case DecidingScore::kMeanEntropy:
       return words + fmt::format(", mean entropy {:.3f}", score.mean_entropy);
