@@ -1,5 +1,6 @@
 #include "experiments/run/store/merge_results.h"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -145,6 +146,16 @@ TEST_F(MergeTest, RefusesWhatDoesNotBelongTogether) {
   EXPECT_TRUE(Refuses({parts[0], until}, {"another rule", "a rule"}));
   const std::string out = Merge(parts);
   EXPECT_TRUE(ThrowsInputError([&] { MergeResults(parts, out, false, {}); }, {"exists already"}));
+}
+
+// A part whose list of conditions was damaged has the identity of the others.
+TEST_F(MergeTest, RefusesAPartWithOtherConditions) {
+  const Paths parts = RunAll(2);
+  SQLite::Database(parts[1], SQLite::OPEN_READWRITE)
+      .exec("DELETE FROM conditions WHERE condition = 1; DELETE FROM levels WHERE condition = 1; "
+            "DELETE FROM totals WHERE condition = 1; DELETE FROM trials WHERE condition = 1; "
+            "DELETE FROM problems WHERE condition = 1");
+  EXPECT_TRUE(ThrowsInputError([&] { Merge(parts); }, {parts[1], "damaged"}));
 }
 
 TEST_F(MergeTest, RefusesOtherProgramsAndUnlessAllowedOtherInstructionSets) {
