@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -156,10 +157,25 @@ void RequireConsistentCounts(const ConformOrigin& origin) {
   if (origin.num_groups < 1) throw std::invalid_argument("calibration 'groups' is 0, not at least 1");
 }
 
+// Reads the names of problems: 16 hexadecimal digits each, ascending.
+std::vector<std::string> ReadProblems(ObjectReader& reader) {
+  std::vector<std::string> problems;
+  for (const Json& name : reader.List("problems")) {
+    if (!name.is_string()) reader.Fail("'problems' holds something that is no text");
+    problems.push_back(name.get<std::string>());
+    const bool is_hash = problems.back().size() == 16 &&
+                         problems.back().find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!is_hash) reader.Fail("'problems' holds something that is not 16 hexadecimal digits");
+  }
+  if (problems.empty() || !std::ranges::is_sorted(problems, std::less_equal<>()))
+    reader.Fail("'problems' is empty or does not ascend");
+  return problems;
+}
+
 ConformOrigin OriginFrom(const Json& json) {
   ObjectReader reader(json, "calibration");
-  ConformOrigin origin{reader.Text("study"),     reader.Text("identity"), reader.Count("answers"),
-                       reader.Count("refusals"), reader.Count("groups"),  reader.Count("refused_groups"),
+  ConformOrigin origin{reader.Text("study"),     ReadProblems(reader),   reader.Count("answers"),
+                       reader.Count("refusals"), reader.Count("groups"), reader.Count("refused_groups"),
                        reader.Flag("new_groups")};
   reader.RequireNoOther();
   RequireConsistentCounts(origin);
@@ -299,12 +315,12 @@ std::string ConformFileText(const ConformRule& rule, const std::vector<std::stri
       {"estimator", {{"name", rule.estimator}, {"options", std::move(options)}}},
       {"calibration",
        {{"study", origin.study},
-        {"identity", origin.identity},
         {"answers", origin.num_answers},
         {"refusals", origin.num_refusals},
         {"groups", origin.num_groups},
         {"refused_groups", origin.num_refused_groups},
-        {"new_groups", origin.new_groups}}},
+        {"new_groups", origin.new_groups},
+        {"problems", origin.problems}}},
       {"region",
        {{"level", rule.level},
         {"difficulty", ModelAsJson(rule.difficulty)},

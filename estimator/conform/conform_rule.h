@@ -40,7 +40,8 @@ double ScoreOfFeature(const FeatureModel::Term& term, double feature);  // z; 0 
 // The data of the calibration; the guarantees are for such problems.
 struct ConformOrigin {
   std::string study;
-  std::string identity;  // the same for the same problems
+  // Hashes that name its problems, ascending: of a condition's random streams, or of a real pair's matches.
+  std::vector<std::string> problems;
   std::int64_t num_answers = 0, num_refusals = 0, num_groups = 0;
   std::int64_t num_refused_groups = 0;  // groups whose first problem was refused
   // guarantees for problems of a new condition or scene; else for others of the same ones

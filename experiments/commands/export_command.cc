@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
@@ -48,21 +50,47 @@ std::string TruthAsJson(const TrialData& data, const std::string& id, const Cond
   return json.dump() + "\n";
 }
 
-void ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
-                 const TrialData& data, const fs::path& folder, FileInPieces* problems,
-                 FileInPieces* truths) {
+constexpr size_t kMaxSceneBytes = 200;  // of match files (data/match_file.cc)
+
+// "outlier_ratio 0.3, sigma_px 0.5": the levels of a condition, or its number if they are too long; without
+// factors the study's name.
+std::string NameOfCondition(const StudyPlan& plan, const Condition& condition) {
+  std::vector<std::string> parts;
+  for (size_t f = 0; f < condition.levels.size(); ++f)
+    parts.push_back(fmt::format("{} {}", plan.factor_names[f], condition.levels[f]));
+  const std::string name = parts.empty() ? plan.study.name : fmt::format("{}", fmt::join(parts, ", "));
+  return name.size() <= kMaxSceneBytes ? name : fmt::format("condition {}", condition.index);
+}
+
+// Removes the match files and the lock of an earlier export into the folder.
+void RemoveOthers(const fs::path& folder, const std::set<std::string>& ids, bool has_lock) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / "matches")) {
+    const std::string id = entry.path().stem().string();
+    const bool is_ours = id.size() == 16 && id.find_first_not_of("0123456789abcdef") == std::string::npos &&
+                         entry.path().extension() == ".csv";
+    if (is_ours && !ids.contains(id)) fs::remove(entry.path());
+  }
+  if (!has_lock) fs::remove(folder / "study.lock");
+}
+
+// Returns the problem's id.
+std::string ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
+                        const TrialData& data, const fs::path& folder, FileInPieces* problems,
+                        FileInPieces* truths) {
   RandomStream rng = StreamFor(NameOfTrial(plan, condition, trial), StreamPurpose::kSampling);
   const std::uint32_t seed = SeedForOutside(rng);
   const std::string id = ProblemId(data.problem, seed);
   problems->Write(ProblemAsJson(data.problem, seed));
   truths->Write(TruthAsJson(data, id, condition, trial));
   MatchFile file;
+  file.scene = NameOfCondition(plan, condition);
   file.matches = data.problem.matches;
   for (const double scale : data.problem.noise_scale) file.sigma_px.push_back(scale * data.problem.sigma_px);
   file.camera1 = data.problem.camera1;
   file.camera2 = data.problem.camera2;
   file.prior = data.problem.prior;
   WriteMatchFile(file, (folder / "matches" / (id + ".csv")).string());
+  return id;
 }
 
 void Export(const ExportArguments& arguments) {
@@ -78,17 +106,19 @@ void Export(const ExportArguments& arguments) {
   MakeResultFolder((folder / "matches").string());
   FileInPieces problems((folder / "problems.jsonl").string()), truths((folder / "truth.jsonl").string());
   std::int64_t num_problems = 0;
+  std::set<std::string> ids;
   for (const Condition& condition : plan.conditions) {
     for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(condition.num_trials); ++trial) {
       const auto simulated = SimulateDraw(
           plan.study, [&] { return condition.source->Make(NameOfScene(plan, condition, trial)); });
       if (!simulated.made) continue;
       ++num_problems;
-      ExportTrial(plan, condition, trial, *simulated.made, folder, &problems, &truths);
+      ids.insert(ExportTrial(plan, condition, trial, *simulated.made, folder, &problems, &truths));
     }
   }
   problems.Finish();
   truths.Finish();
+  RemoveOthers(folder, ids, !plan.lock.empty());
   WriteFileWhole((folder / "study.yaml").string(), plan.study_yaml);
   if (!plan.lock.empty()) WriteFileWhole((folder / "study.lock").string(), plan.lock);
   PrintMessage(

@@ -12,6 +12,7 @@
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/run_study.h"
 #include "experiments/study/study_file.h"
+#include "experiments/trial/simulate_draw.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -41,6 +42,21 @@ std::int64_t CountMissing(const ResultStore& store, size_t estimator) {
   return count;
 }
 
+// Returns whether the file has an answer to a problem of the plan. The first problem usually has one.
+bool HasAnswer(const StudyPlan& plan, size_t estimator) {
+  for (const Condition& condition : plan.conditions) {
+    const MotionEstimator& answers = *FindEstimators(plan, condition)[estimator];
+    for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(condition.num_trials); ++trial) {
+      const auto simulated = SimulateDraw(
+          plan.study, [&] { return condition.source->Make(NameOfScene(plan, condition, trial)); });
+      if (!simulated.made) continue;
+      RandomStream rng = StreamFor(NameOfTrial(plan, condition, trial), StreamPurpose::kSampling);
+      if (answers.Estimate(simulated.made->problem, rng).status != MotionStatus::kNoAnswer) return true;
+    }
+  }
+  return false;
+}
+
 void Import(const ImportArguments& arguments) {
   const StopOnSignals stop;
   if (arguments.labels.size() != arguments.answers.size()) {
@@ -61,6 +77,13 @@ void Import(const ImportArguments& arguments) {
     study.estimators.push_back(SpecOfAnswers(arguments.answers[i], label));
   }
   StudyPlan plan = MakePlan(study, arguments.study);
+  for (size_t i = 0; i < arguments.answers.size(); ++i) {
+    if (!HasAnswer(plan, num_own + i))
+      throw InputError(fmt::format(
+          "{}: holds no answer to a problem of {}; give the study.yaml that `rcme export` wrote beside the "
+          "problems",
+          arguments.answers[i], arguments.study));
+  }
   LockArguments lock = arguments.lock;
   if (lock.despite.empty() && !FindLock(arguments.study, lock).empty())
     lock.despite = fmt::format("answers were imported: {}", fmt::join(arguments.labels, ", "));

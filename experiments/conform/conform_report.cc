@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <span>
 
 #include "estimator/conform/conform_file.h"
 #include "experiments/conform/fit_rule.h"
+#include "experiments/data/match_folder.h"
 #include "parameters/input_error.h"
 #include "stats/exchangeability.h"
 #include "stats/fnv1a.h"
@@ -82,21 +84,12 @@ void LookForRefusals(const ConformRule& rule, const std::vector<AskedProblem>& p
   if (noticed_after) finding->noticed_after = noticed_after;
 }
 
-// Identifies the problems of a plan: its seed, and the stream key and identity of each condition. A simulated
-// draw of a population is determined by its stream key alone, so its identity is left out.
-std::string DescribeProblems(const StudyPlan& plan) {
-  std::string text = fmt::format("seed {}\n", plan.study.seed);
-  for (const Condition& condition : plan.conditions) {
-    const bool is_draw = plan.study.population && !condition.source->ChosenParts().empty();
-    text += fmt::format("{} {}\n", condition.stream_key, is_draw ? "" : condition.source->Identity());
-  }
-  return text;
-}
-
-std::string ComputeHash(const std::string& text) {
+std::vector<std::uint64_t> NamesOfProblems(const StudyPlan& plan, const Condition& condition) {
+  if (const auto* folder = dynamic_cast<const MatchFolderData*>(condition.source.get()))
+    return folder->digests();
   Fnv1a hash;
-  hash.Add(text);
-  return fmt::format("{:016x}", hash.value());
+  hash.Add(fmt::format("seed {} stream {}", plan.study.seed, condition.stream_key));
+  return {hash.value()};
 }
 
 }  // namespace
@@ -114,13 +107,25 @@ ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers) {
   return finding;
 }
 
+std::vector<std::string> ConformProblems(const StudyPlan& plan) {
+  std::set<std::string> names;
+  for (const Condition& condition : plan.conditions)
+    for (const std::uint64_t name : NamesOfProblems(plan, condition))
+      names.insert(fmt::format("{:016x}", name));
+  return {names.begin(), names.end()};
+}
+
 ConformRule LoadToCheck(const StudyPlan& plan, const std::string& path) {
   ConformRule rule = ReadConformFile(path).rule;
-  if (rule.origin.identity == ComputeHash(DescribeProblems(plan)))
-    throw InputError(fmt::format(
-        "conform: {} is of these very problems, so that they are not new; give another --seed or study",
-        path));
-  return rule;
+  const std::vector<std::string> problems = ConformProblems(plan);
+  std::vector<std::string> both;
+  std::ranges::set_intersection(rule.origin.problems, problems, std::back_inserter(both));
+  if (both.empty()) return rule;
+  const bool is_real = HasRealScenes(plan);
+  throw InputError(
+      fmt::format("conform: {} is of these very problems in {} of {} {}, so that they are not new; give {}",
+                  path, both.size(), problems.size(), is_real ? "pairs" : "conditions",
+                  is_real ? "other pairs" : "another --seed or study"));
 }
 
 std::optional<ConformRule> LoadModels(const StudyPlan& plan, const std::string& path) {
@@ -144,7 +149,7 @@ ConformReport CalibrateConform(const StudyPlan& plan, NewProblem new_problem, co
   report.rule.max_direction_error_deg = plan.study.failure.max_direction_error_deg;
   const std::vector<AskedProblem> first = FirstOfGroups(answers.problems);
   report.rule.origin = {plan.study.name,
-                        ComputeHash(DescribeProblems(plan)),
+                        ConformProblems(plan),
                         std::ssize(answers.rows),
                         answers.CountRefusals(),
                         std::ssize(first),

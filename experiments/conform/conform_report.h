@@ -40,9 +40,13 @@ struct ConformReport {
 // one of the refusal rate.
 ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers);
 
+// Names the problems of a plan: a simulated condition by its random streams, a real pair by its matches.
+// Ascending. Trials begin at 0, so that plans with a name in common have problems in common.
+std::vector<std::string> ConformProblems(const StudyPlan& plan);
+
 // LoadToCheck reads a rule to check; LoadModels reads a rule whose models are to be used again (nothing for
-// an empty path). Both throw InputError as ReadConformFile does, and if the rule was calibrated with the
-// plan's own problems. LoadModels also throws it if the rule is for another estimator.
+// an empty path). Both throw InputError as ReadConformFile does, and if the rule was calibrated with any of
+// the plan's own problems. LoadModels also throws it if the rule is for another estimator.
 ConformRule LoadToCheck(const StudyPlan& plan, const std::string& path);
 std::optional<ConformRule> LoadModels(const StudyPlan& plan, const std::string& path);
 

@@ -41,13 +41,17 @@ void AddWeak(const fs::path& index, const std::set<std::string>& ids, std::set<s
 }
 
 // Adds the numbers of a pair and its truth to the digest: a study with other data is another study.
+void AddMatches(const std::vector<Correspondence>& matches, Fnv1a* digest) {
+  for (const Correspondence& m : matches) {
+    for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) digest->Add(x);
+  }
+}
+
 void AddNumbers(const MatchFile& file, bool is_direction_known, Fnv1a* digest) {
   for (const Camera& c : {file.camera1, file.camera2}) {
     for (const double x : {c.fx, c.fy, c.cx, c.cy, 1.0 * c.width, 1.0 * c.height}) digest->Add(x);
   }
-  for (const Correspondence& m : file.matches) {
-    for (const double x : {m.x1_px.x(), m.x1_px.y(), m.x2_px.x(), m.x2_px.y()}) digest->Add(x);
-  }
+  AddMatches(file.matches, digest);
   if (const std::optional<RelativePose>& pose = file.cam2_from_cam1_true) {
     for (const double x : pose->R.reshaped()) digest->Add(x);
     for (const double x : pose->t) digest->Add(x);
@@ -159,6 +163,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   struct Group {
     std::vector<TrialData> pairs;
     std::vector<double> noise_levels;
+    std::vector<std::uint64_t> digests;
     Fnv1a digest;
     int num_with_truth_sd = 0, num_assumed = 0, num_in_doubt = 0;
   };
@@ -191,6 +196,9 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     }
     data.truth.sd = file.truth_sd;
     AddNumbers(file, data.truth.is_direction_known, &group.digest);
+    Fnv1a digest;
+    AddMatches(file.matches, &digest);
+    group.digests.push_back(digest.value());
     data.truth.is_in_doubt = doubts.Has(file.scene, ExtractPairId(path));
     if (data.truth.is_in_doubt) group.digest.Add(-1.0);
     group.num_in_doubt += data.truth.is_in_doubt;
@@ -209,7 +217,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     if (group.num_in_doubt > 0) identity += fmt::format(", truth in doubt in {}", group.num_in_doubt);
     sources.emplace_back(
         scene, std::make_shared<MatchFolderData>(scene, std::move(group.pairs), std::move(group.noise_levels),
-                                                 identity, redraw));
+                                                 std::move(group.digests), identity, redraw));
   }
   return sources;
 }

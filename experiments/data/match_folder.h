@@ -32,10 +32,11 @@ struct MatchFolderSettings {
 class MatchFolderData : public DataSource {
  public:
   MatchFolderData(std::string scene, std::vector<TrialData> pairs, std::vector<double> noise_levels,
-                  std::string identity, Redraw redraw)
+                  std::vector<std::uint64_t> digests, std::string identity, Redraw redraw)
       : scene_(std::move(scene)),
         pairs_(std::move(pairs)),
         noise_levels_(std::move(noise_levels)),
+        digests_(std::move(digests)),
         identity_(std::move(identity)),
         redraw_(std::move(redraw)) {}
 
@@ -46,11 +47,14 @@ class MatchFolderData : public DataSource {
   }
   std::string Identity() const override { return identity_; }
   std::optional<std::string> SharedScene() const override { return scene_; }
+  // One per pair, of the coordinates of its matches: the same for the same pair in any folder.
+  const std::vector<std::uint64_t>& digests() const { return digests_; }
 
  private:
   std::string scene_;
   std::vector<TrialData> pairs_;
   std::vector<double> noise_levels_;
+  std::vector<std::uint64_t> digests_;
   std::string identity_;
   Redraw redraw_;
 };

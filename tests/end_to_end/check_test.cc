@@ -61,6 +61,17 @@ TEST_F(Check, EveryCommandRefusesADamagedFile) {
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("page.html")));
 }
 
+// SQLite reads no page of a file that is shorter than its beginning says.
+TEST_F(Check, SaysThatNothingCanBeSavedOfATruncatedFile) {
+  const std::string bytes = ReadBytes(run_);
+  folder_.Write("run.sqlite", bytes.substr(0, bytes.size() / 2));
+  const ProgramResult found = RunRcme({"check", run_});
+  EXPECT_EQ(found.exit_code, 2);
+  EXPECT_THAT(found.err, HasSubstr("is damaged"));
+  EXPECT_THAT(found.err, HasSubstr("no trial can be saved from it"));
+  EXPECT_THAT(found.err, Not(HasSubstr("says what can be saved")));
+}
+
 TEST_F(Check, SavesWhatIsSoundAndTheRunIsCompleted) {
   {
     const ProgramResult sound = RunRcme({"check", run_});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/test_support/match_text.h"
+#include "tests/test_support/refusal_of_first.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/small_study.h"
 
@@ -139,8 +140,10 @@ TEST_F(CommandPermission, OfAResultFile) {
 }
 
 TEST_F(CommandPermission, OfTheStudyOfAnImport) {
+  const std::string folder = folder_.Path("problems");
+  ASSERT_EQ(RunRcme({"export", study_, "--out", folder}).exit_code, 0);
   const std::string answers =
-      folder_.Write("answers.jsonl", "{\"id\": \"a\", \"status\": \"no_candidate\"}\n");
+      folder_.Write("answers.jsonl", RefusalOfFirst(ReadBytes(folder + "/problems.jsonl")));
   ExpectRefused({"import", answers, "--study", study_, "--label", "theirs", "--out", out_}, place_);
   ExpectAllowed({"import", answers, "--study", study_, "--label", "theirs", "--out", out_});
 }

@@ -37,7 +37,7 @@ TEST_F(Conform, WritesAFileAndSaysWhatItPromises) {
   const std::string text = Make();
   EXPECT_THAT(text, HasSubstr("conformed"));
   EXPECT_THAT(text, HasSubstr("contains the truth with probability at least 95 %"));
-  EXPECT_THAT(ReadBytes(file_), HasSubstr("\"format\": \"rcme conform 1\""));
+  EXPECT_THAT(ReadBytes(file_), HasSubstr("\"format\": \"rcme conform 2\""));
   EXPECT_EQ(folder_.NumEntries(), 2);  // the study and the file: no checkpoint is left
   ExpectFormatsAgree({"conform", study_, "--estimator", "standard", "--trials", "100", "--out", file_}, 0,
                      "regions");
@@ -127,7 +127,7 @@ TEST_F(Conform, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(
       IsRefused(RunConform({"--check", file_, "--estimator", "standard"}), {"leave --estimator out"}));
   EXPECT_TRUE(IsRefused(RunConform({"--check", study_}), {"is no JSON"}));
-  EXPECT_TRUE(IsRefused(RunConform({"--check", file_}), {"these very problems"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--check", file_}), {"these very problems in 2 of 2 conditions"}));
   EXPECT_TRUE(IsRefused(RunConform({"--check", file_, "--seed", "9", "--out", file_}), {"would replace"}));
   EXPECT_TRUE(IsRefused(RunConform({"--estimator", "ours", "--seed", "9", "--models", file_, "--out", out_}),
                         {"is of estimator standard"}));
@@ -136,6 +136,34 @@ TEST_F(Conform, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(IsRefused(
       RunRcme({"estimate", folder_.Write("m.csv", MatchHeader() + MatchRows(60)), "--conform", study_}),
       {"is no JSON"}));
+}
+
+// Some old problems among new ones, and a part of the old ones, are not new.
+TEST_F(Conform, RefusesAnyProblemOfTheCalibration) {
+  Make();
+  EXPECT_TRUE(IsRefused(RunConform({"--check", file_, "--set", "outlier_ratio=0.3"}),
+                        {"these very problems in 1 of 1 conditions", "another --seed"}));
+  EXPECT_TRUE(IsRefused(RunConform({"--check", file_, "--set", "outlier_ratio=0.2,0.3"}),
+                        {"these very problems in 1 of 2 conditions"}));
+  EXPECT_EQ(RunConform({"--check", file_, "--set", "outlier_ratio=0.2", "--trials", "10"}).exit_code, 0);
+}
+
+// Another seed does not make other problems of real pairs, nor does another folder.
+TEST_F(Conform, RefusesAnyPairOfTheCalibration) {
+  const std::string exported = folder_.Path("exported");
+  ASSERT_EQ(RunRcme({"export", study_, "--trials", "20", "--out", exported}).exit_code, 0);
+  const auto study_of = [&](const std::string& name, const std::string& folder) {
+    return folder_.Write(name, "name: pairs\ndata: {scene: match_files, folder: '" + folder +
+                                   "', sigma_px: 0.5}\nestimators: [{name: standard}]\n");
+  };
+  study_ = study_of("pairs.yaml", exported + "/matches");
+  ASSERT_EQ(RunConform({"--out", file_}).exit_code, 0);
+  const std::filesystem::path one = *std::filesystem::directory_iterator(exported + "/matches");
+  std::filesystem::create_directory(folder_.Path("one"));
+  std::filesystem::copy_file(one, folder_.Path("one/renamed.csv"));
+  study_ = study_of("one.yaml", folder_.Path("one"));
+  EXPECT_TRUE(IsRefused(RunConform({"--check", file_, "--seed", "9"}),
+                        {"these very problems in 1 of 1 pairs", "give other pairs"}));
 }
 
 // A draw that cannot be simulated is no answer.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/test_support/refusal_of_first.h"
 #include "tests/test_support/run_program.h"
 #include "tests/test_support/small_study.h"
 
@@ -119,10 +120,11 @@ TEST_F(LockedStudy, ALockStaysWithItsRun) {
 }
 
 TEST_F(LockedStudy, GoesWithProblemsThatAreAnsweredElsewhere) {
-  const std::string problems = folder_.Path("problems"), answers = folder_.Write("answers.jsonl", "");
+  const std::string problems = folder_.Path("problems"), answers = folder_.Path("answers.jsonl");
   const ProgramResult exported = Rcme({"export", study_, "--out", problems});
   EXPECT_EQ(exported.exit_code, 0) << exported.err;
   EXPECT_EQ(ReadBytes(problems + "/study.lock"), ReadBytes(folder_.Path("s.lock")));
+  folder_.Write("answers.jsonl", RefusalOfFirst(ReadBytes(problems + "/problems.jsonl")));
   const ProgramResult imported = Rcme({"import", answers, "--study", problems + "/study.yaml", "--label",
                                        "mine", "--out", folder_.Path("run.sqlite")});
   EXPECT_EQ(imported.exit_code, 0) << imported.err;

@@ -31,9 +31,9 @@ std::string DescribeFileError(const SQLite::Exception& error) {
     case SQLITE_READONLY:
       if (error.getExtendedErrorCode() == SQLITE_READONLY_ROLLBACK)
         return "its run was killed in the middle of a write; the same `rcme run` resumes it";
-      [[fallthrough]];
-    case SQLITE_CANTOPEN:
       return fmt::format("cannot be opened for writing ({})", error.what());
+    case SQLITE_CANTOPEN:
+      return fmt::format("cannot be opened ({})", error.what());
     default:
       return error.what();
   }

@@ -85,6 +85,23 @@ void ForEachReachable(const SQLite::Database& database, std::uint32_t condition,
   }
 }
 
+// Runs `action`, without which nothing can be recovered.
+template <typename Action>
+void NamingLostFile(const std::string& path, bool has_study, Action action) {
+  std::string what;
+  try {
+    return action();
+  } catch (const SQLite::Exception& error) {
+    if (error.getErrorCode() != SQLITE_CORRUPT) ThrowForFile(path, error);
+    what = error.what();
+  } catch (const Damage& damage) {
+    what = damage.what();
+  }
+  throw DamagedFileError(fmt::format(
+      "{}: is damaged: {}; no trial can be saved from it{}; run its study again with another --out", path,
+      what, has_study ? "" : " (if its study alone is lost, give that with --study)"));
+}
+
 void Append(std::uint32_t trial, std::vector<TrialRange>* ranges) {
   if (!ranges->empty() && ranges->back().end == trial) {
     ++ranges->back().end;
@@ -99,7 +116,7 @@ Salvage::Salvage(const std::string& path, const std::optional<Study>& study)
     : file_(path, SQLite::OPEN_READWRITE) {
   const auto note = [&](const char* what) { Note(what); };
   std::optional<RunDescription> stored;
-  NamingFile(path, [&] {
+  NamingLostFile(path, study.has_value(), [&] {
     file_.database.exec("BEGIN");
     CheckTables(file_.database, {"problems", "trials"});
     if (!study) CheckFormat(file_.database, path);

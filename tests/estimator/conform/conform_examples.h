@@ -15,7 +15,7 @@ inline ConformRule ExampleRule() {
   ConformRule rule;
   rule.estimator = "standard";
   rule.options = {{"num_iterations", "50"}};
-  rule.origin = {"example", "0123456789abcdef", 21, 2, 21, 1, false};
+  rule.origin = {"example", {"0123456789abcdef", "23456789abcdef01"}, 21, 2, 21, 1, false};
   rule.difficulty = {0.25, {{kDirectionSdFeature, -6.0, 2.0, 2.0, 0.0}}};  // log sd + 6.25
   rule.edges = {-0.75, 0.25};
   rule.factors = {1.5, 4.0, kInfinity};

@@ -50,7 +50,7 @@ TEST(ConformFile, SaysWhatIsWrong) {
   expect("", "is no JSON");
   expect("[1]", "the file is no object");
   expect(std::string(kMaxConformBytes + 1, ' '), "is longer than");
-  expect(Replaced("rcme conform 1", "rcme conform 9"), "is of format 'rcme conform 9'");
+  expect(Replaced("rcme conform 2", "rcme conform 9"), "is of format 'rcme conform 9'");
   expect(Replaced("\"level\"", "\"levels\""), "has no key 'level'");
   expect(Replaced("\"level\": 0.95", "\"level\": \"a\""), "'level' is no number");
   expect(Replaced("\"level\": 0.95", "\"level\": 7"), "'level' is 7, not between 0.5 and 1");
@@ -60,6 +60,10 @@ TEST(ConformFile, SaysWhatIsWrong) {
   expect(Replaced("\"groups\": 21", "\"groups\": -1"), "'groups' is no count");
   expect(Replaced("\"new_groups\": false", "\"new_groups\": 0"), "'new_groups' is neither");
   expect(Replaced("\"name\": \"standard\"", "\"name\": \"standard\", \"extra\": 1"), "unknown key 'extra'");
+  expect(Replaced("rcme conform 2", "rcme conform 1"), "write it with `rcme conform`");
+  expect(Replaced("\"23456789abcdef01\"", "1"), "'problems' holds something that is no text");
+  expect(Replaced("23456789abcdef01", "2345678"), "is not 16 hexadecimal digits");
+  expect(Replaced("23456789abcdef01", "0123456789abcdef"), "'problems' is empty or does not ascend");
   expect(Replaced("\"num_iterations\": \"50\"", "\"num_iterations\": 50"), "no text");
 }
 

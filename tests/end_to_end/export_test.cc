@@ -1,0 +1,60 @@
+// Problems that are answered elsewhere: what `rcme export` writes and what `rcme import` refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "tests/end_to_end/bad_input.h"
+#include "tests/test_support/refusal_of_first.h"
+
+namespace rcme {
+namespace {
+
+using testing::HasSubstr;
+
+class Export : public BadInput {
+ protected:
+  ProgramResult RunExport(const std::string& num_trials) {
+    return RunRcme({"export", study_, "--trials", num_trials, "--out", exported_});
+  }
+  // The first lines of the match files, which name their scenes.
+  std::multiset<std::string> Scenes() const {
+    std::multiset<std::string> scenes;
+    for (const auto& entry : std::filesystem::directory_iterator(exported_ + "/matches")) {
+      const std::string text = ReadBytes(entry.path().string());
+      scenes.insert(text.substr(0, text.find('\n')));
+    }
+    return scenes;
+  }
+
+  std::string exported_ = folder_.Path("exported");
+};
+
+TEST_F(Export, NamesTheConditionAndLeavesNoFileOfAnEarlierExport) {
+  ASSERT_EQ(RunExport("3").exit_code, 0);
+  EXPECT_EQ(Scenes().size(), 6U);
+  folder_.Write("exported/matches/mine.csv", "# scene: mine\n");
+  ASSERT_EQ(RunExport("1").exit_code, 0);
+  EXPECT_EQ(Scenes(), (std::multiset<std::string>{"# scene: mine", "# scene: outlier_ratio 0.0",
+                                                  "# scene: outlier_ratio 0.3"}));
+}
+
+TEST_F(Export, AnswersToNoProblemAreRefusedBeforeTheStudyRuns) {
+  ASSERT_EQ(RunExport("2").exit_code, 0);
+  const std::string out = folder_.Path("run.sqlite");
+  const auto import = [&](const std::string& answers) {
+    return RunRcme({"import", folder_.Write("answers.jsonl", answers), "--study", exported_ + "/study.yaml",
+                    "--label", "mine", "--out", out});
+  };
+  EXPECT_TRUE(IsRefused(import(""), {"answers.jsonl", "holds no answer to a problem"}));
+  EXPECT_TRUE(IsRefused(import("{\"id\": \"a\", \"status\": \"no_candidate\"}\n"), {"holds no answer"}));
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const ProgramResult one = import(RefusalOfFirst(ReadBytes(exported_ + "/problems.jsonl")));
+  EXPECT_EQ(one.exit_code, 0) << one.err;
+  EXPECT_THAT(one.err, HasSubstr("3 of 4 trials have no answer"));
+}
+
+}  // namespace
+}  // namespace rcme
