@@ -1,6 +1,7 @@
 #include "experiments/run/store/salvage.h"
 
 #include <fmt/format.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 
