@@ -37,7 +37,7 @@ TEST_F(Export, NamesTheConditionAndLeavesNoFileOfAnEarlierExport) {
   EXPECT_EQ(Scenes().size(), 6U);
   folder_.Write("exported/matches/mine.csv", "# scene: mine\n");
   ASSERT_EQ(RunExport("1").exit_code, 0);
-  EXPECT_EQ(Scenes(), (std::multiset<std::string>{"# scene: mine", "# scene: outlier_ratio 0.0",
+  EXPECT_EQ(Scenes(), (std::multiset<std::string>{"# scene: mine", "# scene: outlier_ratio 0",
                                                   "# scene: outlier_ratio 0.3"}));
 }
 
