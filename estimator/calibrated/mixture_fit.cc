@@ -38,7 +38,9 @@ MixtureParameters Updated(const MixtureParameters& old, const MixtureSums& sums,
 }
 
 // g' H^-1 g: the squared length of the undamped step to the optimum, in standard deviations.
-double Decrement(const MixtureSums& sums) { return sums.gradient.dot(sums.hessian.llt().solve(sums.gradient)); }
+double Decrement(const MixtureSums& sums) {
+  return sums.gradient.dot(sums.hessian.llt().solve(sums.gradient));
+}
 
 }  // namespace
 

@@ -40,8 +40,8 @@ class ModeFit {
           MixtureUpdate update = MixtureUpdate::kAll);
   // Returns false if no further step is possible; then the mode must not be used.
   bool Step();
-  // Whether the last step began within 0.02 standard deviations of the optimum, by the gradient and the Hessian
-  // without damping, and changed the scale by less than 0.2 %.
+  // Whether the last step began within 0.02 standard deviations of the optimum, by the gradient and the
+  // Hessian without damping, and changed the scale by less than 0.2 %.
   bool is_converged() const { return is_converged_; }
   // Returns whether the fit converged: the optimum is within one standard deviation, and the Hessian can be
   // inverted.

@@ -375,8 +375,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check, prior);
       if (spreads != nullptr) (*spreads)[i] = covariance;
       const Matrix5d to_answer = TransportTangent(mode.pose, pose);
-      verdict.pose_cov +=
-          weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
+      verdict.pose_cov += weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
       within += weight;
     }
     verdict.pose_cov /= within;

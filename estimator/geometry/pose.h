@@ -35,9 +35,9 @@ RelativePose Retract(const RelativePose& pose, const Vector5d& tangent);
 // The tangent coordinates of `other` around `pose`: Retract(pose, LocalCoordinates(pose, other)) == other.
 Vector5d LocalCoordinates(const RelativePose& pose, const RelativePose& other);
 
-// 5x5. Converts tangent coordinates around `from` into those around `to`: the direction's are moved in parallel
-// along the great circle from from.t to to.t, as the bases of the two may differ by a rotation of up to 90 deg.
-// The rotation's stay as they are.
+// 5x5. Converts tangent coordinates around `from` into those around `to`: the direction's are moved in
+// parallel along the great circle from from.t to to.t, as the bases of the two may differ by a rotation of up
+// to 90 deg. The rotation's stay as they are.
 Matrix5d TransportTangent(const RelativePose& from, const RelativePose& to);
 
 // Angle (rad, [0, pi]) between two rotations and between two directions.

@@ -56,7 +56,8 @@ TEST(SandwichCovariance, DoesNotDependOnTheAssumedSigma) {
 FittedMode FitWhereTheBasisTurns(std::uint32_t trial) {
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 2813});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = 200});
-  const RelativePose pose{RotationFromVector({0.02, -0.01, 0.03}), Eigen::Vector3d(0.1, 0.1, 1.0).normalized()};
+  const RelativePose pose{RotationFromVector({0.02, -0.01, 0.03}),
+                          Eigen::Vector3d(0.1, 0.1, 1.0).normalized()};
   for (size_t i = 0; i < random.points_in_cam1.size(); ++i) {
     random.problem.matches[i] =
         ProjectToBoth(random.points_in_cam1[i], pose, random.problem.camera1, random.problem.camera2);
@@ -82,8 +83,9 @@ Matrix5d InverseOfSecondDifferences(const FittedMode& f) {
   Matrix5d hessian;
   for (int i = 0; i < 5; ++i) {
     for (int j = 0; j < 5; ++j) {
-      hessian(i, j) = (cost_at(i, 1, j, 1) - cost_at(i, 1, j, -1) - cost_at(i, -1, j, 1) + cost_at(i, -1, j, -1)) /
-                      (4.0 * kStep * kStep);
+      hessian(i, j) =
+          (cost_at(i, 1, j, 1) - cost_at(i, 1, j, -1) - cost_at(i, -1, j, 1) + cost_at(i, -1, j, -1)) /
+          (4.0 * kStep * kStep);
     }
   }
   return root * hessian.inverse() * root.transpose();

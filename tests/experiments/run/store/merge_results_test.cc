@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "experiments/run/run_study.h"
+#include "experiments/run/store/new_trials.h"
 #include "experiments/statistics/summarize.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/statistics/trial_table.h"
-#include "experiments/run/store/new_trials.h"
-#include "experiments/run/run_study.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/shard_files.h"
 
@@ -152,9 +152,12 @@ TEST_F(MergeTest, RefusesWhatDoesNotBelongTogether) {
 TEST_F(MergeTest, RefusesAPartWithOtherConditions) {
   const Paths parts = RunAll(2);
   SQLite::Database(parts[1], SQLite::OPEN_READWRITE)
-      .exec("DELETE FROM conditions WHERE condition = 1; DELETE FROM levels WHERE condition = 1; "
-            "DELETE FROM totals WHERE condition = 1; DELETE FROM trials WHERE condition = 1; "
-            "DELETE FROM problems WHERE condition = 1");
+      .exec(R"(
+        DELETE FROM conditions WHERE condition = 1;
+        DELETE FROM levels WHERE condition = 1;
+        DELETE FROM totals WHERE condition = 1;
+        DELETE FROM trials WHERE condition = 1;
+        DELETE FROM problems WHERE condition = 1)");
   EXPECT_TRUE(ThrowsInputError([&] { Merge(parts); }, {parts[1], "damaged"}));
 }
 
