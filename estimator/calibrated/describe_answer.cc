@@ -38,8 +38,11 @@ Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weig
   // If the check lowers the probability, all parts are lowered in proportion.
   const double share =
       verdict.failure_probability < verdict.by_modes ? verdict.failure_probability / verdict.by_modes : 1.0;
-  consider(share * verdict.mass_beyond, Doubt::kLowParallax);
-  consider(verdict.failure_probability - verdict.by_modes, Doubt::kModel);
+  // 1 - P is the probability by modes and check times what uncertain intrinsics leave of it.
+  const double right = 1.0 - verdict.failure_probability;
+  const double by_intrinsics = right / verdict.left_by_intrinsics - right;
+  consider(share * verdict.mass_beyond + by_intrinsics, Doubt::kLowParallax);
+  consider(verdict.failure_probability - by_intrinsics - verdict.by_modes, Doubt::kModel);
   consider(share * weights.of_no_motion, Doubt::kFewMatches);
   for (size_t i = 0; i < modes.size(); ++i) {
     if (weights.is_rival[i])

@@ -269,6 +269,22 @@ const WeightedAxis& MostLikely(const std::vector<WeightedAxis>& axes) {
   return *std::ranges::max_element(axes, {}, [](const WeightedAxis& a) { return a.fit.log_likelihood; });
 }
 
+// The second moment about the centre of the motions whose direction lies in the cell of an axis.
+Matrix5d SecondMoment(const WeightedAxis& axis, const RelativePose& centre, double all_over_used) {
+  const Vector5d away =
+      LocalCoordinates(centre, {RotationFromVector(axis.fit.x.head<3>()) * centre.R, axis.fit.direction});
+  Matrix5d moment = away * away.transpose();
+  moment.topLeftCorner<3, 3>() += (axis.fit.information.inverse() / all_over_used).topLeftCorner<3, 3>();
+  // The cell's own extent: a uniform law over an interval has a twelfth of its squared length.
+  const double width = axis.high - axis.low, length = axis.angle * 2.0 * std::numbers::pi / kAzimuths;
+  const Eigen::Vector2d outward = away.tail<2>().normalized();
+  moment.bottomRightCorner<2, 2>() +=
+      (width * width * outward * outward.transpose() +
+       length * length * (Eigen::Matrix2d::Identity() - outward * outward.transpose())) /
+      12.0;
+  return moment;
+}
+
 }  // namespace
 
 std::vector<DirectionCell> ComputeDirectionCells(const MotionProblem& problem, const ExplainedMode& mode,
@@ -312,12 +328,16 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
   const AxisFit& greatest = MostLikely(axes).fit;
   AxisFit best = greatest;
   bool is_behind = best.x(3) < 0.0;
-  double within = 0.0, total = 0.0, most = 0.0;
+  double within = 0.0, total = 0.0, most = 0.0, ahead = 0.0;
+  Matrix5d moment = Matrix5d::Zero();
   for (const WeightedAxis& axis : axes) {
     const double density = std::exp(axis.fit.log_likelihood - greatest.log_likelihood);
     const double weight = std::exp(axis.fit.log_likelihood - greatest.log_likelihood + axis.log_area);
     const TwoWays ways = DivideWeight(weight, axis.fit, set);
     total += ways.both;
+    ahead += ways.ahead;
+    if (ways.ahead > 0.0)
+      moment += ways.ahead * SecondMoment(axis, {mode.mode.pose.R, centre}, set.all_over_used);
     if (axis.angle <= angle_rad) within += ways.ahead;
     if (std::numbers::pi - axis.angle <= angle_rad) within += ways.behind;
     // A prior of the direction may prefer another axis: take the most likely direction of all axes.
@@ -327,7 +347,10 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
     best = axis.fit;
     is_behind = densities.behind > densities.ahead;
   }
-  DirectionPosterior posterior{total > 0.0 ? within / total : 0.0, mode.mode};
+  DirectionPosterior posterior;
+  posterior.best = mode.mode;
+  if (total > 0.0) posterior.mass_within = within / total;
+  if (ahead > 0.0) posterior.covariance = moment / ahead;
   posterior.best.pose = {RotationFromVector(best.x.head<3>()) * mode.mode.pose.R,
                          is_behind ? Eigen::Vector3d(-best.direction) : best.direction};
   for (const Displacement& match : set.matches) {

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <numbers>
 
 #include "estimator/calibrated/influence.h"
 
@@ -129,6 +130,24 @@ Matrix5d CovarianceWithPrior(const Matrix5d& covariance_of_matches, const Mode& 
   const Matrix5d of_prior = EvaluatePrior(*prior.motion, mode.pose).hessian;
   const Matrix5d kept = mode.inverse_hessian * (mode.hessian - of_prior);
   return kept * covariance_of_matches * kept.transpose() + PriorCovariance(mode, prior, mode.inverse_hessian);
+}
+
+Matrix5d BoundByUniformMotion(Matrix5d covariance) {
+  constexpr double kMost = 1e6;  // rad^2; greater variances would only add rounding
+  constexpr double kPi2 = std::numbers::pi * std::numbers::pi;
+  Vector5d uniform;
+  uniform << Eigen::Vector3d::Constant(kPi2 / 9.0 + 2.0 / 3.0), Eigen::Vector2d::Constant((kPi2 - 4.0) / 4.0);
+  if (!(covariance.trace() < kMost)) {
+    const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(covariance);
+    const Vector5d variances = eigen.eigenvalues().cwiseMax(0.0).cwiseMin(kMost);
+    covariance = eigen.eigenvectors() * variances.asDiagonal() * eigen.eigenvectors().transpose();
+  }
+  // (C^-1 + U^-1)^-1 = K U, K = C (C + U)^-1, as (I - K) C (I - K)' + K U K', which rounding keeps positive.
+  const Matrix5d U = uniform.asDiagonal();
+  const Matrix5d K = (covariance + U).llt().solve(covariance).transpose();
+  const Matrix5d rest = Matrix5d::Identity() - K;
+  const Matrix5d bounded = rest * covariance * rest.transpose() + K * U * K.transpose();
+  return bounded.allFinite() ? bounded : U;
 }
 
 Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,

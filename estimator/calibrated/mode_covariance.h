@@ -50,4 +50,10 @@ Matrix5d CovarianceWithPrior(const Matrix5d& covariance_of_matches, const Mode& 
 Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,
                               const Mode& mode, const Matrix5d& inverse_of_observed);
 
+// Adds the information that every motion has, because rotations and directions are bounded: that of a uniform
+// law of both, whose variance is pi^2 / 9 + 2/3 about each axis of rotation and (pi^2 - 4) / 4 along each
+// coordinate of the direction (standard deviations of 76 and 69 deg). Without it the covariance of a motion
+// that its matches do not determine has no bound.
+Matrix5d BoundByUniformMotion(Matrix5d covariance);
+
 }  // namespace rcme

@@ -17,19 +17,21 @@ std::optional<ExplainedMode> MovedTo(const MatchBlocks& matches, const MixturePr
 
 }  // namespace
 
-std::optional<double> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
-                                      const MixturePrior& prior, double angle_rad, ExplainedMode* answer) {
+std::optional<WeakDirection> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
+                                             const MixturePrior& prior, double angle_rad,
+                                             ExplainedMode* answer) {
   if (UsualDepthInNoise(answer->explanation) > kLowParallax) return std::nullopt;
   if (problem.prior && problem.prior->direction && problem.prior->direction->sd_rad < 0.5 * angle_rad)
     return std::nullopt;
-  const DirectionPosterior posterior = PosteriorOfDirection(problem, *answer, answer->mode.pose.t, angle_rad);
-  if (posterior.mass_within > kSettled) return posterior.mass_within;
-  std::optional<ExplainedMode> moved = MovedTo(matches, prior, posterior.best);
-  if (!moved) return posterior.mass_within;
-  const double mass = PosteriorOfDirection(problem, *moved, moved->mode.pose.t, angle_rad).mass_within;
-  if (mass <= posterior.mass_within) return posterior.mass_within;
+  const DirectionPosterior found = PosteriorOfDirection(problem, *answer, answer->mode.pose.t, angle_rad);
+  const WeakDirection direction{found.mass_within, found.covariance};
+  if (found.mass_within > kSettled) return direction;
+  std::optional<ExplainedMode> moved = MovedTo(matches, prior, found.best);
+  if (!moved) return direction;
+  const DirectionPosterior of_moved = PosteriorOfDirection(problem, *moved, moved->mode.pose.t, angle_rad);
+  if (of_moved.mass_within <= found.mass_within) return direction;
   *answer = std::move(*moved);
-  return mass;
+  return WeakDirection{of_moved.mass_within, of_moved.covariance};
 }
 
 }  // namespace rcme

@@ -53,7 +53,7 @@ struct Workings {
   MotionProblem problem;  // its matches in the order that the modes use
   std::vector<ExplainedMode> modes;
   ModeWeights weights;
-  std::optional<double> direction_mass;
+  std::optional<WeakDirection> weak_direction;
   CheckedVerdict checked;
 };
 
@@ -123,7 +123,8 @@ void FillOtherModes(const std::vector<ExplainedMode>& modes, const ModeWeights& 
     for (size_t k = 0; k < answer.probability.size(); ++k) {
       num_only += other.probability[k] > 0.5 && !(answer.probability[k] > 0.5);
     }
-    estimate->other_modes.push_back({modes[i].mode.pose, modes[i].mode.inverse_hessian, weights.of_modes[i],
+    estimate->other_modes.push_back({modes[i].mode.pose, BoundByUniformMotion(modes[i].mode.inverse_hessian),
+                                     weights.of_modes[i],
                                      num_only / static_cast<double>(answer.probability.size())});
   }
   std::ranges::stable_sort(estimate->other_modes, std::ranges::greater{}, &MotionMode::weight);
@@ -222,7 +223,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (!(weights.of_modes[i] >= kNegligibleWeight)) continue;
       const Matrix5d curvature = InverseOfObserved(matches, modes[i].mode);
       Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, of_matches.checked.check, prior);
-      if (of_matches.direction_mass && !weights.is_second_motion[i])
+      if (of_matches.weak_direction && !weights.is_second_motion[i])
         covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
       beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i]});
     }
@@ -251,19 +252,20 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
     if (options_.leave_out != CalibratedStep::kNoiseChoice)
       ChooseNoiseLaw(matches, prior, &modes[weights.answer]);
-    std::optional<double> direction_mass;
+    std::optional<WeakDirection> weak_direction;
     if (options_.leave_out != CalibratedStep::kDirectionPosterior) {
-      direction_mass =
+      weak_direction =
           SettleDirection(shuffled, matches, prior, Bounds().direction_rad, &modes[weights.answer]);
       weights.is_rival = FindRivals(modes, weights.answer, Bounds());
     }
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
     const ModelCheck check = CheckModel(shuffled, modes, weights);
     std::vector<Matrix5d> spreads;
-    Verdict verdict = Judge(shuffled, matches, prior, modes, weights, direction_mass, check, rng,
+    Verdict verdict = Judge(shuffled, matches, prior, modes, weights, weak_direction, check, rng,
                             posterior != nullptr ? &spreads : nullptr);
     if (workings != nullptr) workings->checked = {check, verdict.by_modes};
     if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
+    verdict.failure_probability += (1.0 - verdict.left_by_intrinsics) * (1.0 - verdict.failure_probability);
     if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check, prior);
     FillMotion(modes[weights.answer], verdict, problem.sigma_px, &estimate);
     FillMatches(modes[weights.answer].explanation, order, &estimate);
@@ -281,13 +283,13 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
                            prior.motion ? OwnCovarianceOfMatches(matches, prior, answer) : verdict.pose_cov,
                            &estimate);
       if (estimate.status == MotionStatus::kOk)
-        estimate.pose_cov = CovarianceWithPrior(estimate.pose_cov, answer, prior);
+        estimate.pose_cov = BoundByUniformMotion(CovarianceWithPrior(estimate.pose_cov, answer, prior));
     }
     if (posterior != nullptr)
-      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, direction_mass.has_value(), estimate);
+      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, weak_direction.has_value(), estimate);
     if (workings == nullptr) return estimate;
     workings->weights = std::move(weights);
-    workings->direction_mass = direction_mass;
+    workings->weak_direction = weak_direction;
     workings->modes = std::move(modes);
     workings->problem = std::move(shuffled);
     return estimate;
@@ -346,12 +348,13 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   }
 
   // Computes failure probability and covariance. The covariance is the second moment, about the answer, of
-  // the modes within the bounds. `spreads`, if not null, receives one matrix per mode: its covariance within
-  // the bounds, the reach of its likelihood beyond them, zero if the weight is negligible.
+  // the modes within the bounds or, if the direction is weak, of the directions within 90 deg of the
+  // answer's. `spreads`, if not null, receives one matrix per mode: its covariance within the bounds, the
+  // reach of its likelihood beyond them, zero if the weight is negligible.
   Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
                 const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
-                const std::optional<double>& direction_mass, const ModelCheck& check, RandomStream& rng,
-                std::vector<Matrix5d>* spreads) const {
+                const std::optional<WeakDirection>& weak_direction, const ModelCheck& check,
+                RandomStream& rng, std::vector<Matrix5d>* spreads) const {
     const ExplainedMode& answer = modes[weights.answer];
     const RelativePose& pose = answer.mode.pose;
     double within = 0.0, success = 0.0;
@@ -366,10 +369,15 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       // Along a direction that the noise seems to determine, the observed curvature is below that from the
       // residuals' first derivatives. The score varies as the latter says: H_obs^-1 H H_obs^-1.
       const Matrix5d reach = curvature * mode.hessian * curvature;
-      success += weight * (direction_mass && !weights.is_second_motion[i]
-                               ? *direction_mass
+      success += weight * (weak_direction && !weights.is_second_motion[i]
+                               ? weak_direction->mass_within
                                : MassWithin(pose, Bounds(), mode.pose, reach, rng));
-      if (spreads != nullptr) (*spreads)[i] = reach;
+      if (spreads != nullptr)
+        (*spreads)[i] = reach + IntrinsicsCovariance(problem, options_, mode, curvature);
+      if (i == weights.answer && !options_.calibration.IsNone()) {
+        verdict.left_by_intrinsics = LeftByIntrinsics(
+            problem, mode, curvature, weak_direction ? Matrix5d(Matrix5d::Zero()) : reach, rng);
+      }
       if (!IsWithin(pose, Bounds(), mode.pose)) continue;
       const Vector5d away = LocalCoordinates(pose, mode.pose);
       const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check, prior);
@@ -379,6 +387,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       within += weight;
     }
     verdict.pose_cov /= within;
+    if (weak_direction) verdict.pose_cov = CovarianceIfWeak(problem, answer.mode, *weak_direction, check);
     verdict.mass_beyond = std::max(within - success, 0.0);
     verdict.by_modes = verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
     return verdict;
@@ -395,9 +404,36 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       of_prior = PriorCovariance(mode.mode, prior, curvature);
     if (options_.covariance == CovarianceKind::kRobust)
       return of_matches + of_prior;  // MakeCovarianceRobust adds the shared errors
-    if (options_.covariance == CovarianceKind::kSandwich && options_.leave_out != CalibratedStep::kModelCheck)
-      of_matches *= CovarianceFactor(check);
-    return of_matches + of_prior + IntrinsicsCovariance(problem, options_, mode.mode, curvature);
+    of_matches *= CheckFactor(check);
+    return BoundByUniformMotion(of_matches + of_prior +
+                                IntrinsicsCovariance(problem, options_, mode.mode, curvature));
+  }
+
+  // How much of a mode's probability within the bounds is left if the intrinsics are uncertain, at least
+  // 1e-6. `reach`: its covariance if they are exact.
+  double LeftByIntrinsics(const MotionProblem& problem, const Mode& mode, const Matrix5d& curvature,
+                          const Matrix5d& reach, RandomStream& rng) const {
+    const Matrix5d of_intrinsics = IntrinsicsCovariance(problem, options_, mode, curvature);
+    RandomStream same = rng;
+    const double exact = MassWithin(mode.pose, Bounds(), mode.pose, reach, same);
+    const double uncertain = MassWithin(mode.pose, Bounds(), mode.pose, reach + of_intrinsics, rng);
+    return std::clamp(uncertain / std::max(exact, 1e-6), 1e-6, 1.0);
+  }
+
+  // The covariance of an answer whose direction is weak. Near the optimum the likelihood does not show how
+  // far the direction may be away: without parallax it seems well determined (direction_posterior.h).
+  Matrix5d CovarianceIfWeak(const MotionProblem& problem, const Mode& answer, const WeakDirection& direction,
+                            const ModelCheck& check) const {
+    if (options_.covariance == CovarianceKind::kRobust) return direction.covariance;
+    return BoundByUniformMotion(CheckFactor(check) * direction.covariance +
+                                IntrinsicsCovariance(problem, options_, answer, answer.inverse_hessian));
+  }
+
+  // The factor by which the check widens the covariance.
+  double CheckFactor(const ModelCheck& check) const {
+    const bool is_checked =
+        options_.covariance == CovarianceKind::kSandwich && options_.leave_out != CalibratedStep::kModelCheck;
+    return is_checked ? CovarianceFactor(check) : 1.0;
   }
 
   CalibratedOptions options_;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "estimator/geometry/sampson.h"
 #include "stats/constants.h"
@@ -113,6 +114,38 @@ TEST(PosteriorOfDirection, IsAsOftenRightAsStated) {
 }
 
 // A fifth of the explained matches exceeds it: rank floor(0.8 n) of n.
+// Without parallax every direction is as likely: those within 90 deg of any centre have a mean squared angle
+// of pi - 2, half of it along each coordinate.
+TEST(PosteriorOfDirection, HasTheSpreadOfHalfASphereWithoutParallax) {
+  double sum = 0.0;
+  constexpr int kTrials = 40;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    const ParallaxCase c = MakeParallax(trial, 100, 0.0);
+    const Matrix5d covariance =
+        PosteriorOfDirection(c.random.problem, c.mode, c.random.pose_true.t, RadFromDeg(15.0)).covariance;
+    sum += covariance.bottomRightCorner<2, 2>().trace() / kTrials;
+    EXPECT_LT(std::sqrt(covariance.topLeftCorner<3, 3>().trace()), RadFromDeg(2.0)) << trial;
+  }
+  EXPECT_NEAR(sum, std::numbers::pi - 2.0, 0.12);
+}
+
+// Where the parallax is some noise levels, the squared error in units of the covariance averages five.
+TEST(PosteriorOfDirection, HasTheSecondMomentThatItStates) {
+  double sum = 0.0;
+  constexpr int kTrials = 60;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    ParallaxCase c = MakeParallax(trial, 150, 3.0);
+    // about another motion than the true one, since the second moment about that has no mean error
+    c.mode.mode.pose = Retract(c.random.pose_true, Vector5d(0.0005, 0.0005, 0.0, 0.05, -0.05));
+    const DirectionPosterior posterior =
+        PosteriorOfDirection(c.random.problem, c.mode, c.mode.mode.pose.t, RadFromDeg(15.0));
+    const Vector5d error = LocalCoordinates(c.mode.mode.pose, c.random.pose_true);
+    sum += error.dot(posterior.covariance.inverse() * error) / kTrials;
+  }
+  EXPECT_GT(sum, 2.0);
+  EXPECT_LT(sum, 6.5);
+}
+
 TEST(UsualDepthInNoise, IsExceededByAFifthOfTheExplained) {
   Explanation explanation;
   EXPECT_EQ(UsualDepthInNoise(explanation), 0.0);

@@ -5,6 +5,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -238,6 +239,29 @@ TEST(SandwichCovariance, IsThatOfTheHeader) {
     const Matrix5d expected = widen * covariance * widen;
     EXPECT_LT((SandwichCovariance(f.mode, e, inverse) - expected).norm(), 1e-6 * expected.norm()) << trial;
   }
+}
+
+// The uniform law of the header: random rotations and directions have that covariance, a law without bounds
+// gets it, and what is determined stays as it is.
+TEST(BoundByUniformMotion, AddsTheInformationOfAUniformLaw) {
+  RandomStream rng({.seed = 1, .purpose = 2772});
+  Matrix5d uniform = Matrix5d::Zero();
+  constexpr int kDraws = 20000;
+  for (int k = 0; k < kDraws; ++k) {
+    Eigen::Vector4d q;
+    for (int i = 0; i < 4; ++i) q(i) = rng.Normal();
+    const RelativePose random{Eigen::Quaterniond(q.normalized()).toRotationMatrix(), RandomDirection(rng)};
+    const Vector5d away = LocalCoordinates({}, random);
+    uniform += away * away.transpose() / kDraws;
+  }
+  const Matrix5d unbounded = BoundByUniformMotion(1e12 * Matrix5d::Identity());
+  EXPECT_LT((unbounded - uniform).norm(), 0.05 * uniform.norm()) << unbounded << "\n\n" << uniform;
+  Matrix5d root;
+  for (int i = 0; i < 25; ++i) root(i / 5, i % 5) = 0.3 * rng.Normal();
+  const Matrix5d some = root * root.transpose();
+  const Matrix5d expected = (some.inverse() + unbounded.inverse()).inverse();
+  EXPECT_LT((BoundByUniformMotion(some) - expected).norm(), 1e-5 * expected.norm());
+  EXPECT_LT((BoundByUniformMotion(1e-6 * some) - 1e-6 * some).norm(), 1e-5 * (1e-6 * some).norm());
 }
 
 }  // namespace

@@ -240,7 +240,7 @@ TEST(PosteriorOfPairs, DrawsOfTheAnswerHaveItsCovariance) {
         EXPECT_LT((covariance - of.estimate.pose_cov).norm(), 1e-9 * of.estimate.pose_cov.norm());
         ++num_stated;
       }
-      if (covariance.diagonal().tail<2>().maxCoeff() > 0.3) continue;  // wraps around
+      if (covariance.diagonal().tail<2>().maxCoeff() > 0.2) continue;  // wraps around
       std::erase_if(of.posterior.components, [](const MotionComponent& c) { return !c.is_answer; });
       of.posterior.weight_of_none = 0.0;
       double total = 0.0;

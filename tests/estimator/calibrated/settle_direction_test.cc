@@ -44,15 +44,15 @@ TEST(SettleDirection, MovesAWrongAnswerOrDoubtsIt) {
   constexpr int kTrials = 30;
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     FarCase far = MakeFar(trial, 200.0, false);
-    const auto mass =
+    const auto direction =
         SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound, &far.answer);
-    if (!mass) continue;
+    if (!direction) continue;
     ++num_low;
-    EXPECT_GE(*mass, 0.0);
-    EXPECT_LE(*mass, 1.0 + 1e-12);
+    EXPECT_GE(direction->mass_within, 0.0);
+    EXPECT_LE(direction->mass_within, 1.0 + 1e-12);
     const bool is_right = AngleBetween(far.answer.mode.pose.t, far.random.pose_true.t) <= kBound;
     num_right += is_right;
-    num_sure_and_wrong += !is_right && *mass > 0.9;
+    num_sure_and_wrong += !is_right && direction->mass_within > 0.9;
   }
   EXPECT_GE(num_low, kTrials * 2 / 3);
   EXPECT_GE(num_right, num_low / 2);
@@ -67,12 +67,12 @@ TEST(SettleDirection, MovesToMoreMassAlone) {
     const RelativePose before = far.answer.mode.pose;
     const double mass_before =
         PosteriorOfDirection(far.random.problem, far.answer, before.t, kBound).mass_within;
-    const auto mass =
+    const auto direction =
         SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound, &far.answer);
-    if (!mass) continue;
+    if (!direction) continue;
     const bool has_moved = far.answer.mode.pose.t != before.t;
-    EXPECT_EQ(has_moved, *mass > mass_before) << trial;
-    EXPECT_GE(*mass, mass_before) << trial;
+    EXPECT_EQ(has_moved, direction->mass_within > mass_before) << trial;
+    EXPECT_GE(direction->mass_within, mass_before) << trial;
     (has_moved ? num_moved : num_stayed) += 1;
   }
   EXPECT_GE(num_moved, 3);
