@@ -13,6 +13,7 @@
 #include "estimator/calibrated/describe_answer.h"
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/failure_probability.h"
+#include "estimator/calibrated/judge_modes.h"
 #include "estimator/calibrated/mode_covariance.h"
 #include "estimator/calibrated/noise_choice.h"
 #include "estimator/calibrated/prior_check.h"
@@ -29,9 +30,6 @@
 namespace rcme {
 namespace {
 
-constexpr double kNegligibleWeight = 1e-5;
-// Modes below this weight use the Gauss-Newton Hessian: the observed one costs ten passes over the matches.
-constexpr double kSmallWeight = 0.01;
 constexpr double kNotableWeight = 1e-4;  // modes below this weight are not reported
 
 // The problem with its matches in random order; (*order)[i] is the original index of match i.
@@ -222,7 +220,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     for (size_t i = 0; i < modes.size(); ++i) {
       if (!(weights.of_modes[i] >= kNegligibleWeight)) continue;
       const Matrix5d curvature = InverseOfObserved(matches, modes[i].mode);
-      Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, of_matches.checked.check, prior);
+      Matrix5d covariance =
+          ComputeCovariance(problem, modes[i], curvature, of_matches.checked.check, prior, options_);
       if (of_matches.weak_direction && !weights.is_second_motion[i])
         covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
       beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i]});
@@ -261,8 +260,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
     const ModelCheck check = CheckModel(shuffled, modes, weights);
     std::vector<Matrix5d> spreads;
-    Verdict verdict = Judge(shuffled, matches, prior, modes, weights, weak_direction, check, rng,
-                            posterior != nullptr ? &spreads : nullptr);
+    Verdict verdict = JudgeModes({shuffled, matches, prior, modes, weights, weak_direction, check, options_},
+                                 rng, posterior != nullptr ? &spreads : nullptr);
     if (workings != nullptr) workings->checked = {check, verdict.by_modes};
     if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
     verdict.failure_probability += (1.0 - verdict.left_by_intrinsics) * (1.0 - verdict.failure_probability);
@@ -295,9 +294,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     return estimate;
   }
 
-  MotionBounds Bounds() const {
-    return {kRadPerDeg * options_.max_rotation_error_deg, kRadPerDeg * options_.max_direction_error_deg};
-  }
+  MotionBounds Bounds() const { return FailureBounds(options_); }
 
   // Steps 1 to 4.
   std::vector<ExplainedMode> FindExplained(const MotionProblem& problem, const MatchBlocks& matches,
@@ -345,95 +342,6 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       cells = ComputeDirectionCells(problem, modes[weights.answer], Bounds().direction_rad);
     return MakeMotionPosterior(estimate.cam2_from_cam1, Bounds(), estimate.failure_probability,
                                std::move(components), std::move(cells));
-  }
-
-  // Computes failure probability and covariance. The covariance is the second moment, about the answer, of
-  // the modes within the bounds or, if the direction is weak, of the directions within 90 deg of the
-  // answer's. `spreads`, if not null, receives one matrix per mode: its covariance within the bounds, the
-  // reach of its likelihood beyond them, zero if the weight is negligible.
-  Verdict Judge(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
-                const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
-                const std::optional<WeakDirection>& weak_direction, const ModelCheck& check,
-                RandomStream& rng, std::vector<Matrix5d>* spreads) const {
-    const ExplainedMode& answer = modes[weights.answer];
-    const RelativePose& pose = answer.mode.pose;
-    double within = 0.0, success = 0.0;
-    Verdict verdict;
-    if (spreads != nullptr) spreads->assign(modes.size(), Matrix5d::Zero());
-    for (size_t i = 0; i < modes.size(); ++i) {
-      const double weight = weights.of_modes[i];
-      const Mode& mode = modes[i].mode;
-      if (weight < kNegligibleWeight && i != weights.answer) continue;
-      const bool is_exact = weight > kSmallWeight || i == weights.answer;
-      const Matrix5d curvature = is_exact ? InverseOfObserved(matches, mode, prior) : mode.inverse_hessian;
-      // Along a direction that the noise seems to determine, the observed curvature is below that from the
-      // residuals' first derivatives. The score varies as the latter says: H_obs^-1 H H_obs^-1.
-      const Matrix5d reach = curvature * mode.hessian * curvature;
-      success += weight * (weak_direction && !weights.is_second_motion[i]
-                               ? weak_direction->mass_within
-                               : MassWithin(pose, Bounds(), mode.pose, reach, rng));
-      if (spreads != nullptr)
-        (*spreads)[i] = reach + IntrinsicsCovariance(problem, options_, mode, curvature);
-      if (i == weights.answer && !options_.calibration.IsNone()) {
-        verdict.left_by_intrinsics = LeftByIntrinsics(
-            problem, mode, curvature, weak_direction ? Matrix5d(Matrix5d::Zero()) : reach, rng);
-      }
-      if (!IsWithin(pose, Bounds(), mode.pose)) continue;
-      const Vector5d away = LocalCoordinates(pose, mode.pose);
-      const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check, prior);
-      if (spreads != nullptr) (*spreads)[i] = covariance;
-      const Matrix5d to_answer = TransportTangent(mode.pose, pose);
-      verdict.pose_cov += weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
-      within += weight;
-    }
-    verdict.pose_cov /= within;
-    if (weak_direction) verdict.pose_cov = CovarianceIfWeak(problem, answer.mode, *weak_direction, check);
-    verdict.mass_beyond = std::max(within - success, 0.0);
-    verdict.by_modes = verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
-    return verdict;
-  }
-
-  Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mode,
-                             const Matrix5d& curvature, const ModelCheck& check,
-                             const MixturePrior& prior) const {
-    Matrix5d of_prior = Matrix5d::Zero();  // the inverse information includes the prior
-    Matrix5d of_matches = options_.covariance == CovarianceKind::kInformation
-                              ? mode.mode.inverse_hessian
-                              : SandwichCovariance(mode.mode, mode.explanation, curvature);
-    if (prior.motion != nullptr && options_.covariance != CovarianceKind::kInformation)
-      of_prior = PriorCovariance(mode.mode, prior, curvature);
-    if (options_.covariance == CovarianceKind::kRobust)
-      return of_matches + of_prior;  // MakeCovarianceRobust adds the shared errors
-    of_matches *= CheckFactor(check);
-    return BoundByUniformMotion(of_matches + of_prior +
-                                IntrinsicsCovariance(problem, options_, mode.mode, curvature));
-  }
-
-  // How much of a mode's probability within the bounds is left if the intrinsics are uncertain, at least
-  // 1e-6. `reach`: its covariance if they are exact.
-  double LeftByIntrinsics(const MotionProblem& problem, const Mode& mode, const Matrix5d& curvature,
-                          const Matrix5d& reach, RandomStream& rng) const {
-    const Matrix5d of_intrinsics = IntrinsicsCovariance(problem, options_, mode, curvature);
-    RandomStream same = rng;
-    const double exact = MassWithin(mode.pose, Bounds(), mode.pose, reach, same);
-    const double uncertain = MassWithin(mode.pose, Bounds(), mode.pose, reach + of_intrinsics, rng);
-    return std::clamp(uncertain / std::max(exact, 1e-6), 1e-6, 1.0);
-  }
-
-  // The covariance of an answer whose direction is weak. Near the optimum the likelihood does not show how
-  // far the direction may be away: without parallax it seems well determined (direction_posterior.h).
-  Matrix5d CovarianceIfWeak(const MotionProblem& problem, const Mode& answer, const WeakDirection& direction,
-                            const ModelCheck& check) const {
-    if (options_.covariance == CovarianceKind::kRobust) return direction.covariance;
-    return BoundByUniformMotion(CheckFactor(check) * direction.covariance +
-                                IntrinsicsCovariance(problem, options_, answer, answer.inverse_hessian));
-  }
-
-  // The factor by which the check widens the covariance.
-  double CheckFactor(const ModelCheck& check) const {
-    const bool is_checked =
-        options_.covariance == CovarianceKind::kSandwich && options_.leave_out != CalibratedStep::kModelCheck;
-    return is_checked ? CovarianceFactor(check) : 1.0;
   }
 
   CalibratedOptions options_;

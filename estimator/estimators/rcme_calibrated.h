@@ -17,6 +17,7 @@
 //                    calibrated/model_check.h          how far the matches fit the assumptions
 //                    calibrated/checked_probability.h  corrects P(fail) and covariance by this check
 //   8  covariance    calibrated/mode_covariance.h      of the modes within the bounds
+//                    calibrated/judge_modes.h          steps 7 and 8 together
 //   9  posterior     calibrated/motion_posterior.h     all of this as one distribution, on request
 #pragma once
 

@@ -1,0 +1,106 @@
+#include "estimator/calibrated/judge_modes.h"
+
+#include <algorithm>
+
+#include "estimator/calibrated/checked_probability.h"
+#include "estimator/calibrated/failure_probability.h"
+#include "stats/constants.h"
+
+namespace rcme {
+namespace {
+
+// Modes below this weight use the Gauss-Newton Hessian: the observed one costs ten passes over the matches.
+constexpr double kSmallWeight = 0.01;
+
+// The factor by which the check widens the covariance.
+double CheckFactor(const ModelCheck& check, const CalibratedOptions& options) {
+  const bool is_checked =
+      options.covariance == CovarianceKind::kSandwich && options.leave_out != CalibratedStep::kModelCheck;
+  return is_checked ? CovarianceFactor(check) : 1.0;
+}
+
+// How much of the probability within the bounds is left if the intrinsics are uncertain, at least 1e-6.
+// `reach`: the covariance of the answer if they are exact.
+double LeftByIntrinsics(const JudgedModes& judged, const Mode& mode, const Matrix5d& of_intrinsics,
+                        const Matrix5d& reach, RandomStream& rng) {
+  if (judged.options.calibration.IsNone()) return 1.0;
+  const MotionBounds bounds = FailureBounds(judged.options);
+  RandomStream same = rng;
+  const double exact = MassWithin(mode.pose, bounds, mode.pose, reach, same);
+  const double uncertain = MassWithin(mode.pose, bounds, mode.pose, reach + of_intrinsics, rng);
+  return std::clamp(uncertain / std::max(exact, 1e-6), 1e-6, 1.0);
+}
+
+// The covariance of an answer whose direction is weak. Near the optimum the likelihood does not show how far
+// the direction may be away: without parallax it seems well determined (direction_posterior.h).
+Matrix5d CovarianceIfWeak(const JudgedModes& judged, const Mode& answer) {
+  const Matrix5d& covariance = judged.weak_direction->covariance;
+  if (judged.options.covariance == CovarianceKind::kRobust) return covariance;
+  return BoundByUniformMotion(
+      CheckFactor(judged.check, judged.options) * covariance +
+      IntrinsicsCovariance(judged.problem, judged.options, answer, answer.inverse_hessian));
+}
+
+}  // namespace
+
+MotionBounds FailureBounds(const CalibratedOptions& options) {
+  return {kRadPerDeg * options.max_rotation_error_deg, kRadPerDeg * options.max_direction_error_deg};
+}
+
+Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads) {
+  const auto& [problem, matches, prior, modes, weights, weak_direction, check, options] = judged;
+  const MotionBounds bounds = FailureBounds(options);
+  const Mode& answer = modes[weights.answer].mode;
+  double within = 0.0, success = 0.0;
+  Verdict verdict;
+  if (spreads != nullptr) spreads->assign(modes.size(), Matrix5d::Zero());
+  for (size_t i = 0; i < modes.size(); ++i) {
+    const double weight = weights.of_modes[i];
+    const Mode& mode = modes[i].mode;
+    if (weight < kNegligibleWeight && i != weights.answer) continue;
+    const bool is_exact = weight > kSmallWeight || i == weights.answer;
+    const Matrix5d curvature = is_exact ? InverseOfObserved(matches, mode, prior) : mode.inverse_hessian;
+    // Along a direction that the noise seems to determine, the observed curvature is below that from the
+    // residuals' first derivatives. The score varies as the latter says: H_obs^-1 H H_obs^-1.
+    const Matrix5d reach = curvature * mode.hessian * curvature;
+    success += weight * (weak_direction && !weights.is_second_motion[i]
+                             ? weak_direction->mass_within
+                             : MassWithin(answer.pose, bounds, mode.pose, reach, rng));
+    const Matrix5d of_intrinsics = IntrinsicsCovariance(problem, options, mode, curvature);
+    if (i == weights.answer) {
+      const Matrix5d exact = weak_direction ? Matrix5d(Matrix5d::Zero()) : reach;
+      verdict.left_by_intrinsics = LeftByIntrinsics(judged, mode, of_intrinsics, exact, rng);
+    }
+    if (spreads != nullptr) (*spreads)[i] = reach + of_intrinsics;
+    if (!IsWithin(answer.pose, bounds, mode.pose)) continue;
+    const Vector5d away = LocalCoordinates(answer.pose, mode.pose);
+    const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check, prior, options);
+    if (spreads != nullptr) (*spreads)[i] = covariance;
+    const Matrix5d to_answer = TransportTangent(mode.pose, answer.pose);
+    verdict.pose_cov += weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
+    within += weight;
+  }
+  verdict.pose_cov /= within;
+  if (weak_direction) verdict.pose_cov = CovarianceIfWeak(judged, answer);
+  verdict.mass_beyond = std::max(within - success, 0.0);
+  verdict.by_modes = verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
+  return verdict;
+}
+
+Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mode, const Matrix5d& curvature,
+                           const ModelCheck& check, const MixturePrior& prior,
+                           const CalibratedOptions& options) {
+  Matrix5d of_prior = Matrix5d::Zero();  // the inverse information includes the prior
+  Matrix5d of_matches = options.covariance == CovarianceKind::kInformation
+                            ? mode.mode.inverse_hessian
+                            : SandwichCovariance(mode.mode, mode.explanation, curvature);
+  if (prior.motion != nullptr && options.covariance != CovarianceKind::kInformation)
+    of_prior = PriorCovariance(mode.mode, prior, curvature);
+  if (options.covariance == CovarianceKind::kRobust)
+    return of_matches + of_prior;  // MakeCovarianceRobust adds the shared errors
+  of_matches *= CheckFactor(check, options);
+  return BoundByUniformMotion(of_matches + of_prior +
+                              IntrinsicsCovariance(problem, options, mode.mode, curvature));
+}
+
+}  // namespace rcme

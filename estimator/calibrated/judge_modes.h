@@ -1,0 +1,43 @@
+// Steps 7 and 8 of rcme_calibrated: the probability of failure and the covariance of the answer, from all
+// modes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "estimator/calibrated/mode_covariance.h"
+#include "estimator/calibrated/model_check.h"
+#include "estimator/calibrated/settle_direction.h"
+#include "estimator/calibrated/verdict.h"
+
+namespace rcme {
+
+inline constexpr double kNegligibleWeight = 1e-5;  // of a mode that neither judges nor joins the posterior
+
+// What a verdict is of. References: they must outlive the call.
+struct JudgedModes {
+  const MotionProblem& problem;
+  const MatchBlocks& matches;
+  const MixturePrior& prior;
+  const std::vector<ExplainedMode>& modes;
+  const ModeWeights& weights;
+  const std::optional<WeakDirection>& weak_direction;
+  const ModelCheck& check;
+  const CalibratedOptions& options;
+};
+
+MotionBounds FailureBounds(const CalibratedOptions& options);
+
+// The verdict before the model check corrects the probability. The covariance is the second moment, about the
+// answer, of the modes within the bounds or, if the direction is weak, of the directions within 90 deg of the
+// answer's. `spreads`, if not null, receives one matrix per mode: its covariance within the bounds, the reach
+// of its likelihood beyond them, zero if the weight is negligible.
+Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads);
+
+// The covariance of a mode by the option `covariance`, widened by the check and by uncertain intrinsics.
+// `curvature`: InverseOfObserved.
+Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mode, const Matrix5d& curvature,
+                           const ModelCheck& check, const MixturePrior& prior,
+                           const CalibratedOptions& options);
+
+}  // namespace rcme
