@@ -25,7 +25,8 @@ void Undistort(Camera& camera, Eigen::Vector2d Correspondence::*x_px, double k1,
 Parameter FocalParameter(double* focal_sd) {
   return Parameter::Real(
       "focal_sd", focal_sd, {0.0, 0.5}, "",
-      "relative standard deviation of the focal lengths; its effect is added to the covariance");
+      "relative standard deviation of the focal lengths; widens the covariance and, in rcme_calibrated, raises "
+      "the probability of failure");
 }
 
 Parameter PrincipalPointParameter(double* principal_point_sd_px) {
