@@ -33,12 +33,10 @@ double LeftByIntrinsics(const JudgedModes& judged, const Mode& mode, const Matri
 
 // The covariance of an answer whose direction is weak. Near the optimum the likelihood does not show how far
 // the direction may be away: without parallax it seems well determined (direction_posterior.h).
-Matrix5d CovarianceIfWeak(const JudgedModes& judged, const Mode& answer) {
+Matrix5d CovarianceIfWeak(const JudgedModes& judged, const Matrix5d& of_intrinsics) {
   const Matrix5d& covariance = judged.weak_direction->covariance;
   if (judged.options.covariance == CovarianceKind::kRobust) return covariance;
-  return BoundByUniformMotion(
-      CheckFactor(judged.check, judged.options) * covariance +
-      IntrinsicsCovariance(judged.problem, judged.options, answer, answer.inverse_hessian));
+  return BoundByUniformMotion(CheckFactor(judged.check, judged.options) * covariance + of_intrinsics);
 }
 
 }  // namespace
@@ -52,6 +50,7 @@ Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Mat
   const MotionBounds bounds = FailureBounds(options);
   const Mode& answer = modes[weights.answer].mode;
   double within = 0.0, success = 0.0;
+  Matrix5d of_weak = Matrix5d::Zero();
   Verdict verdict;
   if (spreads != nullptr) spreads->assign(modes.size(), Matrix5d::Zero());
   for (size_t i = 0; i < modes.size(); ++i) {
@@ -70,6 +69,7 @@ Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Mat
     if (i == weights.answer) {
       const Matrix5d exact = weak_direction ? Matrix5d(Matrix5d::Zero()) : reach;
       verdict.left_by_intrinsics = LeftByIntrinsics(judged, mode, of_intrinsics, exact, rng);
+      if (weak_direction) of_weak = CovarianceIfWeak(judged, of_intrinsics);
     }
     if (spreads != nullptr) (*spreads)[i] = reach + of_intrinsics;
     if (!IsWithin(answer.pose, bounds, mode.pose)) continue;
@@ -81,7 +81,7 @@ Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Mat
     within += weight;
   }
   verdict.pose_cov /= within;
-  if (weak_direction) verdict.pose_cov = CovarianceIfWeak(judged, answer);
+  if (weak_direction) verdict.pose_cov = of_weak;
   verdict.mass_beyond = std::max(within - success, 0.0);
   verdict.by_modes = verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
   return verdict;
