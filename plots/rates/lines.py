@@ -1,16 +1,18 @@
 """Rates and scores against one factor: a line with an interval band per estimator, or marks with bars where levels are words."""
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from common import direct_labels, style
+from common import direct_labels, sheet, style
 from common.command_line import PlotError
 from common.factor_axis import FactorAxis, abreast, rows_that_vary, split_into_panel_rows
+from rates import coinciding
 from rates.selection import (DRAWN_KINDS, NUMBER_KINDS, check_factor, check_no_repetition, fixed_levels, interval_in_words,
                              kind_in_words, n_in_words, select_rates, title_of, with_sharpness)
 
+SHARED = "0.35"  # a band that several estimators have
 STATED_LEVELS = {"nees_coverage": 0.95}  # what a quantity is where the covariance holds
 LEAST = {"sd_over_crb": 1}  # below it no covariance is right
 SMALL = 0.02  # where half of the rates that are not zero lie below it, a linear axis shows them all as nothing
@@ -27,14 +29,47 @@ class Choices:
     names: tuple = None
 
 
+def draw_band(axes, x, lower, upper, color, zorder):
+    axes.fill_between(x, lower, upper, color=color, alpha=0.13, linewidth=0, zorder=zorder - 1)
+
+
 def draw_line(axes, points, look):
     """One estimator's line with its interval band; both break where a value is missing."""
-    axes.fill_between(points.x, points.lower, points.upper, color=look.color, alpha=0.13, linewidth=0, zorder=look.zorder - 1)
+    draw_band(axes, points.x, points.lower, points.upper, look.color, look.zorder)
     line, = axes.plot(points.x, points.value, **look.line(), clip_on=False, zorder=look.zorder)
-    line.set_in_layout(points.value.notna().any())  # an empty one would confuse the layout
+    finish_line(axes, points, look, line)
+
+
+def finish_line(axes, points, look, line):
+    """The intervals of points that have no neighbours."""
+    line.set_in_layout(line.get_xydata().size > 0 and points.value.notna().any())  # an empty one would confuse the layout
     gap = points.value.isna()
     alone = points[~gap & gap.shift(1, fill_value=True) & gap.shift(-1, fill_value=True)]  # too narrow for a band
     axes.vlines(alone.x, alone.lower, alone.upper, color=look.color, alpha=0.5, linewidth=1, zorder=2)
+
+
+def draw_lines(axes, points, looks):
+    """All estimators' lines. Where some coincide their dashes and marks take turns; a band that several have is grey."""
+    lines, bands = (coinciding.groups_of(points, looks, columns) for columns in (["value"], ["lower", "upper"]))
+    taken, shared = coinciding.turns_of(points, lines)
+    for name, look in looks.items():
+        own = points[points.estimator == name]
+        steps = [step for step in coinciding.steps_of(own, ["lower", "upper"]) if name not in bands.get(step, ())]
+        draw_band(axes, *(coinciding.joined(steps) or ([], [], [])), look.color, look.zorder)
+        steps = coinciding.steps_of(own, ["value"])
+        apart = [step for step in steps if name not in lines.get(step, ())]
+        if len(apart) == len(steps):
+            line, = axes.plot(own.x, own.value, **look.line(), clip_on=False, zorder=look.zorder)
+        else:
+            line, = axes.plot(*(coinciding.joined(apart) or ([], [])), **look.line(), markevery=[], clip_on=False, zorder=look.zorder)
+            marked = own[[(x, name) not in shared or (x, name) in taken for x in own.x]]
+            marks, = axes.plot(marked.x, marked.value, **{**look.line(), "linestyle": "none", "label": "_marks"}, clip_on=False,
+                               zorder=look.zorder + 0.2)
+            marks.set_in_layout(marked.value.notna().any())
+        finish_line(axes, own, look, line)
+    coinciding.draw_in_turns(axes, lines, looks)
+    if bands:
+        draw_band(axes, *coinciding.joined(sorted(bands)), SHARED, 3)
 
 
 def draw_abreast(axes, points, look, aside):
@@ -88,12 +123,10 @@ def draw_panel(axes, points, looks, axis, room, log_y, floor=None):
         else:
             draw_zeros(axes, points[is_zero], looks, floor)
         points = points.assign(value=points.value.mask(is_zero), lower=points.lower.mask(is_zero))
-    for position, (estimator, look) in enumerate(looks.items()):
-        of_estimator = points[points.estimator == estimator]
-        if axis.is_numeric:
-            draw_line(axes, of_estimator, look)
-        else:
-            draw_abreast(axes, of_estimator, look, abreast(axes, position, len(looks), room))
+    if axis.is_numeric:
+        draw_lines(axes, points, looks)
+    for position, (estimator, look) in enumerate([] if axis.is_numeric else looks.items()):
+        draw_abreast(axes, points[points.estimator == estimator], look, abreast(axes, position, len(looks), room))
     for quantity in set(points.quantity) & {*STATED_LEVELS, *LEAST}:
         axes.axhline((STATED_LEVELS | LEAST)[quantity], **STATED)
     if points.value.isna().all():
@@ -134,13 +167,26 @@ def rates_of(rows):
     return rows[rows.kind.isin(DRAWN_KINDS)]
 
 
-def caption_of(rows, other_factors, is_numeric, zeros, left_out):
+def looks_of(estimators, is_numeric):
+    """Lines of one width, but for those that --highlight chooses."""
+    if is_numeric and sheet.current().highlight:
+        return style.looks_of(estimators)
+    return {name: replace(look, line_width=1.3) for name, look in style.equal_looks_of(estimators).items()}
+
+
+def coincide(parts, looks, quantities):
+    """Whether lines of two estimators lie on each other in a panel."""
+    return any(coinciding.groups_of(part[part.quantity == quantity].sort_values("x", kind="stable"), looks, ["value"])
+               for _, part in parts for quantity in quantities)
+
+
+def caption_of(rows, other_factors, is_numeric, notes, left_out):
     rates = rates_of(rows)
     kinds = ([interval_in_words(rates)] if len(rates) else []) + [
         words for kind, words in NUMBER_KINDS.items() if (rows.kind == kind).any()]
     return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, "point"),
                       f"{'bands' if is_numeric else 'bars'}: {', '.join(kinds)} intervals"] +
-                     ([zeros] if zeros else []) +
+                     notes +
                      [f"dashed: the stated level, {100 * level:g} %" for quantity, level in STATED_LEVELS.items()
                       if quantity in set(rows.quantity)] +
                      [f"dashed: {least}, below which no covariance is right" for quantity, least in LEAST.items()
@@ -181,7 +227,7 @@ def draw(summary, x, quantities, log_y=None, choices=Choices()):
     parts = split_into_panel_rows(summary.path, rows, other_factors)
     for _, part in parts:
         check_no_repetition(summary.path, part, ["x", "estimator", "quantity"], lambda row: f"x = {row[x]}")
-    looks = (style.looks_of if axis.is_numeric else style.equal_looks_of)(list(dict.fromkeys(rows.estimator)))
+    looks = looks_of(list(dict.fromkeys(rows.estimator)), axis.is_numeric)
     figure, panels = style.new_figure(len(parts), len(quantities), axis.height_of_names(len(quantities)), may_fold=True)
     letters = style.letters(panels.size)
     drawn = {quantity: rows[rows.quantity == quantity] for quantity in quantities}
@@ -206,9 +252,12 @@ def draw(summary, x, quantities, log_y=None, choices=Choices()):
     has_zeros = any(is_log[quantity] and (drawn[quantity].value == 0).any() for quantity in quantities)
     handles = [handle for handle in panels[0, 0].get_legend_handles_labels()[0]
                if handle.get_label() in {look.label for look in named.values()}]
-    zeros = "arrows: rate zero, at its upper bound" if choices.floor is None else "open marks: rate zero"
+    notes = [note for note, is_needed in [
+        ("arrows: rate zero, at its upper bound" if choices.floor is None else "open marks: rate zero", has_zeros),
+        ("coinciding lines alternate, their band is grey",
+         axis.is_numeric and coincide(parts, looks, quantities))] if is_needed]
     style.add_legend_and_caption(figure, [] if has_names else handles,
-                                 caption_of(rows, other_factors, axis.is_numeric, zeros if has_zeros else "", left_out))
+                                 caption_of(rows, other_factors, axis.is_numeric, notes, left_out))
     for axes, (_, part) in zip(panels[:, 0], parts if has_names else []):
         direct_labels.add(axes, ends_of(part[part.quantity == quantities[0]], named, is_log[quantities[0]]))
     return figure

@@ -1,7 +1,9 @@
 """Every command of every page runs as it stands there, in the order of the page, but for fewer trials; RCME names the program.
+Blocks called `text` are compared with what the command before them prints, line by line and number by number.
 
     RCME=build/release/bin/rcme python3 tests/docs/commands_test.py [PAGE]"""
 
+import difflib
 import os
 import pathlib
 import re
@@ -9,7 +11,6 @@ import shlex
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 import pages
@@ -58,18 +59,27 @@ SHORTER = [
     (r"^rcme audit --budget full (--shard|--merge)", r"rcme audit --only sample_test.size.joint \1"),
     (r"^rcme audit --out", "rcme audit --only sampson.determinant --out"),
     (r"^rcme audit (\S+yaml) (.*?)(--only estimator )?--out", r"rcme audit \1 \2--only inlier.true_pose.rank_aware --set outlier_ratio=0 --out"),
-    (r"^rcme ask (.*)--within 1m", r"rcme ask \1--trials 10"),
-    (r"^rcme integrity (.*)--trials \d+", r"rcme integrity \1--trials 4"),
+    (r"^rcme integrity (.*)--trials \d{4,}", r"rcme integrity \1--trials 4"),
     (r"^rcme solve (.*)$", r"rcme solve \1 --set num_matches=60 --trials 100 --estimator standard --estimator rcme_as_printed"),
     (r"^rcme map (.*)$", r"rcme map \1 --trials 4"),
     (r"^rcme transfer (\S*transfer_mu.yaml)", r"rcme transfer \1 --set scene=uniform_volume --set num_matches=60"),
-    (r"^rcme (tune|transfer) (.*)$", r"rcme \1 \2 --tune explore=10 --tune calibrate=40 --tune verify=5 --tune at_most=0.9"),
+    (r"^rcme (tune|transfer) (.*)$", r"rcme \1 \2 --tune explore=5 --tune calibrate=20 --tune verify=5 --tune at_most=0.9"),
     (r"^rcme rare (.*)$", r"rcme rare \1 --set sigma_px=0.65 --particles 20 --replicates 4 --moves 1"),
     (r"^rcme model-choice (.*)$", r"rcme model-choice \1 --trials 1 --set outlier_ratio=0.2"),
     (r"^rcme budget (.*)$", r"rcme budget \1 --calls 1 --set outlier_ratio=0.3"),
-    (r"^rcme validate (.*--trials )\d+ --twins 1 ", r"rcme validate \g<1>3 "),
+    (r"^rcme validate (.*)--images 10 --loops 10 --trials \d+ --twins 1 ", r"rcme validate \1--images 5 --loops 5 --trials 3 "),
     (r"^rcme (validate|twin) (.*)$", r"rcme \1 \2 --twins 1"),
 ]
+
+# What a machine decides, and what it is compared as: durations (and which call took longest), and the time of a lock.
+# In a block with durations line breaks are not compared, because they move with the width of a number.
+DURATIONS = [(r"slowest call \S+ ms \([^)]*\)", "slowest call # ms"), (r"\s+[\d.]+\s+ms\b", " # ms")]
+TIMES = [(r"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\dZ", "#")]
+
+# Output that the test cannot make, by page and first line: the command that makes it.
+MADE_ELSEWHERE = {
+    ("docs/validate.md", "kittiraw0928_stereo: "): "rcme validate PAIRS --out validation, on real pairs that are not in the repository",
+}
 
 # Commands that draw figures beside their result: of those that many pages have, the figures are drawn on one page alone.
 DRAWS_ALSO, DRAWN = r"rcme (audit|tune) ", "examples/gallery/README.md"
@@ -86,6 +96,27 @@ def as_run(command):
     if re.search(r"--shard 3/64", command):
         return [re.sub(r"parts/3\.", f"parts/{i}.", re.sub(r"--shard 3/64", f"--shard {i}/2", command)) for i in (1, 2)]
     return [command]
+
+
+def cpu_seconds():
+    times = os.times()
+    return times.children_user + times.children_system
+
+
+def is_made_elsewhere(page, shown):
+    return any(page == each and shown.text.startswith(first) for each, first in MADE_ELSEWHERE)
+
+
+def substitute(rules, text):
+    for pattern, replacement in rules:
+        text = re.sub(pattern, replacement, text)
+    return text
+
+
+def comparable(text, has_durations):
+    """The lines of a text; its words if there are durations."""
+    text = substitute(DURATIONS + TIMES, text)
+    return text.split() if has_durations else [line.rstrip() for line in text.strip("\n").splitlines()]
 
 
 class Commands(unittest.TestCase):
@@ -114,31 +145,47 @@ class Commands(unittest.TestCase):
             if isinstance(one, pages.ShownFile):
                 (folder / one.name).write_text(one.text)
             elif isinstance(one, pages.ShownOutput):
-                self.check_output(f"{page}:{one.line}", one.words, output)
+                if not is_made_elsewhere(page, one):
+                    self.check_output(f"{page}:{one.line}", one.text, output)
             elif not is_elsewhere(one.text):
                 for command in as_run(one.text):
                     draws = page == DRAWN or not re.match(DRAWS_ALSO, command)
                     output = self.run_one(f"{page}:{one.line}", command, folder, environment if draws else without_figures)
 
     def run_one(self, where, command, folder, environment):
-        start = time.monotonic()
+        start = cpu_seconds()
         done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment, capture_output=True, text=True)
-        print(f"{time.monotonic() - start:6.1f} s  {where}: {command}", flush=True)
+        print(f"{cpu_seconds() - start:6.1f} CPU s  {where}: {command}", flush=True)
         # 75: a share, or a merge that still lacks trials, as the page says.
         self.assertIn(done.returncode, (0, 75) if re.search("--shard|--round", command) else (0, 3) if command.startswith("rcme integrity") else (0,), f"{where}: {command}\n{done.stdout}{done.stderr}")
         return done.stdout
 
-    def check_output(self, where, words, output):
-        """Lines that begin with these words are there, in this order."""
-        begins = iter([line.split()[0] for line in output.splitlines() if line.strip()])
-        for word in words:
-            self.assertTrue(any(begin == word for begin in begins), f"{where}: no line begins with {word!r} here in\n{output}")
+    def check_output(self, where, shown, output):
+        """Finds each part of the block between its "..." in the output, in this order."""
+        has_durations = substitute(DURATIONS, shown) != shown
+        whole, begin = comparable(output, has_durations), 0
+        for part in re.split(r"^\s*\.\.\.$", shown, flags=re.MULTILINE):
+            part = comparable(part, has_durations)
+            found = [i for i in range(begin, len(whole) - len(part) + 1) if whole[i:i + len(part)] == part]
+            if not found:
+                self.fail(f"{where}: the page shows (-) what the command does not print (+)\n" + "\n".join(difflib.unified_diff(part, whole, lineterm="")))
+            begin = found[0] + len(part)
 
     def test_every_rule_is_needed(self):
         texts = [one.text for page in PAGES for one in pages.contents((ROOT / page).read_text())
                  if isinstance(one, pages.Command)]
         for pattern in ELSEWHERE:
             self.assertTrue(any(re.match(pattern, text) for text in texts), pattern)
+        outputs = [(page, one) for page in PAGES for one in pages.contents((ROOT / page).read_text()) if isinstance(one, pages.ShownOutput)]
+        for pattern, _ in DURATIONS + TIMES:
+            self.assertTrue(any(re.search(pattern, one.text) for _, one in outputs), pattern)
+        self.assertEqual(len(MADE_ELSEWHERE), sum(is_made_elsewhere(page, one) for page, one in outputs))
+
+    def test_every_table_is_called_text(self):
+        for page in PAGES:
+            for line, language, lines, _ in pages.code_blocks(pages.GENERATED.sub("", (ROOT / page).read_text())):
+                if language != "text":
+                    self.assertFalse(any(re.fullmatch(r"\s*-{3,}(\s+-{3,})+\s*", each) for each in lines), f"{page}: {lines}")
 
 
 def add_test(page):

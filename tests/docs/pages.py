@@ -26,11 +26,10 @@ class ShownFile:
 
 @dataclasses.dataclass(frozen=True)
 class ShownOutput:
-    """What the command before it prints: the word that each line begins with, but for lines that go on with the one before;
-    its numbers are those of another problem."""
+    """What the command before it prints; "..." stands for lines that are left out."""
 
     line: int
-    words: tuple
+    text: str
 
 
 def code_blocks(text):
@@ -65,7 +64,7 @@ def contents(text):
             shown.append(ShownFile(begin, name[1], "\n".join(lines) + "\n"))
             continue
         if language == "text":
-            shown.append(ShownOutput(begin, tuple(line.split()[0] for line in lines if line.strip() and not line.startswith("    "))))
+            shown.append(ShownOutput(begin, "\n".join(lines)))
         if language not in ("", "sh", "bash"):
             continue
         number = 0

@@ -264,6 +264,48 @@ demo,b,0.0,1,standard,timed_out,rate,0,0,0.0094,,390
 """
 
 
+# From 0 to 0.4 all three are at zero, then two stay together.
+ALIKE = HEADER + "".join(f"""
+demo,a,0.0,1,{name},failure,rate,0,0,0.02,,400
+demo,b,0.4,1,{name},failure,rate,0,0,0.02,,400
+demo,c,0.8,1,{name},failure,rate,{end},0.01,{upper},,400""" for name, end, upper in (
+    ("standard", 0.3, 0.5), ("mine", 0.1, 0.2), ("other", 0.1, 0.2))) + "\n"
+
+
+class LinesThatCoincide(FailureRateTest):
+    def setUp(self):
+        super().setUp()
+        self.figure = self.draw(ALIKE, quantities=["failure"])
+        self.axes = self.figure.axes[0]
+
+    def test_their_dashes_fill_the_line_together(self):
+        dashes = {}
+        for line in self.axes.lines:
+            if line.get_label() == "_shared":
+                dashes.setdefault(tuple(map(tuple, line.get_xydata())), []).append(line._unscaled_dash_pattern)
+        self.assertEqual(set(dashes), {((0.0, 0), (0.4, 0)), ((0.4, 0), (0.8, 0.1))})
+        for patterns in dashes.values():
+            whole = {offset + on for offset, (on, off) in patterns}
+            self.assertEqual(len(whole), len(patterns))
+            for _, (on, off) in patterns:
+                self.assertAlmostEqual(len(patterns) * on, on + off)
+        self.assertEqual(line_of(self.axes, "Standard"), [(0.4, 0), (0.8, 0.3)])
+        self.assertIn("coinciding lines alternate", self.figure.texts[0].get_text().replace("\n", " "))
+
+    def test_each_point_has_the_mark_of_one(self):
+        lines = [line for line in self.axes.lines if line.get_label() == "_marks"]
+        marks = [(line.get_marker(), tuple(point)) for line in lines for point in line.get_xydata()]
+        self.assertEqual(len({point for _, point in marks}), len(marks))
+        self.assertEqual({point for _, point in marks}, {(0.0, 0), (0.4, 0), (0.8, 0.1), (0.8, 0.3)})
+        self.assertEqual(len({marker for marker, _ in marks}), 3)
+
+    def test_a_band_of_several_is_drawn_once(self):
+        bands = [band for band in self.axes.collections if isinstance(band, PolyCollection)]
+        pieces = [tuple(map(float, band.get_facecolor()[0])) for band in bands for _ in band.get_paths()]
+        self.assertEqual(len(pieces), 2)  # the one of Standard, and one of two parts that meet
+        self.assertEqual(len(set(pieces)), 2)
+
+
 class WhatAReviewerLooksFor(FailureRateTest):
     def test_names_stand_beside_the_lines_of_one_panel_in_their_colours(self):
         figure = self.draw(quantities=["failure"])
