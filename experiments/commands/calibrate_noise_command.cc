@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
@@ -18,7 +19,7 @@ namespace {
 struct CalibrateNoiseArguments {
   std::string pairs, out, scene, format = "table";
   EstimatorChoice estimator;
-  double sigma_px = 0.5;
+  std::optional<double> sigma_px;  // nothing: that of the files
   std::int64_t seed = 1;
 };
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
@@ -20,7 +21,7 @@ struct CheckTruthArguments {
   std::vector<std::string> folders;
   std::string out, bounds = "3,15", format = "table";
   EstimatorChoice estimator;
-  double sigma_px = 0.5;
+  std::optional<double> sigma_px;  // nothing: that of the files
   std::int64_t seed = 1;
   int threads = 0;
 };

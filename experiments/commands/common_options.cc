@@ -22,12 +22,13 @@ CLI::Option* AddSeedOption(CLI::App* command, std::int64_t* seed, const std::str
       ->capture_default_str();
 }
 
-CLI::Option* AddSigmaOption(CLI::App* command, double* sigma_px) {
+CLI::Option* AddSigmaOption(CLI::App* command, std::optional<double>* sigma_px) {
   return command
-      ->add_option("--sigma", *sigma_px,
-                   "standard deviation of the noise per coordinate that the estimator assumes, px")
-      ->transform(NumberIn({1e-9, 1000.0}))
-      ->capture_default_str();
+      ->add_option(
+          "--sigma", *sigma_px,
+          "standard deviation of the noise per coordinate that the estimator assumes, px; default: the "
+          "header '# sigma_px' of a match file, otherwise 0.5")
+      ->transform(NumberIn({1e-9, 1000.0}));
 }
 
 }  // namespace rcme

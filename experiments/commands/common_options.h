@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace rcme {
@@ -19,6 +20,6 @@ CLI::Option* AddSeedOption(CLI::App* command, std::int64_t* seed,
                            const std::string& of = "the random samples");
 
 // --sigma in px, with its default in the help: the noise that an estimator assumes.
-CLI::Option* AddSigmaOption(CLI::App* command, double* sigma_px);
+CLI::Option* AddSigmaOption(CLI::App* command, std::optional<double>* sigma_px);
 
 }  // namespace rcme

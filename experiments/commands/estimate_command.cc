@@ -40,8 +40,8 @@ struct EstimateArguments {
   std::vector<std::string> matches;  // files and folders, or kStandardInput
   std::vector<std::string> intrinsics, cameras;
   EstimatorChoice estimator;
-  double sigma_px = 0.5;
-  std::string noise;  // empty: no noise file
+  std::optional<double> sigma_px;  // nothing: that of the files
+  std::string noise;               // empty: no noise file
   std::int64_t seed = 1;
   std::vector<std::string> bounds;
   std::optional<double> integrity_risk;  // nothing: no protection levels are asked for

@@ -85,6 +85,7 @@ std::string ExportTrial(const StudyPlan& plan, const Condition& condition, std::
   MatchFile file;
   file.scene = NameOfCondition(plan, condition);
   file.matches = data.problem.matches;
+  file.assumed_sigma_px = data.problem.sigma_px;
   for (const double scale : data.problem.noise_scale) file.sigma_px.push_back(scale * data.problem.sigma_px);
   file.camera1 = data.problem.camera1;
   file.camera2 = data.problem.camera2;

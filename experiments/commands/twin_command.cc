@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "experiments/commands/common_options.h"
@@ -27,8 +28,8 @@ namespace {
 struct TwinArguments {
   std::string pairs, out, max_time;
   EstimatorChoice estimator;
-  std::string scene;  // empty: all
-  double sigma_px = 0.5;
+  std::string scene;               // empty: all
+  std::optional<double> sigma_px;  // nothing: that of the files
   std::int64_t seed = 1;
   int num_twins = 5;
   std::string format = "table";
@@ -87,8 +88,9 @@ using Scenes = std::vector<std::pair<std::string, std::shared_ptr<const DataSour
 
 WorkPlan PlanTwinSteps(const TwinArguments& arguments, const EstimatorSpec& spec, const Scenes& scenes,
                        const ImageNames& images) {
-  std::string identity = fmt::format("seed: {}\ntwins: {}\nsigma: {} px\n{}", arguments.seed,
-                                     arguments.num_twins, arguments.sigma_px, EstimatorFileText(spec, {}));
+  std::string identity =
+      fmt::format("seed: {}\ntwins: {}\nsigma: {} px\n{}", arguments.seed, arguments.num_twins,
+                  arguments.sigma_px.value_or(kUsualSigmaPx), EstimatorFileText(spec, {}));
   for (const auto& [scene, data] : scenes) identity += fmt::format("{}: {}\n", scene, data->Identity());
   for (const auto& [file, names] : images)
     identity += fmt::format("{}: {}, {}\n", file, names.first, names.second);
@@ -105,6 +107,11 @@ void RunTwin(const TwinArguments& arguments) {
   Scenes scenes =
       LoadMatchFolder({.folder = arguments.pairs, .sigma_px = arguments.sigma_px, .keeps_priors = false});
   const ImageNames images = ImageNamesIn(arguments.pairs);
+  StatedSigmas sigmas;
+  if (!arguments.sigma_px) {
+    for (const std::filesystem::path& path : MatchFilesIn(arguments.pairs))
+      sigmas.Add(ReadMatchFile(path.string()));
+  }
   std::string names;
   for (const auto& [scene, data] : scenes) names += (names.empty() ? "" : ", ") + scene;
   if (!arguments.scene.empty()) {
@@ -137,8 +144,10 @@ void RunTwin(const TwinArguments& arguments) {
     const auto seed = static_cast<std::uint64_t>(arguments.seed);
     const TwinPlaces places = MakeTwinPlaces(out, scene);
     const TwinSource source = AnswerScene(scene, *data, images, *estimator, seed, &steps);
-    reports.push_back(MakeTwinReport(source, *estimator, places.templates.filename().string(),
-                                     arguments.sigma_px, seed, arguments.num_twins, &steps));
+    reports.push_back(
+        MakeTwinReport(source, *estimator, places.templates.filename().string(),
+                       arguments.sigma_px.value_or(sigmas.InScene(scene).value_or(kUsualSigmaPx)), seed,
+                       arguments.num_twins, &steps));
     const TwinReport& report = reports.back();
     WriteTemplates(source, places.templates);
     WriteStudy(report, "semi_real", report.semi_real, 20, spec, places.study);

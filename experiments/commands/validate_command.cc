@@ -36,10 +36,10 @@ struct ValidateArguments {
   std::vector<std::string> pairs;
   std::string out, max_time, format = "table";
   EstimatorChoice estimator;
-  std::vector<std::string> data;  // key=value each, of a study
-  std::string scene;              // empty: all
-  double sigma_px = 0.5;
-  std::string noise;  // empty: no noise file
+  std::vector<std::string> data;   // key=value each, of a study
+  std::string scene;               // empty: all
+  std::optional<double> sigma_px;  // nothing: that of the files
+  std::string noise;               // empty: no noise file
   std::int64_t seed = 1;
   int num_twins = 3, trials = 0;
   int num_images = 2;                // of each trial of a study

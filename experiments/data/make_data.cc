@@ -21,16 +21,21 @@
 namespace rcme {
 namespace {
 
-std::vector<Parameter> Parameters(MatchFolderSettings& settings) {
+// `sigma_px`: null if the settings leave the noise level to the files.
+std::vector<Parameter> Parameters(MatchFolderSettings& settings, double* sigma_px) {
   std::vector<Parameter> all = {
       Parameter::Text("folder", &settings.folder, "a folder of match files",
-                      "folder with *.csv or *.csv.gz, seen from the study's folder"),
-      Parameter::Real("sigma_px", &settings.sigma_px, {1e-9, 1000.0}, "px",
-                      "noise standard deviation that the estimators assume"),
+                      "folder with *.csv or *.csv.gz, seen from the study's folder")};
+  if (sigma_px)
+    all.push_back(Parameter::Real("sigma_px", sigma_px, {1e-9, 1000.0}, "px",
+                                  "noise standard deviation that the estimators assume, in place of the "
+                                  "header sigma_px of the files"));
+  const std::vector<Parameter> of_truth = {
       Parameter::Real("truth_rotation_sd_deg", &settings.truth.rotation_deg, {0.0, 90.0}, "deg",
                       "error of each true pose about each axis, for files without truth_sd"),
       Parameter::Real("truth_position_sd", &settings.truth.position, {0.0, 1e6}, "",
                       "error of each true position along each axis, in the unit of the files' baselines")};
+  all.insert(all.end(), of_truth.begin(), of_truth.end());
   const std::vector<Parameter> of_redraw = Parameters(settings.redraw);
   all.insert(all.end(), of_redraw.begin(), of_redraw.end());
   return all;
@@ -95,8 +100,9 @@ Choices ChoicesIn(const Settings& settings) {
   for (const auto& [name, field] : ChoiceKeys()) names.push_back(name);
   if (scene == kMatchFilesScene) names.resize(1);
   for (const Parameter& parameter : parameters) names.push_back(parameter.name());
-  if (scene == kMatchFilesScene && std::ranges::count(names, kTruthInDoubtKey) == 0)
-    names.emplace_back(kTruthInDoubtKey);
+  for (const char* given : kGivenPairKeys) {
+    if (scene == kMatchFilesScene && std::ranges::count(names, given) == 0) names.emplace_back(given);
+  }
   const std::string needs = ChoicesWith(key);
   throw InputError(fmt::format("unknown key {} for scene {}{}; known keys: {}", Quoted(key), scene,
                                needs.empty() ? DidYouMean(key, names) : needs, fmt::join(names, ", ")));
@@ -105,12 +111,15 @@ Choices ChoicesIn(const Settings& settings) {
 // The parameters for the choices in the settings: of a folder of match files or of a simulation.
 struct Configured {
   MatchFolderSettings folder;
+  double sigma_px = kUsualSigmaPx;           // of a folder, if the settings state it
   std::shared_ptr<SimulatedData> simulated;  // null: a folder
+  bool has_sigma = false;                    // the settings state sigma_px
   bool has_doubts = false;                   // the settings name a list of pairs in doubt
 
   explicit Configured(const Settings& given) {
     const Settings settings = WithNoiseFile(WithCalibration(given));
     const Choices choices = ChoicesIn(settings);
+    has_sigma = FindSetting(settings, "sigma_px").has_value();
     has_doubts = FindSetting(settings, kTruthInDoubtKey).has_value();
     if (choices.scene != kMatchFilesScene) {
       const bool is_known = std::ranges::count(SceneRegistry(), choices.scene, &SceneEntry::name) > 0;
@@ -124,11 +133,12 @@ struct Configured {
       if (parameter == parameters.end()) ThrowUnknownKey(key, choices.scene, parameters);
       parameter->SetFromText(value);
     }
+    if (has_sigma) folder.sigma_px = sigma_px;
   }
 
   std::vector<Parameter> AllParameters() {
     if (simulated) return simulated->Parameters();
-    std::vector<Parameter> all = Parameters(folder);
+    std::vector<Parameter> all = Parameters(folder, has_sigma ? &sigma_px : nullptr);
     if (has_doubts) all.push_back(TruthInDoubtParameter(folder));
     return all;
   }
@@ -191,6 +201,7 @@ Settings DistinctiveSettings(const Settings& settings, bool of_scene) {
   Configured configured(settings);
   Settings distinctive = configured.ChosenNames();
   Configured defaults(distinctive);
+  defaults.has_sigma = configured.has_sigma;
   defaults.has_doubts = configured.has_doubts;
   if (of_scene)
     std::erase_if(distinctive, [](const auto& choice) { return kNotOfTheScene.contains(choice.first); });
@@ -206,7 +217,7 @@ Settings DistinctiveSettings(const Settings& settings, bool of_scene) {
 
 std::vector<SettingHelp> DescribeSettings(const Settings& settings) {
   Configured configured(settings);
-  configured.has_doubts = true;
+  configured.has_sigma = configured.has_doubts = true;
   std::vector<SettingHelp> help;
   for (const Parameter& p : configured.AllParameters()) {
     help.push_back({p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});

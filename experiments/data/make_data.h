@@ -50,6 +50,8 @@ std::vector<SettingHelp> DescribeSettings(const Settings& settings);
 // The key that names a list of pairs whose truth is in doubt (truth_doubts.h). Texts of studies have it only
 // if it is set.
 inline constexpr const char* kTruthInDoubtKey = "truth_in_doubt";
+// Keys of match files that resolved settings have only if they are given.
+inline constexpr const char* kGivenPairKeys[] = {"sigma_px", kTruthInDoubtKey};
 
 // The scene name for a folder of match files.
 inline constexpr const char* kMatchFilesScene = "match_files";

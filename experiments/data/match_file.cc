@@ -61,6 +61,16 @@ double ReadNoiseLevel(const MatchHeader& header) {
   return level;
 }
 
+std::optional<double> ReadAssumedSigma(const MatchHeader& header) {
+  const std::string key = "sigma_px";
+  if (!header.Has(key)) return std::nullopt;
+  double sigma_px = 0.0;
+  if (!ParseReal(header.Text(key), &sigma_px) || sigma_px < 1e-9 || sigma_px > 1000.0)
+    header.Fail(
+        key, fmt::format("{} is not allowed; give a number in [1e-09, 1000], px", Quoted(header.Text(key))));
+  return sigma_px;
+}
+
 double ReadSecondsBetween(const MatchHeader& header) {
   if (!header.Has("seconds_between")) return MatchFile().seconds_between;
   const double seconds = header.Numbers("seconds_between", 1).front();
@@ -148,6 +158,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.truth_sd = ReadTruthSd(header);
   file.baseline = ReadBaseline(header);
   file.noise_level = ReadNoiseLevel(header);
+  file.assumed_sigma_px = ReadAssumedSigma(header);
   file.seconds_between = ReadSecondsBetween(header);
   file.prior = ReadPrior(header);
   ReadScores(header, rows, &file);
@@ -167,11 +178,11 @@ MatchFile ReadMatchesFromInput(const GivenCameras& given) {
   return ReadMatches("standard input", GzipLines::OfStandardInput(), given);
 }
 
-MotionProblem MakeMotionProblem(MatchFile file, double sigma_px) {
+MotionProblem MakeMotionProblem(MatchFile file, std::optional<double> sigma_px) {
   return {std::move(file.matches),
           file.camera1,
           file.camera2,
-          sigma_px * file.noise_growth,
+          sigma_px.value_or(file.assumed_sigma_px.value_or(kUsualSigmaPx)) * file.noise_growth,
           ComputeNoiseScale(std::move(file.sigma_px)),
           file.prior};
 }
@@ -197,6 +208,8 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
                         rotation_deg.z(), sd->translation.x(), sd->translation.y(), sd->translation.z());
   }
   if (file.baseline > 0.0) text += fmt::format("# baseline: {}\n", file.baseline);
+  if (file.assumed_sigma_px)
+    text += fmt::format("# sigma_px: {}\n", *file.assumed_sigma_px * file.noise_growth);
   if (file.noise_level != 1.0) text += fmt::format("# noise_level: {}\n", file.noise_level);
   if (file.seconds_between > 0.0) text += fmt::format("# seconds_between: {}\n", file.seconds_between);
   if (file.prior) text += FormatPrior(*file.prior);

@@ -30,6 +30,7 @@ namespace rcme {
 //                                          baseline
 //   # baseline: 1.628 m                    optional: length of the true translation in the data set's unit,
 //                                          which may follow it
+//   # sigma_px: 0.7                        optional: the noise level that estimators are told, per coordinate
 //   # noise_level: 1.2                     optional: factor for the noise of a template (rcme twin)
 //   # image1: frames/0001.png                optional, with image2: names the images, so that pairs of a
 //   # image2: frames/0002.png                scene that share an image can be recognized
@@ -49,7 +50,8 @@ namespace rcme {
 //
 // Two further columns are read; others are skipped:
 // - sigma_px is the standard deviation of a match per coordinate (real/images/features.h describes that of
-//   our front end). Estimators get the ratios between matches, not the absolute size (MakeMotionProblem).
+//   our front end). Estimators get the ratios between matches; the header sigma_px states the absolute size
+//   (MakeMotionProblem).
 // - score is the quality of a match, any finite number. It is read only if the header has better_score: a
 //   ratio of distances is better if lower, a confidence if higher.
 enum class BetterScore { kLower, kHigher };
@@ -66,6 +68,7 @@ struct MatchFile {
   // Noise of the median match relative to that before undistortion.
   double noise_growth = 1.0;
   double baseline = std::numeric_limits<double>::quiet_NaN();         // NaN: not stated
+  std::optional<double> assumed_sigma_px = {};                        // the header sigma_px
   double noise_level = 1.0;                                           // of a template
   double seconds_between = std::numeric_limits<double>::quiet_NaN();  // NaN: not stated
   std::vector<CameraDoubt> doubts = {};                               // about K
@@ -75,6 +78,7 @@ struct MatchFile {
 };
 
 inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
+inline constexpr double kUsualSigmaPx = 0.5;  // assumed if neither the caller nor the file states a level
 
 // The cameras of files without intrinsics, camera 1 first; their width and height are ignored.
 using GivenCameras = std::optional<std::array<Lens, 2>>;
@@ -83,8 +87,8 @@ using GivenCameras = std::optional<std::array<Lens, 2>>;
 // line without commas, by blanks. Throws InputError that names the file, the line, what is wrong and what is
 // allowed: a missing or truncated file, a missing key, a K that is not invertible or cannot be that of the
 // image (camera_plausibility.h), an invalid rotation, columns in another order, a coordinate or score that
-// is not finite, a sigma_px that is not positive, better_score without a column score, or more than
-// kMaxMatchesPerFile matches, 1,000 columns or what GzipLines allows.
+// is not finite, a sigma_px that is not positive (in the header: not in [1e-9, 1000]), better_score without a
+// column score, or more than kMaxMatchesPerFile matches, 1,000 columns or what GzipLines allows.
 //
 // Matches of images with lens distortion are undistorted. The result has the matches of pinhole cameras with
 // the same K, and sigma_px is the noise of each match there relative to the others
@@ -96,9 +100,10 @@ MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given = std
 // The same from standard input; the path of the result is "standard input".
 MatchFile ReadMatchesFromInput(const GivenCameras& given = std::nullopt);
 
-// Returns the problem for estimators: the matches and cameras of a file, the noise level `sigma_px` assumed
-// for the images as they were taken, and each match's sigma_px relative to the median (noise_scale).
-MotionProblem MakeMotionProblem(MatchFile file, double sigma_px);
+// Returns the problem for estimators: the matches and cameras of a file, the noise level assumed for the
+// images as they were taken (`sigma_px`, or else that of the file, or else kUsualSigmaPx), and each match's
+// sigma_px relative to the median (noise_scale).
+MotionProblem MakeMotionProblem(MatchFile file, std::optional<double> sigma_px);
 
 // Writes the same format, not compressed. Throws InputError if the path cannot be written; never leaves a
 // partial file.

@@ -141,6 +141,23 @@ std::vector<fs::path> MatchFilesIn(const std::string& folder) {
   return paths;
 }
 
+void StatedSigmas::Add(const MatchFile& file) {
+  const auto [first, is_new] = first_.emplace(file.scene, First{file.path, file.assumed_sigma_px});
+  if (first->second.sigma_px == file.assumed_sigma_px) return;
+  const auto describe = [](const std::optional<double>& sigma_px) {
+    return sigma_px ? fmt::format("{} px", *sigma_px) : std::string("none");
+  };
+  throw InputError(fmt::format(
+      "{}: sigma_px: {} differs from {} in {}, a pair of the same scene; give one noise level for "
+      "all by --sigma",
+      file.path, describe(file.assumed_sigma_px), describe(first->second.sigma_px), first->second.path));
+}
+
+std::optional<double> StatedSigmas::InScene(const std::string& scene) const {
+  const auto first = first_.find(scene);
+  return first == first_.end() ? std::nullopt : first->second.sigma_px;
+}
+
 ImageNames ImageNamesIn(const std::string& folder) {
   ImageNames names;
   for (const fs::path& path : MatchFilesIn(folder)) {
@@ -196,6 +213,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     }
     data.truth.sd = file.truth_sd;
     AddNumbers(file, data.truth.is_direction_known, &group.digest);
+    if (file.assumed_sigma_px && !settings.sigma_px) group.digest.Add(*file.assumed_sigma_px);
     Fnv1a digest;
     AddMatches(file.matches, &digest);
     group.digests.push_back(digest.value());

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,9 +17,9 @@ namespace rcme {
 
 // The settings of a folder of match files in a `data:` block.
 struct MatchFolderSettings {
-  std::string folder;     // relative to the working directory
-  double sigma_px = 0.5;  // noise level that the estimators assume
-  PoseSd truth = {};      // of the true poses, for files without truth_sd
+  std::string folder;                   // relative to the working directory
+  std::optional<double> sigma_px = {};  // noise level that the estimators assume, in place of the files' own
+  PoseSd truth = {};                    // of the true poses, for files without truth_sd
   // A list of pairs whose truth is in doubt (truth_doubts.h), relative to the working directory; empty:
   // none.
   std::string truth_in_doubt = {};
@@ -62,6 +63,22 @@ class MatchFolderData : public DataSource {
 // Lists the match files of a folder, ordered by name. Throws InputError if the folder does not exist, has no
 // match files or has too many.
 std::vector<std::filesystem::path> MatchFilesIn(const std::string& folder);
+
+// The noise level that the match files of each scene state, for commands that assume one for all pairs of a
+// scene.
+class StatedSigmas {
+ public:
+  // Throws InputError if an earlier file of the scene states another level.
+  void Add(const MatchFile& file);
+  std::optional<double> InScene(const std::string& scene) const;
+
+ private:
+  struct First {
+    std::string path;
+    std::optional<double> sigma_px;
+  };
+  std::map<std::string, First> first_;  // by scene
+};
 
 // The names of the two images of each match file that states them, by file name (TrialData::origin). Pairs
 // of one scene with an equal name share the image.

@@ -14,7 +14,7 @@
 namespace rcme {
 namespace {
 
-constexpr std::array<std::string_view, 23> kHeaderKeys = {"camera1",
+constexpr std::array<std::string_view, 24> kHeaderKeys = {"camera1",
                                                           "camera2",
                                                           "size1",
                                                           "size2",
@@ -25,6 +25,7 @@ constexpr std::array<std::string_view, 23> kHeaderKeys = {"camera1",
                                                           "truth_sd",
                                                           "baseline",
                                                           "noise_level",
+                                                          "sigma_px",
                                                           "image1",
                                                           "image2",
                                                           "scene",

@@ -140,9 +140,10 @@ std::vector<std::string> DataKeys(const Study& study) {
   std::vector<std::string> keys;
   const Settings settings = ResolveSettings(ChooseFirstSettings(study));
   for (const auto& [key, value] : settings) keys.push_back(key);
-  const bool is_of_match_files = FindSetting(settings, "scene") == kMatchFilesScene;
-  if (is_of_match_files && std::ranges::count(keys, kTruthInDoubtKey) == 0)
-    keys.emplace_back(kTruthInDoubtKey);
+  if (FindSetting(settings, "scene") != kMatchFilesScene) return keys;
+  for (const char* given : kGivenPairKeys) {
+    if (std::ranges::count(keys, given) == 0) keys.emplace_back(given);
+  }
   return keys;
 }
 

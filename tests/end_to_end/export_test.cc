@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
@@ -39,6 +40,28 @@ TEST_F(Export, NamesTheConditionAndLeavesNoFileOfAnEarlierExport) {
   ASSERT_EQ(RunExport("1").exit_code, 0);
   EXPECT_EQ(Scenes(), (std::multiset<std::string>{"# scene: mine", "# scene: outlier_ratio 0",
                                                   "# scene: outlier_ratio 0.3"}));
+}
+
+// The noise that the study's estimators are told, which may differ from that of its matches.
+TEST_F(Export, WritesTheNoiseThatEstimatorsAssume) {
+  const auto assumed_after = [&](const std::vector<std::string>& settings,
+                                 const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {"export", study_, "--trials", "1", "--out", exported_};
+    arguments.insert(arguments.end(), settings.begin(), settings.end());
+    EXPECT_EQ(RunRcme(arguments).exit_code, 0);
+    arguments = {"estimate", exported_ + "/matches", "--estimator", "standard", "--format", "json"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const nlohmann::json answers = nlohmann::json::parse(RunRcme(arguments).out);
+    std::set<double> assumed;
+    for (const auto& row : answers.at("rows"))
+      assumed.insert(row.at("evidence").at("sigma_assumed_px").get<double>());
+    return assumed;
+  };
+  const std::vector<std::string> noisy = {"--set", "sigma_px=2"};
+  EXPECT_EQ(assumed_after(noisy, {}), (std::set<double>{2.0}));
+  EXPECT_EQ(assumed_after(noisy, {"--sigma", "0.75"}), (std::set<double>{0.75}));
+  EXPECT_EQ(assumed_after({"--set", "sigma_px=2", "--set", "assumed_sigma_px=1.5"}, {}),
+            (std::set<double>{1.5}));
 }
 
 TEST_F(Export, AnswersToNoProblemAreRefusedBeforeTheStudyRuns) {

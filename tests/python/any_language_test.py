@@ -96,6 +96,12 @@ class AnyLanguage(unittest.TestCase):
         self.assertEqual((truth["id"], truth["R"]), (problem["id"], trial["truth"]["R"].ravel().tolist()))
         self.assertEqual(truth["is_inlier"], trial["truth"]["inliers"].tolist())
 
+    def test_match_files_carry_the_noise_that_estimators_assume(self):
+        self.program("export", self.study, "--trials", "1", "--set", "sigma_px=2", "--out", self.folder / "problems")
+        pairs = {**STUDY, "data": {"scene": "match_files", "folder": str(self.folder / "problems/matches")}, "factors": {}}
+        self.assertEqual(rcme.simulate(pairs, 0, 0)["sigma_px"], 2)
+        self.assertEqual(rcme.simulate(pairs, 0, 0, overrides={"sigma_px": 0.7})["sigma_px"], 0.7)
+
     def test_what_is_missing_or_nonsense_in_an_import_is_a_status(self):
         self.program("export", self.study, "--trials", "2", "--out", self.folder / "problems")
         ids = [json.loads(line)["id"] for line in (self.folder / "problems/problems.jsonl").read_text().splitlines()]

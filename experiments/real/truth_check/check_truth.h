@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ std::vector<PairFiles> ListPairFiles(const std::vector<std::string>& folders);
 
 struct TruthCheckOptions {
   FailureBounds bounds;
-  double sigma_px = 0.5;
+  std::optional<double> sigma_px = {};  // the assumed noise level, in place of that of the files
   std::uint64_t seed = 1;
   int num_threads = 0;  // 0: one per core
 };

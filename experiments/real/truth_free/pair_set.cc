@@ -19,12 +19,14 @@ std::string NameSet(const StudyPlan& plan, const Condition& condition) {
 
 }  // namespace
 
-std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px) {
+std::vector<PairSet> PairSetsOfFolder(const std::string& folder, std::optional<double> sigma_px) {
   std::map<std::string, PairSet> sets;
   CameraWarnings warnings;
+  StatedSigmas sigmas;
   for (const std::filesystem::path& path : MatchFilesIn(folder)) {
     MatchFile file = ReadMatchFile(path.string());
     warnings.Add(file.doubts);
+    if (!sigma_px) sigmas.Add(file);
     PairSet& set = sets[file.scene];
     set.name = file.scene;
     NamedPair pair{path.filename().string(), file.image1, file.image2, {}, file.seconds_between};

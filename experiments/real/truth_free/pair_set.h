@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,10 @@ struct PairSet {
   std::vector<NamedPair> pairs;
 };
 
-// One set for each scene named in the headers of a folder's match files. sigma_px: the assumed noise level.
-// Throws InputError (match_folder.h, match_file.h).
-std::vector<PairSet> PairSetsOfFolder(const std::string& folder, double sigma_px);
+// One set for each scene named in the headers of a folder's match files. sigma_px: the assumed noise level,
+// in place of that of the files. Throws InputError (match_folder.h, match_file.h), also if it is not given
+// and the files of a scene state different ones.
+std::vector<PairSet> PairSetsOfFolder(const std::string& folder, std::optional<double> sigma_px);
 // One set for each condition of a study, one pair for each trial.
 std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan);
 // One set for each condition. Each trial is a sequence of images (experiments/data/simulated_sequence.h), and

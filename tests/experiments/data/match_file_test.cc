@@ -211,6 +211,28 @@ TEST_F(MatchFileTest, ATemplateMayStateItsNoiseLevel) {
   }
 }
 
+// The caller's level goes before that of the file, that before the usual one.
+TEST_F(MatchFileTest, TheNoiseThatEstimatorsAreToldMayBeStated) {
+  EXPECT_EQ(MakeMotionProblem(Read(FullText()), {}).sigma_px, 0.5);
+  const MatchFile file = Read("# sigma_px: 2\n" + FullText());
+  EXPECT_EQ(MakeMotionProblem(file, {}).sigma_px, 2.0);
+  EXPECT_EQ(MakeMotionProblem(file, 0.7).sigma_px, 0.7);
+  const std::string path = folder_.Path("copy.csv");
+  WriteMatchFile(file, path);
+  EXPECT_EQ(ReadMatchFile(path).assumed_sigma_px, 2.0);
+  WriteMatchFile(Read(FullText()), path);
+  EXPECT_FALSE(ReadMatchFile(path).assumed_sigma_px.has_value());
+}
+
+TEST_F(MatchFileTest, AnImpossibleNoiseIsRefused) {
+  for (const std::string wrong : {"0", "-1", "nan", "inf", "1 2", "1.5 px", "", "1e-10", "1001"}) {
+    EXPECT_TRUE(Refuses("# sigma_px: " + wrong + "\n" + FullText(),
+                        {":1: sigma_px: '" + wrong + "' is not allowed; give a number in [1e-09, 1000], px"}))
+        << wrong;
+  }
+  EXPECT_TRUE(Refuses("# sigma_px: 1\n# sigma_px: 1\n" + FullText(), {":2", "'sigma_px' stands twice"}));
+}
+
 // The time between the images is kept, and nothing is made up where the file has none.
 TEST_F(MatchFileTest, TheTimeBetweenTheImagesMayBeStated) {
   EXPECT_TRUE(std::isnan(Read(FullText()).seconds_between));
@@ -395,11 +417,11 @@ TEST_F(MatchFileTest, ALensIsUndone) {
     const Eigen::Vector2d x1_px = ProjectThrough(radtan, ray1), x2_px = ProjectThrough(fisheye, ray2);
     rows += fmt::format("{},{},{},{}\n", x1_px.x(), x1_px.y(), x2_px.x(), x2_px.y());
   }
-  const MatchFile file = Read(header + rows);
+  const MatchFile file = Read("# sigma_px: 0.4\n" + header + rows);
   EXPECT_TRUE(file.had_lens);
   EXPECT_EQ(file.camera1.fy, 610.0);
   EXPECT_EQ(file.camera2.height, 600);
-  const MotionProblem problem = MakeMotionProblem(file, 0.4);
+  const MotionProblem problem = MakeMotionProblem(file, {});
   ASSERT_EQ(problem.noise_scale.size(), 3u);
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_LT((problem.matches[i].x1_px - radtan.camera.Project(rays[i].first.homogeneous())).norm(), 1e-8);
@@ -423,6 +445,7 @@ TEST_F(MatchFileTest, ALensIsUndone) {
   EXPECT_FALSE(ReadMatchFile(copy).had_lens);
   EXPECT_EQ(ReadMatchFile(copy).matches[1].x2_px, file.matches[1].x2_px);
   EXPECT_EQ(ReadMatchFile(copy).sigma_px, file.sigma_px);
+  EXPECT_EQ(ReadMatchFile(copy).assumed_sigma_px, problem.sigma_px);
 }
 
 TEST_F(MatchFileTest, PinholesByNameAreThoseOfK) {

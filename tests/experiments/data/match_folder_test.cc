@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/data/make_data.h"
 #include "experiments/data/match_file.h"
 #include "experiments/real/truth_free/pair_set.h"
 #include "experiments/statistics/truth_quality.h"
@@ -72,6 +73,41 @@ TEST_F(MatchFolderTest, EachMatchsOwnSigmaIsPassedOnAndPartOfTheIdentity) {
   EXPECT_EQ(sets[2].pairs[0].problem.noise_scale, (std::vector<double>{0.5, 1.0, 2.0}));
   folder_.Write("c_000.csv", text + "1,2,3,4,1\n5,6,7,8,2\n9,1,2,3,3\n");
   EXPECT_NE(Describe(MakePlan(FolderStudy())).identity, Describe(plan).identity);
+}
+
+// A study without sigma_px takes the noise of each file, and the usual one where a file states none.
+TEST_F(MatchFolderTest, TheNoiseOfAFileIsThatOfAStudyWithoutOne) {
+  const auto sigmas_of = [](const Study& study) {
+    const StudyPlan plan = MakePlan(study);
+    const auto sigma_of = [&](std::uint32_t trial) {
+      return plan.conditions[0].source->Make({1, 0, trial, 0}).problem.sigma_px;
+    };
+    return std::vector<double>{sigma_of(0), sigma_of(1)};
+  };
+  Study study = FolderStudy();
+  std::erase_if(study.data, [](const auto& setting) { return setting.first == "sigma_px"; });
+  EXPECT_EQ(sigmas_of(study), (std::vector<double>{0.5, 0.5}));
+  const std::string before = Describe(MakePlan(study)).identity;
+  const std::string rest = MatchHeader() + TruePoseHeader() + MatchRows(12, 1);
+  folder_.Write("a_001.csv", "# scene: a\n# sigma_px: 2\n" + rest);
+  EXPECT_EQ(sigmas_of(study), (std::vector<double>{0.5, 2.0}));
+  EXPECT_EQ(sigmas_of(FolderStudy()), (std::vector<double>{0.7, 0.7}));
+  EXPECT_NE(Describe(MakePlan(study)).identity, before);
+  EXPECT_EQ(ResolveSettings(study.data), ResolveSettings(ResolveSettings(study.data)));
+  Override(&study, "sigma_px", "0.7");
+  EXPECT_EQ(sigmas_of(study), (std::vector<double>{0.7, 0.7}));
+}
+
+TEST_F(MatchFolderTest, ValidationAssumesOneNoiseForAScene) {
+  EXPECT_EQ(PairSetsOfFolder(folder_.path(), {})[0].pairs[0].problem.sigma_px, 0.5);
+  const std::string rest = MatchHeader() + TruePoseHeader() + MatchRows(12, 1);
+  folder_.Write("a_001.csv", "# scene: a\n# sigma_px: 2\n" + rest);
+  EXPECT_TRUE(
+      ThrowsInputError([&] { PairSetsOfFolder(folder_.path(), {}); },
+                       {"a_001.csv: sigma_px: 2 px differs from none in ", "a_000.csv.gz", "--sigma"}));
+  EXPECT_EQ(PairSetsOfFolder(folder_.path(), 0.7)[0].pairs[1].problem.sigma_px, 0.7);
+  folder_.Write("a_000.csv.gz", Gzip("# scene: a\n# sigma_px: 2\n" + rest));
+  EXPECT_EQ(PairSetsOfFolder(folder_.path(), {})[0].pairs[0].problem.sigma_px, 2.0);
 }
 
 // One pair states its error, one has a truth and a baseline; one has no truth.
