@@ -13,11 +13,9 @@
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/readable_run.h"
 #include "experiments/statistics/summarize.h"
-#include "experiments/trial/trial_measure.h"
 #include "parameters/input_error.h"
 #include "stats/equivalence.h"
 #include "stats/paired_sample_size.h"
-#include "stats/stream_median.h"
 
 namespace rcme {
 namespace {
@@ -60,32 +58,6 @@ ReadableRun ReadForQuestion(const ResultStore& store, bool has_direction) {
           }};
 }
 
-// What the trials say of one estimator.
-struct Outcomes {
-  std::int64_t n = 0, num_successes = 0;  // of the trials that are scored
-  StreamMedian error_deg;
-
-  void Add(const TrialRecord& record, const FailureBounds& bounds) {
-    static const TrialMeasure& max_error =
-        *std::ranges::find(TrialErrors(), TrialMeasure::Quantity::kMaxError, &TrialMeasure::quantity);
-    if (!IsScored(record)) return;
-    ++n;
-    num_successes += HasSucceeded(record, bounds);
-    if (const std::optional<double> error = max_error.Of(record)) error_deg.Add(*error);
-  }
-  Estimate Success() const {
-    return {.value = static_cast<double>(num_successes) / static_cast<double>(n), .n = n};
-  }
-};
-
-std::vector<Outcomes> CountOutcomes(const ReadableRun& run) {
-  std::vector<Outcomes> outcomes(run.description.estimators.size());
-  run.for_each_trial([&](const ProblemRecord&, const std::vector<TrialRecord>& records) {
-    for (size_t e = 0; e < outcomes.size(); ++e) outcomes[e].Add(records[e], run.description.failure);
-  });
-  return outcomes;
-}
-
 // The difference of an estimator's errors from those of the reference, on the same trials.
 Estimate FindErrorDifference(const Comparison& comparison, const std::string& label) {
   for (const ComparisonRow& row : comparison.rows) {
@@ -99,17 +71,19 @@ bool HasGreaterErrors(const Comparison& comparison, const std::string& label) {
   return FindErrorDifference(comparison, label).interval.lower > 0.0;
 }
 
-// The best first.
+// The best first. `summary`: of the answers as they were given.
 std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& summary, double sigma_px) {
   const std::vector<DescribedEstimator>& estimators = run.description.estimators;
-  const std::vector<Outcomes> outcomes = CountOutcomes(run);
+  const Summary of_question = Summarize(run, /*with_times=*/false);
   std::vector<AskedEstimator> ranked;
-  for (size_t e = 0; e < estimators.size(); ++e) {
-    const std::string& label = estimators[e].label;
-    ranked.push_back({label, WidenForChoice(outcomes[e].Success(), static_cast<int>(estimators.size())),
-                      FindEstimate(summary, label, "mean_time_ms").value, outcomes[e].error_deg.median(),
+  for (const DescribedEstimator& estimator : estimators) {
+    const std::string& label = estimator.label;
+    const Estimate success = FindEstimate(of_question, label, "success");
+    ranked.push_back({label, WidenForChoice(success, static_cast<int>(estimators.size())),
+                      FindEstimate(summary, label, "mean_time_ms").value,
+                      FindEstimate(of_question, label, kErrorMeasure).value,
                       FindEstimate(summary, label, "failure_probability").n.value_or(0) > 0,
-                      DescribeInlierThreshold(estimators[e].name, estimators[e].options, sigma_px)});
+                      DescribeInlierThreshold(estimator.name, estimator.options, sigma_px)});
   }
   std::vector<Comparison> comparisons;
   for (const AskedEstimator& estimator : ranked)

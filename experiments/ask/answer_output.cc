@@ -239,7 +239,7 @@ std::string AnswerAsText(const Answer& answer, const std::string& question, cons
              "\nThe study is {0}/study.yaml. Next, all of it on one page, and up to which share of\n"
              "wrong matches it holds:\n"
              "  rcme report {0}/run.sqlite --out {0}/report.html\n"
-             "  rcme solve {0}/study.yaml --estimator {2} --over outlier_ratio \\\n"
+             "  rcme solve {0}/study.yaml --estimators {2} --over outlier_ratio \\\n"
              "    --from 0.05 --to 0.9 --at {1:g} --trials 2000 --out {0}/solve --max-time 5m\n",
              folder, answer.at_most, answer.best.label);
 }

@@ -22,6 +22,13 @@ CLI::Option* AddSeedOption(CLI::App* command, std::int64_t* seed, const std::str
       ->capture_default_str();
 }
 
+CLI::Option* AddEstimatorsOption(CLI::App* command, std::vector<std::string>* labels,
+                                 const std::string& what) {
+  return command->add_option("--estimators,--estimator", *labels, what)
+      ->delimiter(',')
+      ->allow_extra_args(false);
+}
+
 CLI::Option* AddSigmaOption(CLI::App* command, std::optional<double>* sigma_px) {
   return command
       ->add_option(

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace rcme {
 
@@ -18,6 +19,10 @@ CLI::Option* AddThreadsOption(CLI::App* command, int* threads,
 // --seed, at least 0, with its default in the help. `of` says what it seeds: "the random samples".
 CLI::Option* AddSeedOption(CLI::App* command, std::int64_t* seed,
                            const std::string& of = "the random samples");
+
+// --estimators LABEL,..., for commands that take several; those that take one have --estimator.
+CLI::Option* AddEstimatorsOption(CLI::App* command, std::vector<std::string>* labels,
+                                 const std::string& what = "labels a,b,... of estimators; default: all");
 
 // --sigma in px, with its default in the help: the noise that an estimator assumes.
 CLI::Option* AddSigmaOption(CLI::App* command, std::optional<double>* sigma_px);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
@@ -34,10 +35,7 @@ Examples:
   command->add_option("--of", arguments->query.event, "failure, refusal or failure_or_refusal")
       ->check(MakeChoiceValidator(TrialEventNames()))
       ->capture_default_str();
-  command
-      ->add_option("--estimators,--estimator", arguments->query.estimators,
-                   "labels a,b,... of estimators; default: all")
-      ->delimiter(',');
+  AddEstimatorsOption(command, &arguments->query.estimators);
   CLI::Option* condition =
       command
           ->add_option("--condition", arguments->condition,

@@ -2,13 +2,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <atomic>
 #include <memory>
+#include <vector>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/lock_option.h"
 #include "experiments/commands/process_option.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/work/for_each_index.h"
+#include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/run_study.h"
 #include "experiments/study/study_file.h"
@@ -42,19 +46,39 @@ std::int64_t CountMissing(const ResultStore& store, size_t estimator) {
   return count;
 }
 
-// Returns whether the file has an answer to a problem of the plan. The first problem usually has one.
-bool HasAnswer(const StudyPlan& plan, size_t estimator) {
-  for (const Condition& condition : plan.conditions) {
-    const MotionEstimator& answers = *FindEstimators(plan, condition)[estimator];
-    for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(condition.num_trials); ++trial) {
-      const auto simulated = SimulateDraw(
-          plan.study, [&] { return condition.source->Make(NameOfScene(plan, condition, trial)); });
-      if (!simulated.made) continue;
-      RandomStream rng = StreamFor(NameOfTrial(plan, condition, trial), StreamPurpose::kSampling);
-      if (answers.Estimate(simulated.made->problem, rng).status != MotionStatus::kNoAnswer) return true;
-    }
+// Whether each file of answers, the last estimators of the plan, has an answer to one of its problems.
+using FilesWithAnswer = std::vector<std::atomic<bool>>;
+
+void LookUp(const StudyPlan& plan, const Condition& condition, std::uint32_t trial, FilesWithAnswer* files) {
+  const auto simulated =
+      SimulateDraw(plan.study, [&] { return condition.source->Make(NameOfScene(plan, condition, trial)); });
+  if (!simulated.made) return;
+  const std::vector<std::shared_ptr<const MotionEstimator>>& estimators = FindEstimators(plan, condition);
+  for (size_t i = 0; i < files->size(); ++i) {
+    RandomStream rng = StreamFor(NameOfTrial(plan, condition, trial), StreamPurpose::kSampling);
+    const MotionEstimator& answers = *estimators[estimators.size() - files->size() + i];
+    if (answers.Estimate(simulated.made->problem, rng).status != MotionStatus::kNoAnswer) (*files)[i] = true;
   }
-  return false;
+}
+
+// Throws InputError for a file without an answer to a problem of the plan. Simulates problems until each file
+// has one: usually the first.
+void RequireAnswers(const ImportArguments& arguments, const StudyPlan& plan) {
+  FilesWithAnswer files(arguments.answers.size());
+  Progress progress("problems looked up in the answers", plan.NumTrials());
+  for (const Condition& condition : plan.conditions) {
+    ForEachIndex(condition.num_trials, arguments.threads, [&](std::int64_t trial) {
+      if (std::find(files.begin(), files.end(), false) == files.end()) return;
+      LookUp(plan, condition, static_cast<std::uint32_t>(trial), &files);
+      progress.Advance(1);
+    });
+  }
+  const auto without = std::find(files.begin(), files.end(), false);
+  if (without == files.end()) return;
+  throw InputError(fmt::format(
+      "{}: holds no answer to a problem of {}; give the study.yaml that `rcme export` wrote beside the "
+      "problems",
+      arguments.answers[static_cast<size_t>(without - files.begin())], arguments.study));
 }
 
 void Import(const ImportArguments& arguments) {
@@ -77,13 +101,7 @@ void Import(const ImportArguments& arguments) {
     study.estimators.push_back(SpecOfAnswers(arguments.answers[i], label));
   }
   StudyPlan plan = MakePlan(study, arguments.study);
-  for (size_t i = 0; i < arguments.answers.size(); ++i) {
-    if (!HasAnswer(plan, num_own + i))
-      throw InputError(fmt::format(
-          "{}: holds no answer to a problem of {}; give the study.yaml that `rcme export` wrote beside the "
-          "problems",
-          arguments.answers[i], arguments.study));
-  }
+  RequireAnswers(arguments, plan);
   LockArguments lock = arguments.lock;
   if (lock.despite.empty() && !FindLock(arguments.study, lock).empty())
     lock.despite = fmt::format("answers were imported: {}", fmt::join(arguments.labels, ", "));

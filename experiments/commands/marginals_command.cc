@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
@@ -28,7 +29,7 @@ block `conditions`. All intervals hold together, so that you may look for the wo
 
 Examples:
   rcme marginals run.sqlite
-  rcme marginals run.sqlite --estimator rcme_calibrated --pairs --top 50
+  rcme marginals run.sqlite --estimators rcme_calibrated --pairs --top 50
   rcme marginals run.sqlite --format csv --out marginals.csv)");
   struct Arguments {
     std::string run, format = "table", out;
@@ -38,8 +39,7 @@ Examples:
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
   command->add_flag("--pairs", arguments->options.with_pairs, "also levels of two factors together");
-  command->add_option("--estimator", arguments->options.estimators, "only this one, by its label; repeatable")
-      ->allow_extra_args(false);
+  AddEstimatorsOption(command, &arguments->options.estimators);
   command->add_option("--top", arguments->num_shown, "rows of the table's second part")
       ->transform(WholeNumberIn(1, 100'000))
       ->capture_default_str();

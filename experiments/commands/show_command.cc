@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/process_option.h"
@@ -135,11 +136,8 @@ Examples:
   command->add_option("--trial", arguments->trial, "trial, from 0")
       ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
       ->required();
-  command
-      ->add_option("--estimators,--estimator", arguments->estimators,
-                   "labels a,b,... of the estimators to draw, a row of images each")
-      ->delimiter(',')
-      ->allow_extra_args(false);
+  AddEstimatorsOption(command, &arguments->estimators,
+                      "labels a,b,... of the estimators to draw, a row of images each");
   CLI::Option* out = command->add_option("-o,--out", arguments->out,
                                          "figure to write, without suffix; default: trial_STUDY_cC_tT");
   command->add_option("--json", arguments->json, "also write the data of the figure to this JSON file");

@@ -55,7 +55,7 @@ void SetRange(const Study& study, const CLI::Option& from, const CLI::Option& to
 
 void KeepEstimators(const std::vector<std::string>& labels, Study* study) {
   if (labels.empty()) return;
-  for (const std::string& label : labels) FindEstimator(study->estimators, label, "--estimator: the study");
+  for (const std::string& label : labels) FindEstimator(study->estimators, label, "--estimators: the study");
   std::erase_if(study->estimators,
                 [&](const EstimatorSpec& spec) { return std::ranges::count(labels, spec.label) == 0; });
 }
@@ -131,8 +131,7 @@ Examples:
       ->transform(NumberIn({1e-6, 1.0 - 1e-6}))
       ->capture_default_str();
   command->add_flag("--falling", arguments->question.is_falling, "the rate falls with the setting");
-  command->add_option("--estimator", arguments->estimators, "only this one, by its label; repeatable")
-      ->allow_extra_args(false);
+  AddEstimatorsOption(command, &arguments->estimators);
   command
       ->add_option("--trials", arguments->question.num_trials, "trials for each estimator in each condition")
       ->transform(WholeNumberIn(100, 100'000'000))

@@ -182,7 +182,7 @@ Examples:
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
     Summary summary = arguments->fifths_of.empty() ? Summarize(store, arguments->with_times, pooling)
-                                                   : Summarize(store, arguments->with_times,
+                                                   : Summarize(ReadRun(store), arguments->with_times,
                                                                GroupByFifth(store, arguments->fifths_of));
     summary.preregistration = DecidePreregistered(store, arguments->run);
     WarnOfRefusals(summary);

@@ -11,7 +11,6 @@
 
 #include "estimator/conform/conform_file.h"
 #include "experiments/conform/fit_rule.h"
-#include "experiments/data/match_folder.h"
 #include "parameters/input_error.h"
 #include "stats/exchangeability.h"
 #include "stats/fnv1a.h"
@@ -85,8 +84,8 @@ void LookForRefusals(const ConformRule& rule, const std::vector<AskedProblem>& p
 }
 
 std::vector<std::uint64_t> NamesOfProblems(const StudyPlan& plan, const Condition& condition) {
-  if (const auto* folder = dynamic_cast<const MatchFolderData*>(condition.source.get()))
-    return folder->digests();
+  std::vector<std::uint64_t> names = condition.source->ProblemNames();
+  if (!names.empty()) return names;
   Fnv1a hash;
   hash.Add(fmt::format("seed {} stream {}", plan.study.seed, condition.stream_key));
   return {hash.value()};

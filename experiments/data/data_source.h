@@ -1,6 +1,7 @@
 // The source of a trial's matches, and what is known of the truth.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,6 +79,9 @@ class DataSource {
   virtual std::optional<Scene> FindScene(const StreamName&) const { return std::nullopt; }
   // The real scene whose images all trials share; nothing if each trial draws its own scene.
   virtual std::optional<std::string> SharedScene() const { return std::nullopt; }
+  // A name for each of its problems, the same wherever a problem is read from; empty for problems that are
+  // drawn, which are known by their random stream.
+  virtual std::vector<std::uint64_t> ProblemNames() const { return {}; }
 };
 
 }  // namespace rcme

@@ -48,8 +48,8 @@ class MatchFolderData : public DataSource {
   }
   std::string Identity() const override { return identity_; }
   std::optional<std::string> SharedScene() const override { return scene_; }
-  // One per pair, of the coordinates of its matches: the same for the same pair in any folder.
-  const std::vector<std::uint64_t>& digests() const { return digests_; }
+  // One per pair: the digest of the coordinates of its matches.
+  std::vector<std::uint64_t> ProblemNames() const override { return digests_; }
 
  private:
   std::string scene_;

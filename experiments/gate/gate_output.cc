@@ -22,18 +22,24 @@ NumberFormat LevelFormat(const GateQuantity& quantity) {
   if (quantity.name == "error") return {1.0, "deg", ".3g"};
   return kPercent;
 }
-const NumberFormat kChange{100.0, "%", "+.2f"};
+// Changes of rates and scores are differences of percentages, those of errors and times are relative.
+std::string ChangeUnit(const GateQuantity& quantity) {
+  return quantity.scale == GateScale::kRatio ? "%" : "points";
+}
 
 std::string FormatLevel(const GateQuantity& quantity, double level) {
   return FormatEstimate({.value = level}, LevelFormat(quantity));
 }
 
 std::string FormatChange(const GateRow& row) {
-  return FormatEstimate({row.difference, row.interval}, row.test.is_limit ? kPercent : kChange);
+  const NumberFormat change{100.0, ChangeUnit(row.test.quantity), "+.2f"};
+  return FormatEstimate({row.difference, row.interval}, row.test.is_limit ? kPercent : change);
 }
 
 std::string FormatMargin(const GateTest& test) {
-  return fmt::format("{}{:.3g} %", test.is_limit ? "at most " : "+", 100.0 * test.margin);
+  const double percent = 100.0 * test.margin;
+  return test.is_limit ? fmt::format("at most {:.3g} %", percent)
+                       : fmt::format("+{:.3g} {}", percent, ChangeUnit(test.quantity));
 }
 
 bool HasSize(const GateRow& row) { return !std::isnan(row.size_ratio); }

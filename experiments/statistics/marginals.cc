@@ -227,7 +227,7 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
 std::vector<size_t> ChooseEstimators(const RunDescription& run, const std::vector<std::string>& labels) {
   std::vector<size_t> chosen;
   for (const std::string& label : labels)
-    chosen.push_back(FindEstimator(run.estimators, label, "--estimator: the run"));
+    chosen.push_back(FindEstimator(run.estimators, label, "--estimators: the run"));
   for (size_t e = 0; labels.empty() && e < run.estimators.size(); ++e) chosen.push_back(e);
   std::ranges::sort(chosen);
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());

@@ -21,13 +21,13 @@ void AppendHelp(const std::vector<Quantity<Record>>& quantities, std::vector<Qua
 }
 
 // Collects cells of counts.
-std::vector<SummaryCell> CollectDraws(const ResultStore& store, const RunDescription& run) {
-  const TrialGroups groups = GroupByDraw(run);
-  SummaryCell empty(run.estimators.size());
+std::vector<SummaryCell> CollectDraws(const ReadableRun& run) {
+  const TrialGroups groups = GroupByDraw(run.description);
+  SummaryCell empty(run.description.estimators.size());
   empty.RankErrors();
   std::vector<SummaryCell> draws(groups.levels.size(), empty);
-  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
-    draws[groups.group_of(problem)].Add(problem, records, run.failure);
+  run.for_each_trial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    draws[groups.group_of(problem)].Add(problem, records, run.description.failure);
   });
   return draws;
 }
@@ -71,13 +71,17 @@ std::string KindName(SummaryRow::Kind kind) {
   return "";
 }
 
-Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
-  const RunDescription run = store.Description();
-  if (pooling == Pooling::kPooled && HasPopulationIntervals(run)) {
-    const std::vector<SummaryCell> draws = CollectDraws(store, run);
-    if (std::ranges::none_of(draws, IsWeighted)) return SummarizePopulation(run, draws, with_times);
+Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling) {
+  const RunDescription& description = run.description;
+  if (pooling == Pooling::kPooled && HasPopulationIntervals(description)) {
+    const std::vector<SummaryCell> draws = CollectDraws(run);
+    if (std::ranges::none_of(draws, IsWeighted)) return SummarizePopulation(description, draws, with_times);
   }
-  return Summarize(store, with_times, pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(run));
+  return Summarize(run, with_times, pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(description));
+}
+
+Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
+  return Summarize(ReadRun(store), with_times, pooling);
 }
 
 std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {
@@ -95,10 +99,10 @@ std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {
   return found;
 }
 
-Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups) {
-  const RunDescription run = store.Description();
-  const SummaryCell empty(run.estimators.size(), run.repeats_per_scene);
-  GroupSummarizer summary(run, groups);
+Summary Summarize(const ReadableRun& run, bool with_times, const TrialGroups& groups) {
+  const RunDescription& description = run.description;
+  const SummaryCell empty(description.estimators.size(), description.repeats_per_scene);
+  GroupSummarizer summary(description, groups);
   std::map<size_t, SummaryCell> cells;  // of groups that have trials and may get more
   size_t num_finished = 0;
   const auto finish_before = [&](size_t group) {
@@ -109,12 +113,12 @@ Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& 
   };
   SummaryCell* of_scene = nullptr;
   ForEachTrialByScene(
-      ReadRun(store),
+      run,
       [&](const ProblemRecord& problem, const std::vector<TrialRecord>& records, bool is_first) {
         const size_t group = groups.group_of(problem);
         if (groups.is_in_order) finish_before(group);
         of_scene = &cells.try_emplace(group, empty).first->second;
-        of_scene->Add(problem, records, run.failure, is_first);
+        of_scene->Add(problem, records, description.failure, is_first);
       },
       [&](std::uint32_t) { of_scene->EndScene(); });
   finish_before(groups.levels.size());

@@ -10,6 +10,7 @@
 #include "experiments/statistics/boxed_optional.h"
 #include "experiments/statistics/coverage_verdict.h"
 #include "experiments/statistics/preregistration.h"
+#include "experiments/statistics/readable_run.h"
 #include "experiments/statistics/trial_groups.h"
 #include "stats/constants.h"
 #include "stats/intervals.h"
@@ -105,8 +106,9 @@ const std::vector<QuantityHelp>& SummaryQuantities();
 // If scenes are repeated, every scene counts once: by the mean over its repeats in rates, scores and means,
 // by its first trial in medians. The means of scenes are independent numbers, so rates have the intervals of
 // scores.
+Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling = Pooling::kPerCondition);
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling = Pooling::kPerCondition);
 // The same with other groups of trials.
-Summary Summarize(const ResultStore& store, bool with_times, const TrialGroups& groups);
+Summary Summarize(const ReadableRun& run, bool with_times, const TrialGroups& groups);
 
 }  // namespace rcme

@@ -80,8 +80,8 @@ void PartDescriptions::Add(const ResultFile& part) {
                                  first_path_, FirstDifference(merged_.identity, run.identity)));
   }
   if (run.conditions.size() != merged_.conditions.size()) {
-    throw InputError(fmt::format("{}: is damaged: it has {} conditions, {} of the same study has {}",
-                                 part.path, run.conditions.size(), first_path_, merged_.conditions.size()));
+    throw Damage(fmt::format("it has {} conditions, {} of the same study has {}", run.conditions.size(),
+                             first_path_, merged_.conditions.size()));
   }
   if (run.lock != merged_.lock) {
     throw InputError(fmt::format("{}: was run {}, {} {}: they cannot be merged", part.path,

@@ -47,6 +47,7 @@ class PartDescriptions {
   explicit PartDescriptions(const MergeOptions& options) : options_(options) {}
 
   // Throws InputError if the part does not belong to those added before; the message says what differs.
+  // Throws Damage if its conditions cannot be those of its study.
   void Add(const ResultFile& part);
 
   bool IsEmpty() const { return first_path_.empty(); }

@@ -244,7 +244,7 @@ TEST_F(AnswerOfRun, TwoOfThreeAreTied) {
         "200; to tell a 1 % difference in success takes about 780; to show a failure rate below 0.1 % about "
         "4800 without",
         "Success: an error of at most 3 deg of rotation and 15 deg of direction.",
-        "Accepted answers fail in less than 5 %", "--estimator ours", "--out folder/solve --max-time 5m"})
+        "Accepted answers fail in less than 5 %", "--estimators ours", "--out folder/solve --max-time 5m"})
     EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
   const auto json = nlohmann::json::parse(AnswerAsJson(answer, "?"));
   EXPECT_EQ(json["alike"][0]["label"], "standard");

@@ -205,6 +205,16 @@ TEST_F(MatchFolderTest, IdentityFollowsTheData) {
   EXPECT_NE(MakePlan(FolderStudy()).identity, before);
 }
 
+TEST_F(MatchFolderTest, APairHasTheSameNameInEveryFolder) {
+  const std::vector<std::uint64_t> names = MakePlan(FolderStudy()).conditions[0].source->ProblemNames();
+  ASSERT_EQ(names.size(), 2u);
+  EXPECT_NE(names[0], names[1]);
+  const TempFolder other;
+  other.Write("renamed.csv", "# scene: z\n" + MatchHeader() + MatchRows(12, 1));
+  EXPECT_THAT(LoadMatchFolder({.folder = other.path()})[0].second->ProblemNames(),
+              testing::ElementsAre(names[1]));
+}
+
 TEST_F(MatchFolderTest, IdentityDoesNotFollowThePath) {
   const TempFolder other;
   std::filesystem::copy(folder_.path(), other.Path("moved"));

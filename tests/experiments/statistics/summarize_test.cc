@@ -520,7 +520,7 @@ TEST_F(SummarizeTest, FifthsOfANumberOfTheProblem) {
     store.Add(problems, records);
   }
   const ResultStore store = ResultStore::OpenForReading(folder_.Path("fifths"));
-  const Summary summary = Summarize(store, false, GroupByFifth(store, "crb_direction_deg"));
+  const Summary summary = Summarize(ReadRun(store), false, GroupByFifth(store, "crb_direction_deg"));
   EXPECT_EQ(summary.factor_names, (std::vector<std::string>{"fifth", "crb_direction_deg"}));
   const std::vector<std::string> fifths = {"1", "2", "3", "4", "5", "unknown"},
                                  levels = {"up to 3", "3 to 5", "5 to 7", "7 to 9", "above 9", "unknown"};

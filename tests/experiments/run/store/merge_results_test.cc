@@ -1,6 +1,5 @@
 #include "experiments/run/store/merge_results.h"
 
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -148,17 +147,18 @@ TEST_F(MergeTest, RefusesWhatDoesNotBelongTogether) {
   EXPECT_TRUE(ThrowsInputError([&] { MergeResults(parts, out, false, {}); }, {"exists already"}));
 }
 
-// A part whose list of conditions was damaged has the identity of the others.
+// A part of somebody's with the identity of the others, whose checksums are right.
 TEST_F(MergeTest, RefusesAPartWithOtherConditions) {
-  const Paths parts = RunAll(2);
-  SQLite::Database(parts[1], SQLite::OPEN_READWRITE)
-      .exec(R"(
-        DELETE FROM conditions WHERE condition = 1;
-        DELETE FROM levels WHERE condition = 1;
-        DELETE FROM totals WHERE condition = 1;
-        DELETE FROM trials WHERE condition = 1;
-        DELETE FROM problems WHERE condition = 1)");
-  EXPECT_TRUE(ThrowsInputError([&] { Merge(parts); }, {parts[1], "damaged"}));
+  const std::string part = Run({1, 2}), forged = folder_.Path("forged.sqlite");
+  RunDescription run = ResultStore::OpenForReading(part).Description();
+  run.conditions.pop_back();
+  NewTrials(forged, run).Finish(run);
+  EXPECT_TRUE(ThrowsInputError(
+      [&] {
+        Merge({part, forged});
+      },
+      {forged, "is damaged: it has 1 conditions", part, "has 2", "rcme check"}));
+  EXPECT_THROW(Merge({forged, part}), DamagedFileError);
 }
 
 TEST_F(MergeTest, RefusesOtherProgramsAndUnlessAllowedOtherInstructionSets) {
