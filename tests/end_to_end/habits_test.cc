@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -198,6 +200,22 @@ TEST(Completion, OffersCommandsOptionsAndNames) {
   EXPECT_THAT(Completed({"rcme", "run", "x", "--shard", "au"}), ElementsAre("auto", "auto/8"));
   EXPECT_THAT(Completed({"rcme", "failures", "x", "--estimators", "opengv"}), ElementsAre("opengv_ransac"));
   EXPECT_THAT(Completed({"rcme", "summarize", "x", "--quantities", "kappa"}), ElementsAre("kappa_flag"));
+}
+
+// The scripts that draw know their options themselves.
+TEST(Completion, OffersEveryOptionOfEveryFigure) {
+  std::string scripts = ReadBytes(SourceFolder() + "/plots/common/command_line.py");
+  for (const std::string& kind : Completed({"rcme", "plot", ""})) {
+    const std::string script = SourceFolder() + "/plots/" + kind + ".py";
+    if (std::filesystem::exists(script)) scripts += ReadBytes(script);
+  }
+  const std::vector<std::string> offered = Completed({"rcme", "plot", "failure_rate", "--"});
+  const std::regex option(R"re(add_argument\("(--[a-z-]+)")re");
+  std::set<std::string> names;
+  for (std::sregex_iterator found(scripts.begin(), scripts.end(), option), end; found != end; ++found)
+    names.insert((*found)[1]);
+  EXPECT_THAT(names, testing::IsSupersetOf({"--style", "--floor", "--names", "--page"}));
+  for (const std::string& name : names) EXPECT_THAT(offered, testing::Contains(name));
 }
 
 // Each shell that is here reads its script.
