@@ -14,8 +14,9 @@ using Json = nlohmann::ordered_json;
 
 std::string InPerCent(const DecidedHypothesis& decided) {
   if (decided.n == 0) return "-";
-  return fmt::format("{:.2f} % [{:.2f}, {:.2f}]", 100.0 * decided.value, 100.0 * decided.interval.lower,
-                     100.0 * decided.interval.upper);
+  const char* unit = decided.stated.against.empty() ? "%" : "points";
+  return fmt::format("{:.2f} {} [{:.2f}, {:.2f}]", 100.0 * decided.value, unit,
+                     100.0 * decided.interval.lower, 100.0 * decided.interval.upper);
 }
 
 std::string VerdictText(const DecidedHypothesis& decided) {
@@ -43,9 +44,8 @@ std::string PreregistrationAsText(const Preregistration& preregistration) {
       preregistration.is_locked
           ? fmt::format("Decided before the run (locked at {} by {}, SHA-256\n{})\n",
                         preregistration.locked_at, preregistration.program, preregistration.sha256)
-          : "Hypotheses of the study. It has no lock (rcme lock): nothing shows that they were\nwritten "
-            "before "
-            "the run.\n";
+          : "Hypotheses of the study. It has no lock (rcme lock): nothing shows that they were\n"
+            "written before the run.\n";
   size_t number = 0;
   for (const DecidedHypothesis& decided : preregistration.hypotheses) {
     text += "\n" + FormatParagraph(fmt::format("{}. {}", ++number, Describe(decided.stated)));
