@@ -17,7 +17,7 @@ example:
   rcme conform own_camera --seed 2 --check mine.conform.json --format json --out check.json
   rcme plot conform check.json --out check
 
-  rcme plot conform results/conform/regions.csv --level 0.9 --where estimator=rcme_calibrated draws=fresh --out fresh
+  rcme plot conform results/conform/regions.csv --level 0.9 --where estimator=rcme_calibrated --where draws=fresh --out fresh
 """
 
 
@@ -26,7 +26,8 @@ def parse(arguments):
     parser.add_argument("report", metavar="REPORT", help="output of 'rcme conform --format json', also with --check; or the CSV "
                         "table of its regions, with --level")
     parser.add_argument("--level", type=float, metavar="LEVEL", help="of a CSV table: the promised coverage, which it does not have")
-    parser.add_argument("--where", nargs="+", default=[], metavar="KEY=VALUE", help="of a CSV table: the rows to draw")
+    parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
+                        help="of a CSV table: draw only these rows; repeatable")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     options = parser.parse_args(arguments)
     check_figure_path(options.out)
