@@ -30,7 +30,7 @@ ALLOWED = {
 # itself, where the program begins.
 FOLDERS = {
     "experiments": ["core", "data", "study", "trial", "run", "statistics", "ask", "gate", "conform", "integrity", "audit", "tuning", "rare", "search", "real", "commands", "."],
-    "plots": ["common", "page", "rates", "audit_figures", "tuning_figures", "reliability_figure", "stanford_figure", "report_page", "surface", "worst_search", "trial_sheet", "."],
+    "plots": ["common", "page", "rates", "audit_figures", "tuning_figures", "reliability_figure", "stanford_figure", "gate_figure", "conform_figure", "report_page", "surface", "worst_search", "trial_sheet", "."],
 }
 PYTHON_IMPORT = re.compile(r"^\s*(?:from|import)\s+(\w+)", re.MULTILINE)
 OUR_INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.MULTILINE)

@@ -22,11 +22,13 @@ from unittest import mock
 from plot_test_case import PLOTS, PlotTestCase
 
 import closure_test
+import conform_test
 import crossings_test
 import fake_audit
 import fake_integrity
 import fake_reliability
 import fake_tune
+import gate_test
 import validation_test
 from audit_power_test import TABLE as POWER
 from common import sheet, style, tikz
@@ -81,6 +83,8 @@ def cases(folder):
         ("time_against_success", [str(peers / f"peers_{name}_1ms.csv") for name in ("uniform", "forward")], False),
         ("reliability", [written("reliability.json", probabilities)], False),
         ("stanford", [written("integrity.json", fake_integrity.content())], False),
+        ("gate", [written("gate.json", gate_test.content())], False),
+        ("conform", [written("report.json", conform_test.content())], False),
         ("validation", [written("validation.json", validation_test.fake())], False),
         ("audit_power", [written("power.csv", POWER)], False),
         ("closure", [written("closure.csv", closure_test.TABLE)], False),

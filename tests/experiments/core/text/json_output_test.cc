@@ -62,6 +62,8 @@ TEST(JsonText, TheFiguresKnowTheSameFormats) {
                                      {"plots/tuning_figures/tune_file.py", kTuningFormat},
                                      {"plots/tuning_figures/tune_file.py", kTransferFormat},
                                      {"plots/stanford_figure/integrity_file.py", kIntegrityFormat},
+                                     {"plots/gate_figure/gate_file.py", kGateFormat},
+                                     {"plots/conform_figure/conform_file.py", kConformReportFormat},
                                      {"plots/trial_sheet/trial_file.py", kTrialFormat},
                                      {"plots/reliability_figure/reliability_file.py", kReliabilityFormat},
                                      {"plots/report_page/data.py", kReportFormat},
