@@ -86,9 +86,9 @@ TEST(FindDoubt, IsTheGreatestPart) {
             Doubt::kLowParallax);
   EXPECT_EQ(FindDoubt(modes, weights, {.by_modes = 0.1, .failure_probability = 0.1}), Doubt::kFewMatches);
   // Uncertain intrinsics leave half of .8.
-  EXPECT_EQ(FindDoubt(modes, weights,
-                      {.by_modes = 0.2, .failure_probability = 0.6, .left_by_intrinsics = 0.5}),
-            Doubt::kLowParallax);
+  EXPECT_EQ(
+      FindDoubt(modes, weights, {.by_modes = 0.2, .failure_probability = 0.6, .left_by_intrinsics = 0.5}),
+      Doubt::kLowParallax);
   weights.of_no_motion = 0.0;
   weights.of_modes = {0.995, 0.005};
   EXPECT_EQ(FindDoubt(modes, weights, {.by_modes = 0.005, .failure_probability = 0.005}), Doubt::kNone);
