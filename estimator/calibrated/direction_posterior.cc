@@ -270,7 +270,7 @@ const WeightedAxis& MostLikely(const std::vector<WeightedAxis>& axes) {
 }
 
 // The second moment about the centre of the motions whose direction lies in the cell of an axis.
-Matrix5d SecondMoment(const WeightedAxis& axis, const RelativePose& centre, double all_over_used) {
+Matrix5d ComputeSecondMoment(const WeightedAxis& axis, const RelativePose& centre, double all_over_used) {
   const Vector5d away =
       LocalCoordinates(centre, {RotationFromVector(axis.fit.x.head<3>()) * centre.R, axis.fit.direction});
   Matrix5d moment = away * away.transpose();
@@ -337,7 +337,7 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
     total += ways.both;
     ahead += ways.ahead;
     if (ways.ahead > 0.0)
-      moment += ways.ahead * SecondMoment(axis, {mode.mode.pose.R, centre}, set.all_over_used);
+      moment += ways.ahead * ComputeSecondMoment(axis, {mode.mode.pose.R, centre}, set.all_over_used);
     if (axis.angle <= angle_rad) within += ways.ahead;
     if (std::numbers::pi - axis.angle <= angle_rad) within += ways.behind;
     // A prior of the direction may prefer another axis: take the most likely direction of all axes.

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSmallWeight = 0.01;
 
 // The factor by which the check widens the covariance.
-double CheckFactor(const ModelCheck& check, const CalibratedOptions& options) {
+double FindCheckFactor(const ModelCheck& check, const CalibratedOptions& options) {
   const bool is_checked =
       options.covariance == CovarianceKind::kSandwich && options.leave_out != CalibratedStep::kModelCheck;
   return is_checked ? CovarianceFactor(check) : 1.0;
@@ -21,10 +21,10 @@ double CheckFactor(const ModelCheck& check, const CalibratedOptions& options) {
 
 // How much of the probability within the bounds is left if the intrinsics are uncertain, at least 1e-6.
 // `reach`: the covariance of the answer if they are exact.
-double LeftByIntrinsics(const JudgedModes& judged, const Mode& mode, const Matrix5d& of_intrinsics,
-                        const Matrix5d& reach, RandomStream& rng) {
+double ComputeLeftByIntrinsics(const JudgedModes& judged, const Mode& mode, const Matrix5d& of_intrinsics,
+                               const Matrix5d& reach, RandomStream& rng) {
   if (judged.options.calibration.IsNone()) return 1.0;
-  const MotionBounds bounds = FailureBounds(judged.options);
+  const MotionBounds bounds = MakeMotionBounds(judged.options);
   RandomStream same = rng;
   const double exact = MassWithin(mode.pose, bounds, mode.pose, reach, same);
   const double uncertain = MassWithin(mode.pose, bounds, mode.pose, reach + of_intrinsics, rng);
@@ -33,21 +33,21 @@ double LeftByIntrinsics(const JudgedModes& judged, const Mode& mode, const Matri
 
 // The covariance of an answer whose direction is weak. Near the optimum the likelihood does not show how far
 // the direction may be away: without parallax it seems well determined (direction_posterior.h).
-Matrix5d CovarianceIfWeak(const JudgedModes& judged, const Matrix5d& of_intrinsics) {
+Matrix5d WidenWeakDirection(const JudgedModes& judged, const Matrix5d& of_intrinsics) {
   const Matrix5d& covariance = judged.weak_direction->covariance;
   if (judged.options.covariance == CovarianceKind::kRobust) return covariance;
-  return BoundByUniformMotion(CheckFactor(judged.check, judged.options) * covariance + of_intrinsics);
+  return BoundByUniformMotion(FindCheckFactor(judged.check, judged.options) * covariance + of_intrinsics);
 }
 
 }  // namespace
 
-MotionBounds FailureBounds(const CalibratedOptions& options) {
+MotionBounds MakeMotionBounds(const CalibratedOptions& options) {
   return {kRadPerDeg * options.max_rotation_error_deg, kRadPerDeg * options.max_direction_error_deg};
 }
 
 Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads) {
   const auto& [problem, matches, prior, modes, weights, weak_direction, check, options] = judged;
-  const MotionBounds bounds = FailureBounds(options);
+  const MotionBounds bounds = MakeMotionBounds(options);
   const Mode& answer = modes[weights.answer].mode;
   double within = 0.0, success = 0.0;
   Matrix5d of_weak = Matrix5d::Zero();
@@ -68,13 +68,13 @@ Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Mat
     const Matrix5d of_intrinsics = IntrinsicsCovariance(problem, options, mode, curvature);
     if (i == weights.answer) {
       const Matrix5d exact = weak_direction ? Matrix5d(Matrix5d::Zero()) : reach;
-      verdict.left_by_intrinsics = LeftByIntrinsics(judged, mode, of_intrinsics, exact, rng);
-      if (weak_direction) of_weak = CovarianceIfWeak(judged, of_intrinsics);
+      verdict.left_by_intrinsics = ComputeLeftByIntrinsics(judged, mode, of_intrinsics, exact, rng);
+      if (weak_direction) of_weak = WidenWeakDirection(judged, of_intrinsics);
     }
     if (spreads != nullptr) (*spreads)[i] = reach + of_intrinsics;
     if (!IsWithin(answer.pose, bounds, mode.pose)) continue;
     const Vector5d away = LocalCoordinates(answer.pose, mode.pose);
-    const Matrix5d covariance = ComputeCovariance(problem, modes[i], curvature, check, prior, options);
+    const Matrix5d covariance = ComputeModeCovariance(problem, modes[i], curvature, check, prior, options);
     if (spreads != nullptr) (*spreads)[i] = covariance;
     const Matrix5d to_answer = TransportTangent(mode.pose, answer.pose);
     verdict.pose_cov += weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
@@ -87,9 +87,9 @@ Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Mat
   return verdict;
 }
 
-Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mode, const Matrix5d& curvature,
-                           const ModelCheck& check, const MixturePrior& prior,
-                           const CalibratedOptions& options) {
+Matrix5d ComputeModeCovariance(const MotionProblem& problem, const ExplainedMode& mode,
+                               const Matrix5d& curvature, const ModelCheck& check, const MixturePrior& prior,
+                               const CalibratedOptions& options) {
   Matrix5d of_prior = Matrix5d::Zero();  // the inverse information includes the prior
   Matrix5d of_matches = options.covariance == CovarianceKind::kInformation
                             ? mode.mode.inverse_hessian
@@ -98,7 +98,7 @@ Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mo
     of_prior = PriorCovariance(mode.mode, prior, curvature);
   if (options.covariance == CovarianceKind::kRobust)
     return of_matches + of_prior;  // MakeCovarianceRobust adds the shared errors
-  of_matches *= CheckFactor(check, options);
+  of_matches *= FindCheckFactor(check, options);
   return BoundByUniformMotion(of_matches + of_prior +
                               IntrinsicsCovariance(problem, options, mode.mode, curvature));
 }

@@ -26,7 +26,7 @@ struct JudgedModes {
   const CalibratedOptions& options;
 };
 
-MotionBounds FailureBounds(const CalibratedOptions& options);
+MotionBounds MakeMotionBounds(const CalibratedOptions& options);
 
 // The verdict before the model check corrects the probability. The covariance is the second moment, about the
 // answer, of the modes within the bounds or, if the direction is weak, of the directions within 90 deg of the
@@ -36,8 +36,8 @@ Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Mat
 
 // The covariance of a mode by the option `covariance`, widened by the check and by uncertain intrinsics.
 // `curvature`: InverseOfObserved.
-Matrix5d ComputeCovariance(const MotionProblem& problem, const ExplainedMode& mode, const Matrix5d& curvature,
-                           const ModelCheck& check, const MixturePrior& prior,
-                           const CalibratedOptions& options);
+Matrix5d ComputeModeCovariance(const MotionProblem& problem, const ExplainedMode& mode,
+                               const Matrix5d& curvature, const ModelCheck& check, const MixturePrior& prior,
+                               const CalibratedOptions& options);
 
 }  // namespace rcme

@@ -221,7 +221,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (!(weights.of_modes[i] >= kNegligibleWeight)) continue;
       const Matrix5d curvature = InverseOfObserved(matches, modes[i].mode);
       Matrix5d covariance =
-          ComputeCovariance(problem, modes[i], curvature, of_matches.checked.check, prior, options_);
+          ComputeModeCovariance(problem, modes[i], curvature, of_matches.checked.check, prior, options_);
       if (of_matches.weak_direction && !weights.is_second_motion[i])
         covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
       beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i]});
@@ -294,7 +294,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     return estimate;
   }
 
-  MotionBounds Bounds() const { return FailureBounds(options_); }
+  MotionBounds Bounds() const { return MakeMotionBounds(options_); }
 
   // Steps 1 to 4.
   std::vector<ExplainedMode> FindExplained(const MotionProblem& problem, const MatchBlocks& matches,

@@ -84,7 +84,6 @@ def label_axis(axes, gate):
 
 
 def caption_of(gate):
-    new = style.label_of(gate.new)
     new, pairs = style.label_of(gate.new), sorted({test.pairs for test in gate.tests if test.change is not None})
     versions = new if is_limit(gate) else f"{new} against {style.label_of(gate.old)}"
     counts = " to ".join(f"{count}" for count in dict.fromkeys((pairs[0], pairs[-1])))
