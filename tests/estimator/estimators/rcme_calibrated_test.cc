@@ -263,37 +263,48 @@ TEST_F(RcmeCalibratedOf, UncertainIntrinsicsWidenTheCovariance) {
 }
 
 // Points some 60 baselines away have a parallax of a few px, as has an error of the focal length of 5 %:
-// probability and covariance both say so.
+// probability and covariance both say so in most problems (of 100 others 85 and 99). Half of 20 are too few
+// by chance once in 40,000 runs.
 TEST_F(RcmeCalibratedOf, UncertainIntrinsicsRaiseTheProbabilityOfFailure) {
-  RandomStream rng({.seed = 1, .purpose = 2960});
-  RandomProblem random = MakeRandomProblem(rng, {.num_matches = 300, .min_depth = 40.0, .max_depth = 80.0});
-  AddNoise(0.2, rng, &random.problem);
-  random.problem.sigma_px = 0.2;
-  CalibratedOptions options;
-  const MotionEstimate exact = RunOn(random.problem, 0, options);
-  options.calibration.focal_sd = 0.05;
-  const MotionEstimate uncertain = RunOn(random.problem, 0, options);
-  EXPECT_LT(exact.failure_probability, 0.1);
-  EXPECT_GT(uncertain.failure_probability, 0.5);
-  const double exact_variance = exact.pose_cov.bottomRightCorner<2, 2>().trace();
-  const double uncertain_variance = uncertain.pose_cov.bottomRightCorner<2, 2>().trace();
-  EXPECT_GT(uncertain_variance, 4.0 * exact_variance) << exact_variance;
+  int num_unsure = 0, num_wider = 0;
+  constexpr int kTrials = 20;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2960});
+    RandomProblem random = MakeRandomProblem(rng, {.num_matches = 300, .min_depth = 40.0, .max_depth = 80.0});
+    AddNoise(0.2, rng, &random.problem);
+    random.problem.sigma_px = 0.2;
+    CalibratedOptions options;
+    const MotionEstimate exact = RunOn(random.problem, 0, options);
+    options.calibration.focal_sd = 0.05;
+    const MotionEstimate uncertain = RunOn(random.problem, 0, options);
+    EXPECT_LT(exact.failure_probability, 0.1) << trial;
+    num_unsure += uncertain.failure_probability > 0.5;
+    num_wider += uncertain.pose_cov.bottomRightCorner<2, 2>().trace() >
+                 4.0 * exact.pose_cov.bottomRightCorner<2, 2>().trace();
+  }
+  EXPECT_GE(num_unsure, kTrials / 2);
+  EXPECT_GE(num_wider, kTrials / 2);
 }
 
-// The same points in both images: nothing is known of the direction, and the covariance says so.
+// The same points in both images: nothing is known of the direction, and covariance and probability say so in
+// nearly all problems (of 200 others 184 and 199). The curvature at the optimum states some degrees.
 TEST_F(RcmeCalibratedOf, ACameraThatStandsStillHasNoDirection) {
-  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+  int num_wide = 0, num_unsure = 0;
+  constexpr int kTrials = 20;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     MotionProblem problem = TwoCameraProblem(200, 0.5, 0.0, trial);
     problem.camera2 = problem.camera1;
     RandomStream rng({.seed = 1, .trial = trial, .purpose = 2961});
     for (auto& match : problem.matches)
       match.x2_px = match.x1_px + 0.5 * std::sqrt(2.0) * Eigen::Vector2d(rng.Normal(), rng.Normal());
     const MotionEstimate e = RunOn(problem, trial);
-    EXPECT_GT(e.failure_probability, 0.5) << trial;
     const double direction_sd = std::sqrt(e.pose_cov.bottomRightCorner<2, 2>().trace());
-    EXPECT_GT(direction_sd, RadFromDeg(40.0)) << trial;
     EXPECT_LT(direction_sd, RadFromDeg(98.0)) << trial;
+    num_wide += direction_sd > RadFromDeg(40.0);
+    num_unsure += e.failure_probability > 0.5;
   }
+  EXPECT_GE(num_wide, kTrials * 3 / 5);
+  EXPECT_GE(num_unsure, kTrials * 3 / 5);
 }
 
 TEST_F(RcmeCalibratedOf, OptionsThatContradictEachOtherAreRefused) {
