@@ -7,7 +7,7 @@ It draws what the file says and computes nothing: coverages, intervals and sizes
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure
+from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
 from conform_figure.conform_file import read_report, read_table_of_regions
 from conform_figure.panels import draw
 
@@ -36,6 +36,8 @@ def parse(arguments):
 
 def draw_for(options):
     if options.level is None:
+        if options.where:
+            raise PlotError(f"--where {options.where[0]}: selects rows of a CSV table of regions, which also needs --level.")
         return draw(read_report(options.report))
     return draw(read_table_of_regions(options.report, options.level, options.where))
 

@@ -60,6 +60,11 @@ class ConformTest(PlotTestCase):
             with self.assertRaisesRegex(PlotError, words):
                 read_table_of_regions(TABLE, level, conditions)
 
+    def test_rows_are_selected_of_a_table_only(self):
+        for report in (self.write(content()), TABLE):
+            self.assert_refused(self.run_script(report, "--where", FRESH[0], "--out", self.folder / "figure"), "--where " + FRESH[0],
+                                "--level")
+
     def test_what_cannot_be_drawn_is_named(self):
         for one, words in ((region(coverage=2), "region 1 has 'coverage': 2; expected a number in 0..1"),
                            (region(coverage_interval=[1]), "'coverage_interval'"),
