@@ -20,7 +20,6 @@
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "parameters/input_error.h"
-#include "parameters/plain_text.h"
 #include "simulator/motion_registry.h"
 #include "simulator/outlier_registry.h"
 
@@ -193,10 +192,7 @@ Examples:
       ->capture_default_str();
   command
       ->add_option("--within", arguments->within, "time that it may take (30s, 2m, 1h); at least 50 trials")
-      ->check([](const std::string& text) {
-        return ParseDuration(text) ? std::string()
-                                   : Quoted(text) + " is not allowed; give a time as 55m, 1h30m or 90s";
-      })
+      ->check(ExplainDuration)
       ->capture_default_str();
   command->add_option("--trials", arguments->trials, "so many trials, whatever time they take")
       ->transform(WholeNumberIn(1, 1'000'000));

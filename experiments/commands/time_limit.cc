@@ -6,7 +6,6 @@
 
 #include "experiments/core/text/duration.h"
 #include "experiments/core/work/stop_request.h"
-#include "parameters/plain_text.h"
 
 namespace rcme {
 
@@ -18,10 +17,7 @@ CLI::Option* AddTimeLimit(CLI::App* command, const std::string& pieces, std::str
               "stop after this time (55m, 1h30m, 90s), between two {}; exit code 75 if some are left: "
               "the same command resumes",
               pieces))
-      ->check([](const std::string& text) {
-        return ParseDuration(text) ? std::string()
-                                   : Quoted(text) + " is not allowed; give a time as 55m, 1h30m or 90s";
-      });
+      ->check(ExplainDuration);
 }
 
 void StartTimeLimit(const std::string& max_time) {

@@ -1,6 +1,7 @@
 #include "experiments/core/text/duration.h"
 
 #include "parameters/parameter.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 
@@ -17,6 +18,13 @@ std::optional<double> ParseDuration(const std::string& text) {
   }
   if (!(seconds > 0.0 && seconds <= kMaxSeconds)) return std::nullopt;
   return seconds;
+}
+
+std::string ExplainDuration(const std::string& text) {
+  if (ParseDuration(text)) return "";
+  const bool lacks_unit = ParseDuration(text + "s").has_value();
+  return Quoted(text) + (lacks_unit ? " has no unit at its end" : " is not allowed") +
+         "; give a time up to 1000 days in h, m and s, such as 55m, 1h30m or 90s";
 }
 
 }  // namespace rcme

@@ -9,4 +9,8 @@ namespace rcme {
 // for a duration of zero.
 std::optional<double> ParseDuration(const std::string& text);
 
+// Returns what is wrong with the text and what is allowed; an empty text if ParseDuration accepts it. Options
+// take it as their check.
+std::string ExplainDuration(const std::string& text);
+
 }  // namespace rcme
