@@ -71,10 +71,10 @@ bool HasGreaterErrors(const Comparison& comparison, const std::string& label) {
   return FindErrorDifference(comparison, label).interval.lower > 0.0;
 }
 
-// The best first. `summary`: of the answers as they were given.
-std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& summary, double sigma_px) {
+// The best first. `summary`: of the answers as they were given; `of_question`: of those of `run`.
+std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& summary,
+                                       const Summary& of_question, double sigma_px) {
   const std::vector<DescribedEstimator>& estimators = run.description.estimators;
-  const Summary of_question = Summarize(run, /*with_times=*/false);
   std::vector<AskedEstimator> ranked;
   for (const DescribedEstimator& estimator : estimators) {
     const std::string& label = estimator.label;
@@ -210,7 +210,9 @@ Answer AnswerQuestion(const ResultStore& run, const Question& question, double a
     throw InputError(fmt::format("ask: {}: has {} conditions; an answer is of one", description.study,
                                  description.conditions.size()));
   const Summary summary = Summarize(run, /*with_times=*/true);
-  const std::vector<AskedEstimator> ranked = ListRanked(readable, summary, question.sigma_px);
+  // Both have the same answers unless the question has no direction (ReadForQuestion).
+  const Summary of_question = HasDirection(question) ? summary : Summarize(readable, /*with_times=*/false);
+  const std::vector<AskedEstimator> ranked = ListRanked(readable, summary, of_question, question.sigma_px);
   Answer answer;
   answer.num_trials = summary.num_trials_done;
   answer.num_estimators = static_cast<int>(ranked.size());
