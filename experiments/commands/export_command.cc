@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <vector>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
@@ -13,6 +15,9 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/work/make_in_order.h"
+#include "experiments/core/work/progress.h"
+#include "experiments/core/work/stop_request.h"
 #include "experiments/data/match_file.h"
 #include "experiments/study/study_file.h"
 #include "experiments/trial/simulate_draw.h"
@@ -32,6 +37,7 @@ struct ExportArguments {
   StudyChanges changes;
   LockArguments lock;
   std::int64_t trials = 0;  // the study's own
+  int threads = 0;
 };
 
 // What an estimator must not see.
@@ -73,15 +79,21 @@ void RemoveOthers(const fs::path& folder, const std::set<std::string>& ids, bool
   if (!has_lock) fs::remove(folder / "study.lock");
 }
 
-// Returns the problem's id.
-std::string ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
-                        const TrialData& data, const fs::path& folder, FileInPieces* problems,
-                        FileInPieces* truths) {
+// A problem and its truth as lines of JSON; all are empty if the trial cannot be simulated.
+struct ExportedTrial {
+  std::string id, problem, truth;
+};
+
+// Writes the trial's match file.
+ExportedTrial ExportTrial(const StudyPlan& plan, const Condition& condition, std::uint32_t trial,
+                          const fs::path& folder) {
+  const auto simulated =
+      SimulateDraw(plan.study, [&] { return condition.source->Make(NameOfScene(plan, condition, trial)); });
+  if (!simulated.made) return {};
+  const TrialData& data = *simulated.made;
   RandomStream rng = StreamFor(NameOfTrial(plan, condition, trial), StreamPurpose::kSampling);
   const std::uint32_t seed = SeedForOutside(rng);
   const std::string id = ProblemId(data.problem, seed);
-  problems->Write(ProblemAsJson(data.problem, seed));
-  truths->Write(TruthAsJson(data, id, condition, trial));
   MatchFile file;
   file.scene = NameOfCondition(plan, condition);
   file.matches = data.problem.matches;
@@ -91,10 +103,43 @@ std::string ExportTrial(const StudyPlan& plan, const Condition& condition, std::
   file.camera2 = data.problem.camera2;
   file.prior = data.problem.prior;
   WriteMatchFile(file, (folder / "matches" / (id + ".csv")).string());
-  return id;
+  return {id, ProblemAsJson(data.problem, seed), TruthAsJson(data, id, condition, trial)};
+}
+
+// Writes the problems, in the order of the plan, and their match files. Returns the ids of the problems.
+std::vector<std::string> ExportTrials(const StudyPlan& plan, int num_threads, const fs::path& folder) {
+  FileInPieces problems((folder / "problems.jsonl").string()), truths((folder / "truth.jsonl").string());
+  std::vector<std::string> ids;
+  std::atomic<std::int64_t> num_files = 0;
+  Progress progress("trials", plan.NumTrials());
+  try {
+    for (const Condition& condition : plan.conditions) {
+      const auto make = [&](std::int64_t trial) {
+        ExportedTrial exported = ExportTrial(plan, condition, static_cast<std::uint32_t>(trial), folder);
+        num_files += !exported.id.empty();
+        return exported;
+      };
+      MakeInOrder(condition.num_trials, num_threads, make, [&](const ExportedTrial& exported) {
+        progress.Advance(1);
+        if (exported.id.empty()) return;
+        ids.push_back(exported.id);
+        problems.Write(exported.problem);
+        truths.Write(exported.truth);
+      });
+    }
+  } catch (const Stopped&) {
+    throw Stopped(fmt::format(
+        "export: stopped; {} match files of {} trials are in {}; the other files were not written; "
+        "the same command writes all of them",
+        num_files.load(), plan.NumTrials(), (folder / "matches").string()));
+  }
+  problems.Finish();
+  truths.Finish();
+  return ids;
 }
 
 void Export(const ExportArguments& arguments) {
+  const StopOnSignals stop;
   Study study = LoadChangedStudy(arguments.study, arguments.changes);
   if (arguments.trials > 0) study.trials = static_cast<int>(arguments.trials);
   StudyPlan plan = MakePlan(study, arguments.study, PlanEstimators::kNotMade);
@@ -105,29 +150,16 @@ void Export(const ExportArguments& arguments) {
   }
   const fs::path folder = arguments.out;
   MakeResultFolder((folder / "matches").string());
-  FileInPieces problems((folder / "problems.jsonl").string()), truths((folder / "truth.jsonl").string());
-  std::int64_t num_problems = 0;
-  std::set<std::string> ids;
-  for (const Condition& condition : plan.conditions) {
-    for (std::uint32_t trial = 0; trial < static_cast<std::uint32_t>(condition.num_trials); ++trial) {
-      const auto simulated = SimulateDraw(
-          plan.study, [&] { return condition.source->Make(NameOfScene(plan, condition, trial)); });
-      if (!simulated.made) continue;
-      ++num_problems;
-      ids.insert(ExportTrial(plan, condition, trial, *simulated.made, folder, &problems, &truths));
-    }
-  }
-  problems.Finish();
-  truths.Finish();
-  RemoveOthers(folder, ids, !plan.lock.empty());
+  const std::vector<std::string> ids = ExportTrials(plan, arguments.threads, folder);
+  RemoveOthers(folder, {ids.begin(), ids.end()}, !plan.lock.empty());
   WriteFileWhole((folder / "study.yaml").string(), plan.study_yaml);
   if (!plan.lock.empty()) WriteFileWhole((folder / "study.lock").string(), plan.lock);
   PrintMessage(
       "done: {} problems in {}{}; next: answer them, then rcme import ANSWERS --study {} --label mine --out "
       "run.sqlite\n",
-      num_problems, (folder / "problems.jsonl").string(),
-      num_problems < plan.NumTrials()
-          ? fmt::format(" ({} trials cannot be simulated)", plan.NumTrials() - num_problems)
+      ids.size(), (folder / "problems.jsonl").string(),
+      std::ssize(ids) < plan.NumTrials()
+          ? fmt::format(" ({} trials cannot be simulated)", plan.NumTrials() - std::ssize(ids))
           : "",
       (folder / "study.yaml").string());
 }
@@ -155,6 +187,7 @@ Examples:
   AddLockOptions(command, &arguments->lock);
   command->add_option("--trials", arguments->trials, "trials per condition")
       ->transform(WholeNumberIn(1, 2'000'000'000));
+  AddThreadsOption(command, &arguments->threads);
   command->callback([arguments] { Export(*arguments); });
 }
 

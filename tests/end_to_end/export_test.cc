@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -40,6 +42,34 @@ TEST_F(Export, NamesTheConditionAndLeavesNoFileOfAnEarlierExport) {
   ASSERT_EQ(RunExport("1").exit_code, 0);
   EXPECT_EQ(Scenes(), (std::multiset<std::string>{"# scene: mine", "# scene: outlier_ratio 0",
                                                   "# scene: outlier_ratio 0.3"}));
+}
+
+TEST_F(Export, AnyNumberOfThreadsGivesTheSameBytes) {
+  const auto bytes_with = [&](const std::string& threads) {
+    EXPECT_EQ(
+        RunRcme({"export", study_, "--trials", "20", "--threads", threads, "--out", exported_}).exit_code, 0);
+    std::map<std::string, std::string> bytes;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(exported_)) {
+      if (entry.is_regular_file()) bytes[entry.path().string()] = ReadBytes(entry.path().string());
+    }
+    std::filesystem::remove_all(exported_);
+    return bytes;
+  };
+  const auto one = bytes_with("1");
+  EXPECT_EQ(one.size(), 43U);
+  EXPECT_EQ(one, bytes_with("3"));
+}
+
+TEST_F(Export, SaysWhatIsWrittenWhenItIsStopped) {
+  RunningProgram program(RcmeCommand({"export", study_, "--trials", "100000", "--out", exported_}));
+  const std::string matches = exported_ + "/matches";
+  while (!program.HasEnded() && (!std::filesystem::exists(matches) || std::filesystem::is_empty(matches))) {
+  }
+  program.Send(SIGINT);
+  const ProgramResult stopped = program.Wait();
+  EXPECT_EQ(stopped.exit_code, 130);
+  EXPECT_THAT(stopped.err, HasSubstr(" match files of 200000 trials are in " + matches));
+  EXPECT_FALSE(std::filesystem::exists(exported_ + "/problems.jsonl"));
 }
 
 // The noise that the study's estimators are told, which may differ from that of its matches.
