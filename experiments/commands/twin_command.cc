@@ -21,6 +21,7 @@
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "stats/median_ratio.h"
 
 namespace rcme {
 namespace {
@@ -49,6 +50,14 @@ TwinPlaces MakeTwinPlaces(const std::filesystem::path& out, const std::string& s
   }
   const std::string name = MakeFileName(scene);
   return {out / (name + ".yaml"), out / (name + "_simulated.yaml"), out / (name + "_pairs")};
+}
+
+// The noise level (px) that the estimator assumed of the median pair. Matches of twins are undistorted, and
+// undistortion magnifies the noise of the images.
+double ComputeAssumedSigma(const TwinSource& source) {
+  std::vector<double> sigmas;
+  for (const AnsweredTrial& one : source.pairs) sigmas.push_back(one.pair.problem.sigma_px);
+  return ComputeMedian(std::move(sigmas));
 }
 
 void WriteTemplates(const TwinSource& source, const std::filesystem::path& folder) {
@@ -103,15 +112,15 @@ void RunTwin(const TwinArguments& arguments) {
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   const std::unique_ptr<MotionEstimator> estimator = Make(spec);
   CheckProcessEstimators({spec});
+  ImageNames images;
+  StatedSigmas sigmas;
   // Twins are of matches: a sensor's error is not drawn anew.
   Scenes scenes =
-      LoadMatchFolder({.folder = arguments.pairs, .sigma_px = arguments.sigma_px, .keeps_priors = false});
-  const ImageNames images = ImageNamesIn(arguments.pairs);
-  StatedSigmas sigmas;
-  if (!arguments.sigma_px) {
-    for (const std::filesystem::path& path : MatchFilesIn(arguments.pairs))
-      sigmas.Add(ReadMatchFile(path.string()));
-  }
+      LoadMatchFolder({.folder = arguments.pairs, .sigma_px = arguments.sigma_px, .keeps_priors = false},
+                      [&](const MatchFile& file) {
+                        AddImageNames(file, &images);
+                        if (!arguments.sigma_px) sigmas.Add(file);
+                      });
   std::string names;
   for (const auto& [scene, data] : scenes) names += (names.empty() ? "" : ", ") + scene;
   if (!arguments.scene.empty()) {
@@ -144,10 +153,8 @@ void RunTwin(const TwinArguments& arguments) {
     const auto seed = static_cast<std::uint64_t>(arguments.seed);
     const TwinPlaces places = MakeTwinPlaces(out, scene);
     const TwinSource source = AnswerScene(scene, *data, images, *estimator, seed, &steps);
-    reports.push_back(
-        MakeTwinReport(source, *estimator, places.templates.filename().string(),
-                       arguments.sigma_px.value_or(sigmas.InScene(scene).value_or(kUsualSigmaPx)), seed,
-                       arguments.num_twins, &steps));
+    reports.push_back(MakeTwinReport(source, *estimator, places.templates.filename().string(),
+                                     ComputeAssumedSigma(source), seed, arguments.num_twins, &steps));
     const TwinReport& report = reports.back();
     WriteTemplates(source, places.templates);
     WriteStudy(report, "semi_real", report.semi_real, 20, spec, places.study);

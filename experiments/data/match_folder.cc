@@ -153,18 +153,14 @@ void StatedSigmas::Add(const MatchFile& file) {
       file.path, describe(file.assumed_sigma_px), describe(first->second.sigma_px), first->second.path));
 }
 
-std::optional<double> StatedSigmas::InScene(const std::string& scene) const {
-  const auto first = first_.find(scene);
-  return first == first_.end() ? std::nullopt : first->second.sigma_px;
+void AddImageNames(const MatchFile& file, ImageNames* names) {
+  if (!file.image1.empty() && !file.image2.empty())
+    (*names)[fs::path(file.path).filename().string()] = {file.image1, file.image2};
 }
 
 ImageNames ImageNamesIn(const std::string& folder) {
   ImageNames names;
-  for (const fs::path& path : MatchFilesIn(folder)) {
-    const MatchFile file = ReadMatchFile(path.string());
-    if (!file.image1.empty() && !file.image2.empty())
-      names[path.filename().string()] = {file.image1, file.image2};
-  }
+  for (const fs::path& path : MatchFilesIn(folder)) AddImageNames(ReadMatchFile(path.string()), &names);
   return names;
 }
 
@@ -176,7 +172,7 @@ int MatchFolderData::NumTrials(int trials) const {
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatchFolder(
-    const MatchFolderSettings& settings) {
+    const MatchFolderSettings& settings, const std::function<void(const MatchFile&)>& visit) {
   struct Group {
     std::vector<TrialData> pairs;
     std::vector<double> noise_levels;
@@ -193,6 +189,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   CameraWarnings warnings;
   for (const fs::path& path : paths) {
     MatchFile file = ReadMatchFile(path.string());
+    if (visit) visit(file);
     warnings.Add(file.doubts);
     num_matches += file.matches.size();
     if (num_matches > kMaxMatches) {

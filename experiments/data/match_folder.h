@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -64,13 +65,12 @@ class MatchFolderData : public DataSource {
 // match files or has too many.
 std::vector<std::filesystem::path> MatchFilesIn(const std::string& folder);
 
-// The noise level that the match files of each scene state, for commands that assume one for all pairs of a
-// scene.
+// Requires that the match files of a scene state the same noise level, for commands that assume one for all
+// pairs of a scene.
 class StatedSigmas {
  public:
   // Throws InputError if an earlier file of the scene states another level.
   void Add(const MatchFile& file);
-  std::optional<double> InScene(const std::string& scene) const;
 
  private:
   struct First {
@@ -83,6 +83,7 @@ class StatedSigmas {
 // The names of the two images of each match file that states them, by file name (TrialData::origin). Pairs
 // of one scene with an equal name share the image.
 using ImageNames = std::map<std::string, std::pair<std::string, std::string>>;
+void AddImageNames(const MatchFile& file, ImageNames* names);
 ImageNames ImageNamesIn(const std::string& folder);
 
 // Returns the name of a pair in an index: the file name without its ending.
@@ -94,8 +95,8 @@ std::set<std::string> PairsWithWeakDirection(const std::filesystem::path& given_
 
 // Reads every *.csv and *.csv.gz of the folder, ordered by name and grouped by the scene in the header. An
 // INDEX.csv in the folder or above it may mark pairs whose true direction is not scored (columns pair_id,
-// t_gt_weak = 1).
+// t_gt_weak = 1). Calls `visit` with each file as it was read.
 std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatchFolder(
-    const MatchFolderSettings& settings);
+    const MatchFolderSettings& settings, const std::function<void(const MatchFile&)>& visit = {});
 
 }  // namespace rcme

@@ -21,8 +21,8 @@ class TwinProgram : public testing::Test {
                    scene + MatchHeader() + TruePoseHeader() + NoisyRows(static_cast<std::uint64_t>(name[2])));
     }
   }
-  // 120 right matches with noise of about 0.2 px and 20 wrong ones.
-  static std::string NoisyRows(std::uint64_t seed) {
+  // 120 right matches with noise of about 0.2 px and 20 wrong ones, seen through a lens of this k1.
+  static std::string NoisyRows(std::uint64_t seed, double k1 = 0.0) {
     RandomStream rng({.seed = seed, .purpose = 77});
     std::string rows;
     for (int i = 0; i < 140; ++i) {
@@ -31,9 +31,14 @@ class TwinProgram : public testing::Test {
       double x2 = x + 600.0 * 0.8 / depth + 0.3 * rng.Normal(),
              y2 = y + 600.0 * 0.6 / depth + 0.3 * rng.Normal();
       if (i % 7 == 0) x2 = rng.Uniform(0.0, 640.0), y2 = rng.Uniform(0.0, 480.0);
-      rows += fmt::format("{},{},{},{}\n", x, y, x2, y2);
+      rows += fmt::format("{},{}\n", Distort(x, y, k1), Distort(x2, y2, k1));
     }
     return rows;
+  }
+
+  static std::string Distort(double x, double y, double k1) {
+    const double u = (x - 319.5) / 600.0, v = (y - 239.5) / 600.0, factor = 1.0 + k1 * (u * u + v * v);
+    return fmt::format("{},{}", 319.5 + 600.0 * factor * u, 239.5 + 600.0 * factor * v);
   }
 
   TempFolder pairs_, folder_;
@@ -78,6 +83,24 @@ TEST_F(TwinProgram, OfOneSceneWritesOneStudy) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_TRUE(std::filesystem::exists(study));
   EXPECT_TRUE(std::filesystem::exists(folder_.Path("b_pairs")));
+}
+
+// Twins are of undistorted matches, which have more noise than those of the images.
+TEST_F(TwinProgram, OfALensAssumesTheNoiseOfUndistortedMatches) {
+  TempFolder lens;
+  const std::string camera = ": SIMPLE_RADIAL 640 480 600 319.5 239.5 -0.4\n", out = folder_.Path("twins");
+  const std::string pair =
+      lens.Write("a.csv", "# scene: a\n# sigma_px: 0.4\n# camera1" + camera + "# camera2" + camera +
+                              TruePoseHeader() + NoisyRows(1, -0.4));
+  const auto answer = nlohmann::json::parse(RunRcme({"estimate", pair, "--format", "json"}).out);
+  const double assumed_px = answer["evidence"]["sigma_assumed_px"];
+  EXPECT_GT(assumed_px, 0.41);
+  ASSERT_EQ(RunRcme({"twin", lens.path(), "--out", out, "--twins", "1"}).exit_code, 0);
+  for (const char* line : {"/a.yaml sigma_px: ", "/a_simulated.yaml assumed_sigma_px: "}) {
+    const std::string words = line, name = words.substr(0, words.find(' ')), key = words.substr(name.size());
+    EXPECT_NE(ReadBytes(out + name).find(fmt::format("{}{:.4g}", key, assumed_px)), std::string::npos)
+        << ReadBytes(out + name);
+  }
 }
 
 // A match file of somebody's may call its scene what it likes.
