@@ -103,7 +103,6 @@ TEST_F(TwinProgram, OfALensAssumesTheNoiseOfUndistortedMatches) {
   }
 }
 
-// A match file of somebody's may call its scene what it likes.
 // The time is over before the first pair; other options are other twins.
 TEST_F(TwinProgram, GoesOnAfterATimeLimit) {
   const std::string study = folder_.Path("b.yaml"), kept = study + ".unfinished.part";
@@ -122,6 +121,7 @@ TEST_F(TwinProgram, GoesOnAfterATimeLimit) {
   EXPECT_FALSE(std::filesystem::exists(kept));
 }
 
+// A match file of somebody's may call its scene what it likes.
 TEST_F(TwinProgram, WritesNothingOutsideItsFolder) {
   TempFolder theirs;
   const std::string out = folder_.Path("twins");
