@@ -34,6 +34,9 @@ inline constexpr auto kCheckSigns = std::to_array<CheckSign>({
     {"greatest_leverage", [](const ModelCheck& c) { return c.greatest_leverage; }},
     {"log_rotation_sd", [](const ModelCheck& c) { return c.log_rotation_sd; }},
     {"greatest_rival", [](const ModelCheck& c) { return c.greatest_rival; }},
+    {"log_behind", [](const ModelCheck& c) { return c.log_behind; }},
+    {"near_in_right", [](const ModelCheck& c) { return c.near_in_right; }},
+    {"parallax_spread", [](const ModelCheck& c) { return c.parallax_spread; }},
 });
 
 // y_k, for the covariance. The subtracted values, 1.1 and 0.6, are usual for independent noise.

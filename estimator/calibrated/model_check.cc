@@ -16,7 +16,7 @@ namespace rcme {
 namespace {
 
 constexpr size_t kMostCompared = 128;
-constexpr double kCut = 3.0;            // of residuals, standard deviations
+constexpr double kCut = 3.0;            // of residuals and parallaxes, standard deviations
 constexpr double kPlaneBound = 4.0;     // standard deviations of a match
 constexpr double kApart = 0.5;          // of two displacements, relative to the distance
 constexpr double kLeastDistance = 1.0;  // px; nearer ones are the same key point
@@ -112,26 +112,60 @@ double PlanarShare(const MotionProblem& problem, const Split& split, const Expla
   return num_near / static_cast<double>(n);
 }
 
-// Determinant of the scatter of some matches' points in image 1, px^4.
-double ScatterDeterminant(const MotionProblem& problem, const std::vector<size_t>& some) {
+// Determinant of the scatter of some matches' points in image 1, each with the weight of its index, px^4.
+template <typename Weight>
+double WeightedScatterDeterminant(const MotionProblem& problem, const std::vector<size_t>& some,
+                                  const Weight& weight) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const size_t i : some) mean += problem.matches[i].x1_px;
-  mean /= std::max(1.0, static_cast<double>(some.size()));
+  double sum = 0.0;
+  for (const size_t i : some) {
+    mean += weight(i) * problem.matches[i].x1_px;
+    sum += weight(i);
+  }
+  if (!(sum > 0.0)) return 0.0;
+  mean /= sum;
   Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
   for (const size_t i : some) {
     const Eigen::Vector2d away = problem.matches[i].x1_px - mean;
-    scatter += away * away.transpose();
+    scatter += weight(i) * away * away.transpose();
   }
-  scatter /= std::max(1.0, static_cast<double>(some.size()));
-  return scatter.determinant();
+  return (scatter / sum).determinant();
 }
 
-void CheckSpread(const MotionProblem& problem, const Split& split, ModelCheck* check) {
-  std::vector<size_t> all(problem.matches.size());
+double ScatterDeterminant(const MotionProblem& problem, const std::vector<size_t>& some) {
+  return WeightedScatterDeterminant(problem, some, [](size_t) { return 1.0; });
+}
+
+// ln of the ratio of lengths of two scatters, at least a square pixel each.
+double LogRelativeSpread(double determinant, double of_determinant) {
+  return std::clamp(0.25 * std::log((determinant + 1.0) / (of_determinant + 1.0)), -2.0, 1.0);
+}
+
+void CheckSpread(const MotionProblem& problem, const Split& split, const ExplainedMode& answer,
+                 ModelCheck* check) {
+  const std::vector<double>& depth = answer.explanation.terms.depth;
+  std::vector<size_t> all(problem.matches.size()), near;
   for (size_t i = 0; i < all.size(); ++i) all[i] = i;
-  const double of_right = ScatterDeterminant(problem, split.right) + 1.0;
-  check->spread_in_matches =
-      std::clamp(0.25 * std::log(of_right / (ScatterDeterminant(problem, all) + 1.0)), -2.0, 1.0);
+  for (const size_t i : split.right) {
+    if (depth[i] >= kCut * answer.mode.mixture.scale) near.push_back(i);
+  }
+  const double of_right = ScatterDeterminant(problem, split.right);
+  check->spread_in_matches = LogRelativeSpread(of_right, ScatterDeterminant(problem, all));
+  check->near_in_right = LogRelativeSpread(ScatterDeterminant(problem, near), of_right);
+  check->parallax_spread = LogRelativeSpread(
+      WeightedScatterDeterminant(problem, near, [&](size_t i) { return depth[i] * depth[i]; }), of_right);
+}
+
+void CheckSides(const MotionProblem& problem, const ExplainedMode& answer, ModelCheck* check) {
+  const double bound = kCut * answer.mode.mixture.scale;
+  const MatchTermLists& terms = answer.explanation.terms;
+  double in_front = 0.5, behind = 0.5;
+  for (size_t i = 0; i < problem.matches.size(); ++i) {
+    if (!(std::abs(terms.residual[i]) < bound)) continue;
+    in_front += terms.depth[i] > bound;
+    behind += terms.depth[i] < -bound;
+  }
+  check->log_behind = std::log(behind / in_front);
 }
 
 // Sums over the right matches in a block of image 1.
@@ -260,7 +294,8 @@ ModelCheck CheckModel(const MotionProblem& problem, const std::vector<ExplainedM
   check.log_noise_ratio = std::log(m.scale / m.noise.scale_of_gaussian);
   CheckNeighbours(problem, split, answer, &check);
   check.planar_share = PlanarShare(problem, split, answer);
-  CheckSpread(problem, split, &check);
+  CheckSpread(problem, split, answer, &check);
+  CheckSides(problem, answer, &check);
   CheckBlocks(problem, split, answer, &check);
   check.log_num_right = LogWithin(static_cast<double>(split.right.size()), 1.0, 1e9);
   check.wrong_share = static_cast<double>(split.wrong.size()) / static_cast<double>(problem.matches.size());

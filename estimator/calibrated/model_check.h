@@ -23,6 +23,15 @@ struct ModelCheck {
   // ln of a ratio of lengths: a quarter of the log of det(scatter of the right matches in image 1) over that
   // of all matches.
   double spread_in_matches = 0.0;
+  // Of the matches within three standard deviations of their epipolar lines: ln((b + 1/2) / (a + 1/2)), where
+  // a have a point in front of the cameras, b one behind them, and both a parallax above three standard
+  // deviations. The points of a scene are in front; wrong matches are on either side, whether they lie on
+  // their lines by chance or are other repetitions of a texture.
+  double log_behind = 0.0;
+  // The spread of the right matches with such a parallax in front, in that of all right matches, as
+  // spread_in_matches; parallax_spread weights each by z^2. A moving object in front of a scene without
+  // parallax is a small group.
+  double near_in_right = 0.0, parallax_spread = 0.0;
   // How much of the image holds the parallax: ln of (sum b)^2 / (n sum b^2), where b is the sum of z^2, z >
   // 0, in a block and n the number of those of the 4x4 blocks of image 1 with right matches (Kish 1965).
   double log_parallax_share = 0.0;

@@ -36,6 +36,9 @@ ModelCheck RandomCheck(RandomStream& rng) {
   c.mean_probability = 0.7 + 0.3 * rng.Uniform();
   c.mean_gain = 8.0 * rng.Uniform();
   c.greatest_leverage = rng.Uniform();
+  c.log_behind = -8.0 * rng.Uniform();
+  c.near_in_right = -rng.Uniform();
+  c.parallax_spread = -2.0 * rng.Uniform();
   c.partner_dependence = {3.0 * rng.Normal() + 2.0, 3.0 * rng.Normal() + 2.0};
   return c;
 }
@@ -132,6 +135,7 @@ ModelCheck MakePlainCheck() {
   plain.mean_probability = 0.99;
   plain.mean_gain = 5.0;
   plain.greatest_leverage = 0.1;
+  plain.log_behind = -5.0;
   plain.partner_dependence = {5.0, 5.0};
   return plain;
 }
@@ -149,8 +153,9 @@ TEST(CheckedProbability, DoubtsRaiseIt) {
   EXPECT_GT(raised([](ModelCheck& c) { c.neighbour_z = 8.0, c.log_design_2 = 2.0, c.log_design_4 = 2.0; }),
             1.5 * p);
   EXPECT_GT(raised([](ModelCheck& c) { c.planar_share = 1.0, c.usual_depth = 4.0; }), 1.5 * p);
-  EXPECT_GT(raised([](ModelCheck& c) { c.log_parallax_share = std::log(0.08); }), 1.5 * p);
-  EXPECT_GT(raised([](ModelCheck& c) { c.log_noise_ratio = std::log(3.0); }), 1.5 * p);
+  EXPECT_GT(raised([](ModelCheck& c) { c.log_parallax_share = std::log(0.08), c.parallax_spread = -1.0; }),
+            1.5 * p);
+  EXPECT_GT(raised([](ModelCheck& c) { c.log_noise_ratio = std::log(0.4); }), 1.5 * p);
   EXPECT_GT(raised([](ModelCheck& c) { c.wrong_coherence = 0.9, c.log_rotation_sd = -6.0; }),
             1.5 * raised([](ModelCheck& c) { c.log_rotation_sd = -6.0; }));
   EXPECT_GT(raised([](ModelCheck& c) { c.spread_in_matches = -1.0; }), 1.5 * p);

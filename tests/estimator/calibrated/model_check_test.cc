@@ -122,23 +122,91 @@ TEST(ModelCheckOf, SpreadIsOfTheRightMatches) {
   EXPECT_NEAR(check.wrong_share, 1.0 - num_right / 300.0, 1e-12);
 }
 
-// Points of one corner three baselines away, the others three hundred: a sixteenth of the image or two.
+// Points of one corner three baselines away, the others three thousand: a sixteenth of the image or two.
+FittedMode FitNearCorner(std::uint32_t trial) {
+  const Scene scene = TwoCameraScene(300, trial);
+  RandomStream rng({.seed = 1, .trial = trial, .purpose = 2902});
+  MotionProblem problem{{}, scene.camera1, scene.camera2, 0.3};
+  for (const Eigen::Vector3d& point : scene.points_in_cam1) {
+    const Eigen::Vector2d x = scene.camera1.Project(point);
+    const bool is_near = x.x() < 0.25 * scene.camera1.width && x.y() < 0.25 * scene.camera1.height;
+    problem.matches.push_back(ProjectToBoth(point * ((is_near ? 3.0 : 3000.0) / point.z()),
+                                            scene.cam2_from_cam1_true, scene.camera1, scene.camera2));
+  }
+  AddNoise(0.3, rng, &problem);
+  return FitFromTruth(problem, scene.cam2_from_cam1_true);
+}
+
 TEST(ModelCheckOf, ParallaxOfACornerIsTold) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const Scene scene = TwoCameraScene(300, trial);
-    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2902});
+    const ModelCheck of_corner = CheckFittedMode(FitNearCorner(trial));
+    EXPECT_LT(of_corner.log_parallax_share, std::log(0.3)) << trial;
+    EXPECT_LT(of_corner.parallax_spread, std::log(0.4)) << trial;
+    const ModelCheck of_all = CheckFittedMode(FitScene(300, 0.3, 0.0, trial));
+    EXPECT_GT(of_all.log_parallax_share, std::log(0.4)) << trial;
+    EXPECT_GT(of_all.parallax_spread, std::log(0.7)) << trial;
+    EXPECT_NEAR(of_all.near_in_right, 0.0, 0.1) << trial;
+  }
+}
+
+// det of the covariance of points (x, y in px, weight), px^4.
+double AreaSquared(const std::vector<Eigen::Vector3d>& x_y_weight) {
+  double sum = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const Eigen::Vector3d& a : x_y_weight) {
+    sum += a.z();
+    for (const Eigen::Vector3d& b : x_y_weight) {  // pairs: no mean is needed
+      const Eigen::Vector3d d = a - b;
+      const double w = 0.5 * a.z() * b.z();
+      xx += w * d.x() * d.x();
+      xy += w * d.x() * d.y();
+      yy += w * d.y() * d.y();
+    }
+  }
+  return (xx * yy - xy * xy) / std::pow(sum, 4);
+}
+
+TEST(ModelCheckOf, NearMatchesAreThoseWithParallaxOfThreeStandardDeviations) {
+  int num_within = 0;  // the bound
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const FittedMode f = FitNearCorner(trial);
+    const Explanation explained = Explain(f.matches, f.mode);
+    std::vector<Eigen::Vector3d> right, near, weighted;
+    for (size_t i = 0; i < f.problem.matches.size(); ++i) {
+      if (explained.probability[i] <= 0.5) continue;
+      const Eigen::Vector2d& x = f.problem.matches[i].x1_px;
+      const double z = explained.terms.depth[i];
+      right.emplace_back(x.x(), x.y(), 1.0);
+      if (z < 3.0 * f.mode.mixture.scale) continue;
+      near.emplace_back(x.x(), x.y(), 1.0);
+      weighted.emplace_back(x.x(), x.y(), z * z);
+    }
+    ASSERT_LT(near.size(), right.size());
+    const auto expected = [&](const std::vector<Eigen::Vector3d>& some) {
+      return std::max(-2.0, 0.25 * std::log(AreaSquared(some) / AreaSquared(right)));
+    };
+    num_within += expected(weighted) > -2.0;
+    const ModelCheck check = CheckFittedMode(f);
+    EXPECT_NEAR(check.near_in_right, expected(near), 1e-6) << trial;
+    EXPECT_NEAR(check.parallax_spread, expected(weighted), 1e-6) << trial;
+  }
+  EXPECT_GT(num_within, 10);
+}
+
+// Sixty of two hundred matches have the second point that the opposite translation would give.
+TEST(ModelCheckOf, MatchesBehindTheCamerasAreTold) {
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const Scene scene = TwoCameraScene(200, trial);
+    const RelativePose& pose = scene.cam2_from_cam1_true;
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2903});
     MotionProblem problem{{}, scene.camera1, scene.camera2, 0.3};
     for (const Eigen::Vector3d& point : scene.points_in_cam1) {
-      const Eigen::Vector2d x = scene.camera1.Project(point);
-      const bool is_near = x.x() < 0.25 * scene.camera1.width && x.y() < 0.25 * scene.camera1.height;
-      problem.matches.push_back(ProjectToBoth(point * ((is_near ? 3.0 : 300.0) / point.z()),
-                                              scene.cam2_from_cam1_true, scene.camera1, scene.camera2));
+      const double way = problem.matches.size() < 60 ? -1.0 : 1.0;
+      problem.matches.push_back(ProjectToBoth(point, {pose.R, way * pose.t}, scene.camera1, scene.camera2));
     }
     AddNoise(0.3, rng, &problem);
-    EXPECT_LT(CheckFittedMode(FitFromTruth(problem, scene.cam2_from_cam1_true)).log_parallax_share,
-              std::log(0.3))
+    EXPECT_NEAR(CheckFittedMode(FitFromTruth(problem, pose)).log_behind, std::log(60.0 / 140.0), 0.2)
         << trial;
-    EXPECT_GT(CheckFittedMode(FitScene(300, 0.3, 0.0, trial)).log_parallax_share, std::log(0.4)) << trial;
+    EXPECT_LT(CheckFittedMode(FitScene(200, 0.3, 0.2, trial)).log_behind, std::log(0.05)) << trial;
   }
 }
 
@@ -189,11 +257,26 @@ TEST(ModelCheckOf, IsFiniteWhateverTheMatches) {
         f = FitFromTruth(same, f.pose_true);
       }
       const ModelCheck c = CheckFittedMode(f);
-      for (const double x :
-           {c.log_noise_ratio, c.neighbour_z, c.planar_share, c.spread_in_matches, c.log_parallax_share,
-            c.log_design_2, c.log_design_4, c.wrong_share, c.wrong_coherence, c.log_rotation_sd, c.low_depth,
-            c.log_num_right, c.mean_probability, c.mean_gain, c.greatest_leverage,
-            c.partner_dependence.order_z, c.partner_dependence.rank_z})
+      for (const double x : {c.log_noise_ratio,
+                             c.neighbour_z,
+                             c.planar_share,
+                             c.spread_in_matches,
+                             c.log_parallax_share,
+                             c.log_design_2,
+                             c.log_design_4,
+                             c.wrong_share,
+                             c.wrong_coherence,
+                             c.log_rotation_sd,
+                             c.low_depth,
+                             c.log_num_right,
+                             c.mean_probability,
+                             c.mean_gain,
+                             c.greatest_leverage,
+                             c.log_behind,
+                             c.parallax_spread,
+                             c.near_in_right,
+                             c.partner_dependence.order_z,
+                             c.partner_dependence.rank_z})
         EXPECT_TRUE(std::isfinite(x)) << n << is_one;
     }
   }
