@@ -74,7 +74,8 @@ Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Mat
     if (spreads != nullptr) (*spreads)[i] = reach + of_intrinsics;
     if (!IsWithin(answer.pose, bounds, mode.pose)) continue;
     const Vector5d away = LocalCoordinates(answer.pose, mode.pose);
-    const Matrix5d covariance = ComputeModeCovariance(problem, modes[i], curvature, check, prior, options);
+    const Matrix5d covariance =
+        ComputeModeCovariance(modes[i], curvature, of_intrinsics, check, prior, options);
     if (spreads != nullptr) (*spreads)[i] = covariance;
     const Matrix5d to_answer = TransportTangent(mode.pose, answer.pose);
     verdict.pose_cov += weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
@@ -87,9 +88,9 @@ Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Mat
   return verdict;
 }
 
-Matrix5d ComputeModeCovariance(const MotionProblem& problem, const ExplainedMode& mode,
-                               const Matrix5d& curvature, const ModelCheck& check, const MixturePrior& prior,
-                               const CalibratedOptions& options) {
+Matrix5d ComputeModeCovariance(const ExplainedMode& mode, const Matrix5d& curvature,
+                               const Matrix5d& of_intrinsics, const ModelCheck& check,
+                               const MixturePrior& prior, const CalibratedOptions& options) {
   Matrix5d of_prior = Matrix5d::Zero();  // the inverse information includes the prior
   Matrix5d of_matches = options.covariance == CovarianceKind::kInformation
                             ? mode.mode.inverse_hessian
@@ -99,8 +100,7 @@ Matrix5d ComputeModeCovariance(const MotionProblem& problem, const ExplainedMode
   if (options.covariance == CovarianceKind::kRobust)
     return of_matches + of_prior;  // MakeCovarianceRobust adds the shared errors
   of_matches *= FindCheckFactor(check, options);
-  return BoundByUniformMotion(of_matches + of_prior +
-                              IntrinsicsCovariance(problem, options, mode.mode, curvature));
+  return BoundByUniformMotion(of_matches + of_prior + of_intrinsics);
 }
 
 }  // namespace rcme

@@ -35,9 +35,9 @@ MotionBounds MakeMotionBounds(const CalibratedOptions& options);
 Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads);
 
 // The covariance of a mode by the option `covariance`, widened by the check and by uncertain intrinsics.
-// `curvature`: InverseOfObserved.
-Matrix5d ComputeModeCovariance(const MotionProblem& problem, const ExplainedMode& mode,
-                               const Matrix5d& curvature, const ModelCheck& check, const MixturePrior& prior,
-                               const CalibratedOptions& options);
+// `curvature`: InverseOfObserved. `of_intrinsics`: IntrinsicsCovariance.
+Matrix5d ComputeModeCovariance(const ExplainedMode& mode, const Matrix5d& curvature,
+                               const Matrix5d& of_intrinsics, const ModelCheck& check,
+                               const MixturePrior& prior, const CalibratedOptions& options);
 
 }  // namespace rcme

@@ -220,8 +220,9 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     for (size_t i = 0; i < modes.size(); ++i) {
       if (!(weights.of_modes[i] >= kNegligibleWeight)) continue;
       const Matrix5d curvature = InverseOfObserved(matches, modes[i].mode);
-      Matrix5d covariance =
-          ComputeModeCovariance(problem, modes[i], curvature, of_matches.checked.check, prior, options_);
+      Matrix5d covariance = ComputeModeCovariance(
+          modes[i], curvature, IntrinsicsCovariance(problem, options_, modes[i].mode, curvature),
+          of_matches.checked.check, prior, options_);
       if (of_matches.weak_direction && !weights.is_second_motion[i])
         covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
       beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i]});

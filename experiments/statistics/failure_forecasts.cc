@@ -18,11 +18,11 @@ namespace {
 
 // The data kept of one estimator's trial.
 struct Answer {
-  double stated = 0.0;        // NaN: none
+  double stated = 0.0;        // NaN: none, or not to be judged
   double inlier_share = 0.0;  // accepted share of the matches
   std::int64_t cluster = 0;
   size_t group = 0;
-  bool refused = false, failed = false, is_in_even_half = false;
+  bool states = false, refused = false, failed = false, is_in_even_half = false;
 };
 
 // The group of each condition.
@@ -51,8 +51,9 @@ Groups GroupsBy(const std::string& factor, const RunDescription& run) {
 
 Answer ReadAnswer(const TrialRecord& record, const FailureBounds& bounds) {
   Answer answer;
-  answer.stated = record.failure_probability;
+  answer.stated = StatedFailureProbability(record).value_or(std::nan(""));
   answer.inlier_share = record.num_matches > 0 ? 1.0 * record.num_inliers / record.num_matches : 0.0;
+  answer.states = !std::isnan(record.failure_probability);
   answer.refused = HasRefused(record);
   answer.failed = HasFailed(record, bounds);
   return answer;
@@ -109,13 +110,14 @@ std::vector<double> StatedProbabilities(const std::vector<Answer>& answers) {
 }
 
 bool StatesAny(const std::vector<Answer>& answers) {
-  return std::ranges::any_of(answers, [](const Answer& a) { return !a.refused && !std::isnan(a.stated); });
+  return std::ranges::any_of(answers, [](const Answer& a) { return !a.refused && a.states; });
 }
 
 }  // namespace
 
 std::optional<double> StatedFailureProbability(const TrialRecord& record) {
   if (HasRefused(record) || !IsScored(record) || std::isnan(record.failure_probability)) return std::nullopt;
+  if (!IsInvalid(record) && std::isnan(record.direction_error_deg)) return std::nullopt;
   return record.failure_probability;
 }
 

@@ -14,8 +14,9 @@ namespace rcme {
 // A motion with at most this failure probability counts as sure.
 inline constexpr double kSureBelow = 0.1;
 
-// Returns the probability that the estimator states. Nothing for a refusal, an unknown truth, or an
-// estimator that states none.
+// Returns the probability that the estimator states. Nothing for a refusal, an estimator that states none, or
+// an unknown truth. That a motion is off in its rotation or in its direction cannot be judged if the true
+// motion has no direction, as in a pure rotation.
 std::optional<double> StatedFailureProbability(const TrialRecord& record);
 // Returns its Brier score, (P - y)^2 with y = 1 for a failure; nothing in the same cases.
 std::optional<double> BrierOfStated(const TrialRecord& record, const FailureBounds& bounds);
@@ -39,7 +40,7 @@ struct FailureForecasts {
   bool is_of_population = false;
   std::vector<Forecast> forecasts;             // of its answers
   std::vector<std::int64_t> refused_clusters;  // one per refusal
-  // Answers without a probability; no other number counts them.
+  // Answers without a probability, or whose probability cannot be judged; no other number counts them.
   std::int64_t num_without = 0;
 };
 

@@ -32,11 +32,15 @@ bool IsOfPopulation(const std::vector<ForecastMeasures>& measures) {
 Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std::string& by) {
   const NumberFormat four{1.0, "", ".4f"}, three{1.0, "", ".3f"}, two{1.0, "", ".2f"};
   const bool is_of_population = IsOfPopulation(measures);
+  const bool shows_without =
+      std::ranges::any_of(measures, [](const ForecastMeasures& m) { return m.num_without > 0; });
   Table table;
   if (!by.empty()) table.AddColumns({Column::Key(by)});
   table.AddColumns(
-      {Column::Key("estimator"), Column::Key("P from"), Column::Count("n"), Column::Count("refused"),
-       Column::Number("mean P", four), Column::Estimated("failed", four), Column::Estimated("Brier", four),
+      {Column::Key("estimator"), Column::Key("P from"), Column::Count("n"), Column::Count("refused")});
+  if (shows_without) table.AddColumns({Column::Count("not judged")});
+  table.AddColumns(
+      {Column::Number("mean P", four), Column::Estimated("failed", four), Column::Estimated("Brier", four),
        is_of_population ? Column::Estimated("ECE", four) : Column::Number("ECE", four),
        Column::Number("if right", four), Column::Number("p", {1.0, "", ".2g"}),
        Column::Estimated("slope", two), Column::Estimated("AUC", three), Column::Estimated("AURC", four),
@@ -46,6 +50,7 @@ Table MakeMeasureTable(const std::vector<ForecastMeasures>& measures, const std:
     std::vector<Value>& row = table.rows.emplace_back();
     if (!by.empty()) row.emplace_back(m.group);
     row.insert(row.end(), {m.estimator, Name(m.source), m.n, m.num_refused});
+    if (shows_without) row.emplace_back(m.num_without);
     const MeasuredCalibrationError& error = m.error_of_equal_width;
     if (m.n > 0)
       row.insert(row.end(), {m.mean_probability, WithInterval(m.failure), WithInterval(m.brier),

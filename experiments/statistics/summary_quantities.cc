@@ -156,8 +156,8 @@ const std::vector<TrialQuantity>& OwnQuantities() {
        "mean squared error of the inlier probabilities, 0 best; of returned motions that have them",
        [](R r, B) { return If(IsOk(r), r.inlier_brier); }},
       {"failure_probability", SummaryRow::Kind::kScore,
-       "stated probability of failure, its mean; of answers that have one and whose truth is known, as the "
-       "next two",
+       "stated probability of failure, its mean; of answers that have one and whose true rotation and "
+       "direction are known, as the next two",
        [](R r, B) { return StatedFailureProbability(r); }},
       {"brier", SummaryRow::Kind::kScore, "Brier score (P - y)^2 of that, 0 best", BrierOfStated},
       {"failure_of_sure", kRate, "failure, of those with P at most 0.1",

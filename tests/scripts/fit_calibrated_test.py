@@ -37,7 +37,7 @@ class Fits(unittest.TestCase):
         p = fit.logistic(x @ weights)
         x *= np.where(random.uniform(size=len(x)) < p, 1.0, -1.0)[:, None]
         errors = np.sqrt(np.diag(np.linalg.inv((x * (p * (1 - p))[:, None]).T @ x)))
-        found = fit.fit_failure(x, np.ones(len(x)), np.ones(len(x)), has_constant=False)
+        found = fit.fit_failure(x, np.ones(len(x)), np.ones(len(x)), fit.RIDGE_OF_MODES, has_constant=False)
         self.assertTrue((abs(found - weights) < 5 * errors + 0.02 * abs(weights)).all(), found)
 
     def test_arrays_of_the_header_are_written_and_read_again(self):
@@ -69,12 +69,25 @@ class Fits(unittest.TestCase):
         logit = log_odds + sum(weight * product.values(x, log_odds) for weight, product in zip((1.0, 4.0, -0.8), true))
         failed = (random.uniform(size=len(x)) < fit.logistic(logit)).astype(float)
         trials = types.SimpleNamespace(x=x, log_odds=log_odds, posterior=fit.logistic(log_odds), failed=failed, weight=np.ones(len(x)))
-        found = fit.choose_products(x, log_odds, trials.posterior, failed, trials.weight, 6)
+        found = fit.choose_products(x, log_odds, trials.posterior, failed, trials.weight, fit.Form(6, fit.FORM.ridge))
         self.assertEqual({(p.tempers, h.column) for p in found[:3] for h in p.hinges} - {(False, 0), (False, 1), (True, 2)}, set())
         check = fit.Check(np.array([[-9.0, 9.0]] + [[-1.0, 1.0]] * 5), found, None)
         check.weights = fit.fit_of_products(check, trials, found)
         loss = fit.log_loss(check.probability(trials), failed, trials.weight)
         self.assertLess(loss, fit.log_loss(fit.logistic(logit), failed, trials.weight) + 0.003)
+
+    def test_no_condition_is_judged_by_its_own_trials(self):
+        # Other outcomes of a condition change what is stated for others, not for itself.
+        random = np.random.default_rng(6)
+        trials = fit.Trials.__new__(fit.Trials)
+        trials.x, trials.log_odds = random.uniform(-1, 1, (600, 3)), random.normal(size=600)
+        trials.posterior, trials.failed = fit.logistic(trials.log_odds), (random.uniform(size=600) < 0.4).astype(float)
+        trials.weight, trials.is_permuted, trials.cluster = np.ones(600), np.zeros(600, bool), np.arange(600) // 4
+        before, own = fit.cross_validate(trials, fit.Form(3, 1e-3)), trials.cluster == 17
+        trials.failed = np.where(own, 1 - trials.failed, trials.failed)
+        after = fit.cross_validate(trials, fit.Form(3, 1e-3))
+        np.testing.assert_array_equal(after[own], before[own])
+        self.assertGreater(abs(after - before).max(), 1e-6)
 
     def test_a_weight_of_two_is_a_trial_twice(self):
         random = np.random.default_rng(2)
@@ -111,7 +124,7 @@ class Fits(unittest.TestCase):
         names = ["sign_" + row.strip("{").split(",")[0].strip('"') for row in fit.read_array("kSignRanges")[1:]]
         check, spread = fit.read_header(names)
         self.assertEqual(len(check.weights), 3 + len(check.products))
-        self.assertEqual(len(check.products), fit.NUM_PRODUCTS)
+        self.assertEqual(len(check.products), fit.FORM.products)
         self.assertTrue((check.ranges[:, 0] < check.ranges[:, 1]).all())
         self.assertGreaterEqual(check.weights[2], 0)
         self.assertEqual(len(spread), 3)

@@ -5,9 +5,8 @@ anew, the check.
 
 The check's probability is a logistic regression on products of at most two hinges of its signs, which are chosen forward, one after the
 other (Friedman 1991), each where it adds most to the likelihood by its score. Their number and the ridge were chosen in five-fold
-cross-validation over the conditions of the training, done once: with 48 and 4e-3 the log loss is 0.274 a trial and 1.5 % of the answers
-of right_calibration with P <= 0.1 failed (36 and 5e-4: 0.282 and 1.9 %; 60 and 2e-3: 0.271 and 1.8 %). Signs are cut to the range that they had
-in nearly all trials.
+cross-validation over the conditions of the training (--cross-validate, results/right_calibration/cross_validation.csv). Signs are cut to
+the range that they had in nearly all trials.
 
 Training: draws of studies/right_calibration.yaml and of studies/any_condition.yaml, and the families of studies/calibrated, with seeds
 of their own; trials of the families count less. Where partners are permuted at random every answer is wrong. The covariance is fitted where the calibration is right: errors of the calibration are not for
@@ -16,6 +15,8 @@ report with their intervals from rcme_calibrated_measures; regimes are told apar
 """
 
 import argparse
+import collections
+import copy
 import csv
 import pathlib
 import re
@@ -31,12 +32,14 @@ FAMILIES = ["indoor", "outdoor", "low_parallax", "planarity", "moving_object", "
 OF_FAMILY, OF_RANDOM = 0.6, 0.3  # weights of a trial of a family, of one with random partners; they are easy and many
 MODES_OF_FAMILY = 2.0  # the same where the modes' weights are fitted: there the families have few trials with two modes
 PRIOR_TERMS, PRIOR_SHARE = ("mode_forward", "mode_axial", "mode_turn"), 0.6  # share of the fitted weights (mode_weights.h)
-RIDGE, RIDGE_OF_MODES = 4e-3, 5e-4  # of the standardised terms' weights, per trial: of the check, of the modes
+Form = collections.namedtuple("Form", "products ridge")  # of the check; the ridge is of the standardised terms' weights, per trial
+FORM, TRIED_FORMS = Form(48, 4e-3), [Form(36, 5e-4), Form(48, 4e-3), Form(60, 2e-3)]
+RIDGE_OF_MODES = 5e-4
+FOLDS = 5
 OUTSIDE = 0.005  # share of the training trials beyond either end of a term's domain
 QUANTILE_95 = 11.0705  # of chi-square with five degrees of freedom
 SURE = 0.05  # the covariance is fitted where the probability of failure is at most this
 LEAST_SLOPE, MOST_LOG_ODDS = 0.02, 11.5  # of the posterior (kLeastSlope and kMostLogOdds of checked_probability.cc)
-NUM_PRODUCTS = 48
 KNOTS = (0.1, 0.25, 0.5, 0.75, 0.9)  # quantiles of a sign
 BEST_BY_CURVATURE = 25  # products whose score is computed beside all that are chosen
 DEPENDENT_NOISE = {"correlated", "duplicated", "anisotropic"}
@@ -118,7 +121,7 @@ class Trials:
     """Rows of the sources as arrays: signs, spread terms, posterior and its log-odds, outcome, cluster, regime."""
 
     def __init__(self, files, sources):
-        rows, self.weight, self.cluster, self.fits_covariance, self.is_permuted = [], [], [], [], []
+        rows, self.weight, self.cluster, self.fits_covariance, self.is_permuted, self.population = [], [], [], [], [], []
         for k, (path, source) in enumerate(zip(files, sources)):
             with open(path, newline="") as file:
                 for row in csv.DictReader(file):
@@ -126,6 +129,7 @@ class Trials:
                     self.weight.append(source.weight)
                     self.fits_covariance.append(source.fits_covariance)
                     self.is_permuted.append(source.listing == "permuted")
+                    self.population.append(source.population())
                     self.cluster.append((k, row["condition"]))
         self.names = [key for key in rows[0] if key.startswith("sign_")]
         self.spread_names = [key for key in rows[0] if key.startswith("spread_")]
@@ -138,6 +142,15 @@ class Trials:
         self.weight, self.fits_covariance, self.is_permuted = (np.array(x) for x in (self.weight, self.fits_covariance, self.is_permuted))
         _, self.cluster = np.unique([f"{k}:{c}" for k, c in self.cluster], return_inverse=True)
         self.regime = np.array([self._regime(row) for row in rows])
+        self.population = np.array(self.population)
+
+    def where(self, here):
+        """The trials for which the array `here` is true."""
+        part = copy.copy(self)
+        for name, value in vars(self).items():
+            if isinstance(value, np.ndarray):
+                setattr(part, name, value[here])
+        return part
 
     @staticmethod
     def _regime(row):
@@ -211,7 +224,7 @@ class Check:
         return ((values >= self.ranges[:, 0]) & (values <= self.ranges[:, 1])).all(axis=1)
 
 
-def fit_failure(x, failed, weight, has_constant=True, known=0.0):
+def fit_failure(x, failed, weight, ridge=FORM.ridge, has_constant=True, known=0.0):
     """Weights of a ridge logistic regression by Newton's method; where there is a constant it is the first column. `known`: log-odds to add."""
     mean, scale = x.mean(axis=0), x.std(axis=0)
     if not has_constant:
@@ -219,21 +232,20 @@ def fit_failure(x, failed, weight, has_constant=True, known=0.0):
     else:
         mean[0], scale[0] = 0.0, 1.0
     scale[scale == 0] = 1.0
-    b = newton((x - mean) / scale, failed, weight, np.zeros(x.shape[1]), has_constant, known)
+    b = newton((x - mean) / scale, failed, weight, np.zeros(x.shape[1]), ridge, has_constant, known)
     b /= scale
     if has_constant:
         b[0] -= b[1:] @ mean[1:]
     return b
 
 
-def penalty_of(number, weight, has_constant=True):
-    ridge = RIDGE if has_constant else RIDGE_OF_MODES
+def penalty_of(number, weight, ridge, has_constant=True):
     return ridge * np.diag([0.0 if has_constant else 1.0] + [1.0] * (number - 1)) * weight.sum()
 
 
-def newton(z, failed, weight, b, has_constant=True, known=0.0):
+def newton(z, failed, weight, b, ridge, has_constant=True, known=0.0):
     """Ridge logistic regression on standardised columns, begun at b; a step that does not gain is halved."""
-    penalty = penalty_of(z.shape[1], weight, has_constant)
+    penalty = penalty_of(z.shape[1], weight, ridge, has_constant)
 
     def loss(b):
         log_odds = z @ b + known
@@ -279,18 +291,18 @@ def list_candidates(values, parents, residual, curvature):
     return sorted(found, key=lambda candidate: -candidate[0])[:BEST_BY_CURVATURE]
 
 
-def choose_products(x, log_odds, posterior, failed, weight, number):
+def choose_products(x, log_odds, posterior, failed, weight, form):
     """The products, in the order in which they are chosen: of a hinge, of the log-odds and a hinge, or of a chosen hinge and another."""
     hinges = list_hinges(x)
     values = np.column_stack([hinge.values(x) for hinge in hinges])
     z = np.column_stack([np.ones(len(x)), standardised(log_odds), standardised(posterior)])
-    b, products = newton(z, failed, weight, np.zeros(3)), []
-    while len(products) < number:
+    b, products = newton(z, failed, weight, np.zeros(3), form.ridge), []
+    while len(products) < form.products:
         p = logistic(z @ b)
         residual, curvature = weight * (failed - p), weight * p * (1 - p)
         singles = [q.hinges[0] for q in products if not q.tempers and len(q.hinges) == 1]
         parents = [((False, []), np.ones(len(x))), ((True, []), log_odds)] + [((False, [h]), h.values(x)) for h in singles]
-        inverse = np.linalg.inv((z * curvature[:, None]).T @ z + penalty_of(z.shape[1], weight))
+        inverse = np.linalg.inv((z * curvature[:, None]).T @ z + penalty_of(z.shape[1], weight, form.ridge))
         best, chosen = 0.0, None
         for _, k, j in list_candidates(values, parents, residual, curvature):
             (tempers, before), of_parent = parents[k]
@@ -298,12 +310,12 @@ def choose_products(x, log_odds, posterior, failed, weight, number):
                 continue
             column = standardised(of_parent * values[:, j])
             across = (z * curvature[:, None]).T @ column
-            score = (residual @ column)**2 / (curvature @ column**2 - across @ inverse @ across + RIDGE * weight.sum())
+            score = (residual @ column)**2 / (curvature @ column**2 - across @ inverse @ across + form.ridge * weight.sum())
             if score > best:
                 best, chosen = score, (Product(tempers, [*before, hinges[j]]), column)
         products.append(chosen[0])
         z = np.column_stack([z, chosen[1]])
-        b = newton(z, failed, weight, np.append(b, 0.0))
+        b = newton(z, failed, weight, np.append(b, 0.0), form.ridge)
     return products
 
 
@@ -311,23 +323,32 @@ def is_chosen(products, tempers, hinges):
     return any(q.tempers == tempers and q.hinges == hinges for q in products)
 
 
-def fit_of_products(check, train, products):
+def fit_of_products(check, train, products, ridge=FORM.ridge):
     """Weights of 1, the log-odds, the posterior and products; the posterior's is 0 where it would be less, for P grows with it."""
     design = check.design(train, products)
-    weights = fit_failure(design, train.failed, train.weight)
+    weights = fit_failure(design, train.failed, train.weight, ridge)
     if weights[2] < 0.0:
         rest = [k for k in range(design.shape[1]) if k != 2]
-        weights[rest], weights[2] = fit_failure(design[:, rest], train.failed, train.weight), 0.0
+        weights[rest], weights[2] = fit_failure(design[:, rest], train.failed, train.weight, ridge), 0.0
     return weights
 
 
-def fit_probability(train):
+def fit_probability(train, form=FORM):
     """Random partners are no domain in which P could be verified: the ranges are those of the other trials."""
     known = np.column_stack([train.log_odds, train.x])[~train.is_permuted]
     check = Check(np.quantile(known, [OUTSIDE, 1 - OUTSIDE], axis=0).T, [], None)
-    check.products = choose_products(check.cut(train.x), train.log_odds, train.posterior, train.failed, train.weight, NUM_PRODUCTS)
-    check.weights = fit_of_products(check, train, check.products)
+    check.products = choose_products(check.cut(train.x), train.log_odds, train.posterior, train.failed, train.weight, form)
+    check.weights = fit_of_products(check, train, check.products, form.ridge)
     return check
+
+
+def cross_validate(train, form):
+    """The probability of each trial by a fit without the conditions of its fold."""
+    fold = np.random.default_rng(1).integers(FOLDS, size=train.cluster.max() + 1)[train.cluster]
+    p = np.empty(len(fold))
+    for k in range(FOLDS):
+        p[fold == k] = fit_probability(train.where(fold != k), form).probability(train.where(fold == k))
+    return p
 
 
 def fit_spread(y, nees, weight, level=0.95):
@@ -495,7 +516,7 @@ def fit_mode_terms(train, left_out=None):
     """All weights, then those of the prior's terms reduced and the others fitted again beside them. That of the term left out is 0."""
     terms = np.array([name != left_out for name in train.names])
     is_prior = np.array([name in PRIOR_TERMS for name in train.names])
-    fit = lambda columns, known: fit_failure(train.x[:, columns], np.ones(len(train.x)), train.weight, has_constant=False, known=known)
+    fit = lambda columns, known: fit_failure(train.x[:, columns], np.ones(len(train.x)), train.weight, RIDGE_OF_MODES, has_constant=False, known=known)
     b = np.zeros(len(train.names))
     b[terms] = fit(terms, 0.0)
     b[is_prior] *= PRIOR_SHARE
@@ -530,6 +551,22 @@ def fit_check(arguments):
     return is_same_check(now, check, train.names) and is_same(now_spread, spread)
 
 
+def compare_forms(arguments):
+    """Writes the log loss of each form, and what failed of the answers of right_calibration that it is sure of. Changes nothing."""
+    training, _ = sources(arguments.scale)
+    train = Trials(make_all(training, arguments), training)
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    with open(arguments.out / "cross_validation.csv", "w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["products", "ridge", "log_loss", "sure_answers", "sure_failed_percent"])
+        for form in TRIED_FORMS:
+            p = cross_validate(train, form)
+            sure = (p <= 0.1) & (train.population == "right_calibration")
+            table.writerow([form.products, form.ridge, f"{log_loss(p, train.failed, train.weight):.4f}", sure.sum(),
+                            f"{100 * train.failed[sure].mean():.2f}" if sure.any() else ""])
+    return True
+
+
 def make_all(sources, arguments):
     files = []
     for source in sources:
@@ -541,6 +578,7 @@ def make_all(sources, arguments):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--modes", action="store_true", help="the weights of the modes, in place of the check")
+    parser.add_argument("--cross-validate", action="store_true", help="only compare numbers of products and ridges of the check")
     parser.add_argument("--programs", default=ROOT / "build/release/bin", type=pathlib.Path, help="folder of the two programs")
     parser.add_argument("--trials", default=ROOT / "build/fit_calibrated", type=pathlib.Path, help="folder of the trials")
     parser.add_argument("--resume", action="store_true", help="take trials that are there as they are")
@@ -549,7 +587,8 @@ def main():
     parser.add_argument("--report-only", action="store_true", help="leave the constants as they are; exit code 1 if a fit gives others")
     arguments = parser.parse_args()
     arguments.trials.mkdir(parents=True, exist_ok=True)
-    if not (fit_modes if arguments.modes else fit_check)(arguments):
+    job = fit_modes if arguments.modes else compare_forms if arguments.cross_validate else fit_check
+    if not job(arguments):
         sys.exit("fit_calibrated: the constants of estimator/calibrated/fitted_constants.h are not those of this fit")
 
 

@@ -86,6 +86,19 @@ TEST_F(FailureForecastsTest, StatedOnesAreOfScoredAnswers) {
   for (const size_t i : {2U, 3U, 4U}) EXPECT_FALSE(BrierOfStated(records[i], bounds)) << i;
 }
 
+// A pure rotation: whether the direction is within its bound has no answer, even where the rotation is off.
+TEST_F(FailureForecastsTest, AProbabilityOfAMotionWithoutDirectionIsNotJudged) {
+  std::vector<TrialRecord> records = {StatedMotion(0, 0.9, 50, false), StatedMotion(1, 0.9, 50, true)};
+  for (TrialRecord& record : records) record.direction_error_deg = kNaN;
+  const FailureForecasts none = Collected(records);
+  EXPECT_EQ(none.source, ForecastSource::kStated);
+  EXPECT_TRUE(none.forecasts.empty());
+  EXPECT_EQ(none.num_without, 2);
+  EXPECT_FALSE(BrierOfStated(records[0], study_.failure));
+  records.push_back(StatedMotion(2, 0.25, 50, false));
+  EXPECT_EQ(Collected(records).forecasts.size(), 1U);
+}
+
 TEST_F(FailureForecastsTest, AScenesTrialsAreOneCluster) {
   study_.repeats_per_scene = 2;
   std::vector<TrialRecord> records;
