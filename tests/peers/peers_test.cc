@@ -123,7 +123,7 @@ TEST_P(PeerLibraries, GiveTheSameBytesOnEveryThread) {
   std::vector<MotionProblem> problems;
   std::vector<MotionEstimate> alone;
   for (std::uint32_t trial = 0; trial < 4; ++trial) {
-    problems.push_back(TwoCameraProblem(100, 0.5, 0.4, trial));
+    problems.push_back(TwoCameraProblem(100, 0.5, 0.2, trial));
     alone.push_back(Estimate(GetParam(), problems.back(), trial));
   }
   std::vector<std::string> differences(4);
