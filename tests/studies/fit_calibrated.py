@@ -5,8 +5,8 @@ anew, the check.
 
 The check's probability is a logistic regression on products of at most two hinges of its signs, which are chosen forward, one after the
 other (Friedman 1991), each where it adds most to the likelihood by its score. Their number and the ridge were chosen in five-fold
-cross-validation over the conditions of the training (--cross-validate, results/right_calibration/cross_validation.csv). Signs are cut to
-the range that they had in nearly all trials.
+cross-validation over the conditions of the training, which --cross-validate makes again (cross_validation.csv in the folder of the tables).
+Signs are cut to the range that they had in nearly all trials.
 
 Training: draws of studies/right_calibration.yaml and of studies/any_condition.yaml, and the families of studies/calibrated, with seeds
 of their own; trials of the families count less. Where partners are permuted at random every answer is wrong. The covariance is fitted where the calibration is right: errors of the calibration are not for
