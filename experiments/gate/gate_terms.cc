@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string_view>
 
 #include "experiments/study/command_permission.h"
@@ -50,12 +51,11 @@ std::vector<std::string> ListOtherOptions(const DescribedEstimator& of_old,
                                           const DescribedEstimator& of_new) {
   std::vector<std::string> others;
   for (const auto& [name, value] : of_new.options) {
-    const std::string before = FindSetting(of_old.options, name).value_or("none");
-    if (before != value) others.push_back(fmt::format("{} {}, not {}", name, value, before));
+    const std::optional<std::string> before = FindSetting(of_old.options, name);
+    if (before != value) others.push_back(fmt::format("{} {}, not {}", name, value, before.value_or("none")));
   }
   for (const auto& [name, value] : of_old.options)
-    if (FindSetting(of_new.options, name).value_or("none") == "none")
-      others.push_back(fmt::format("no {}", name));
+    if (!FindSetting(of_new.options, name)) others.push_back(fmt::format("no {}", name));
   return others;
 }
 

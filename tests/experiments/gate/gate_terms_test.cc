@@ -58,7 +58,9 @@ TEST(RequireSameTerms, SaysWhatIsOther) {
 // A label says nothing of what gave the trials: the estimator, its options and the program do.
 TEST(RecordedVersions, AreComparedByWhatTheyAre) {
   const RecordedVersion before{
-      {"ours", "five_point", "", {{"num_iterations", "100"}, {"sigma", "1"}}}, {"rcme 0.1.0", "avx2"}, ""};
+      {"ours", "five_point", "", {{"num_iterations", "100"}, {"sigma", "1"}, {"leave_out", "none"}}},
+      {"rcme 0.1.0", "avx2"},
+      ""};
   RecordedVersion after = before;
   EXPECT_EQ(IdentifyVersion(before), IdentifyVersion(after));
   EXPECT_FALSE(HasMisleadingLabel(before, after));
