@@ -46,13 +46,15 @@ std::string FormatBuild(const std::string& name, const std::string& hash) {
 // "build of NAME " without the hash.
 std::string CutHash(const std::string& build) { return build.substr(0, build.rfind(' ') + 1); }
 
-// "num_iterations 200, not 100" for each option in which the two differ.
+// "num_iterations 200, not 100" for each option in which the two differ; versions of the program may know
+// different options.
 std::vector<std::string> ListOtherOptions(const DescribedEstimator& of_old,
                                           const DescribedEstimator& of_new) {
   std::vector<std::string> others;
   for (const auto& [name, value] : of_new.options) {
     const std::optional<std::string> before = FindSetting(of_old.options, name);
-    if (before != value) others.push_back(fmt::format("{} {}, not {}", name, value, before.value_or("none")));
+    if (before == value) continue;
+    others.push_back(fmt::format("{} {}, {}", name, value, before ? "not " + *before : "not known before"));
   }
   for (const auto& [name, value] : of_old.options)
     if (!FindSetting(of_new.options, name)) others.push_back(fmt::format("no {}", name));

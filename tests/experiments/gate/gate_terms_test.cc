@@ -1,5 +1,6 @@
 #include "experiments/gate/gate_terms.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/test_support/expect_input_error.h"
@@ -76,6 +77,9 @@ TEST(RecordedVersions, AreComparedByWhatTheyAre) {
       CompareVersions(before, after),
       "old: five_point of rcme 0.1.0 (avx2); new: the same estimator with other options (num_iterations "
       "200, not 100), of rcme 0.2.0 (avx2)");
+  after.estimator.options = {{"num_iterations", "100"}, {"sigma", "1"}, {"solver", "five_point"}};
+  EXPECT_THAT(CompareVersions(before, after),
+              testing::HasSubstr("other options (solver five_point, not known before, no leave_out)"));
   after.estimator.name = "magsac";
   EXPECT_EQ(CompareVersions(before, after),
             "old: five_point of rcme 0.1.0 (avx2); new: another estimator, magsac, of rcme 0.2.0 (avx2)");
