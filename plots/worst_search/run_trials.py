@@ -159,7 +159,9 @@ def event_of(quantity, row):
     if outcome not in ("success", "failure"):
         return NOT_THERE
     if quantity == "sure_failure":
-        return int(outcome == "failure") if stated and float(stated) <= SURE_BELOW else NOT_THERE
+        # P is of rotation and direction: not judged without a true direction, as in `rcme reliability`; an invalid answer has failed.
+        is_judged = row["direction_error_deg"] or row["status"] != "ok"
+        return int(outcome == "failure") if is_judged and stated and float(stated) <= SURE_BELOW else NOT_THERE
     is_sure = float(stated) <= SURE_OF_COVERAGE if stated else outcome == "success"
     return int(float(nees) > COVERED_BELOW) if is_sure and nees else NOT_THERE
 

@@ -166,12 +166,14 @@ class Boxes(unittest.TestCase):
 
 class Events(unittest.TestCase):
     def test_each_quantity(self):
-        sure_failure = {"outcome": "failure", "nees": "40", "failure_probability": "0.005"}
+        sure_failure = {"outcome": "failure", "status": "ok", "direction_error_deg": "20", "nees": "40", "failure_probability": "0.005"}
         doubtful = {**sure_failure, "failure_probability": "0.4"}
         silent = {**sure_failure, "failure_probability": ""}
         absent = {**silent, "outcome": "not_scored"}
         self.assertEqual([event_of("failure", row) for row in (sure_failure, doubtful, silent, absent)], [1, 1, 1, -1])
         self.assertEqual([event_of("sure_failure", row) for row in (sure_failure, doubtful, silent, absent)], [1, -1, -1, -1])
+        rotation_alone, invalid = ({**sure_failure, "direction_error_deg": "", "status": status} for status in ("ok", "invalid_motion"))
+        self.assertEqual([event_of("sure_failure", row) for row in (rotation_alone, invalid)], [-1, 1])
         self.assertEqual([event_of("coverage", row) for row in (sure_failure, doubtful, silent)], [1, -1, -1])
         self.assertEqual(event_of("coverage", {**silent, "outcome": "success", "nees": "5"}), 0)
 

@@ -577,8 +577,9 @@ def make_all(sources, arguments):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--modes", action="store_true", help="the weights of the modes, in place of the check")
-    parser.add_argument("--cross-validate", action="store_true", help="only compare numbers of products and ridges of the check")
+    job = parser.add_mutually_exclusive_group()
+    job.add_argument("--modes", action="store_true", help="the weights of the modes, in place of the check")
+    job.add_argument("--cross-validate", action="store_true", help="only compare numbers of products and ridges of the check")
     parser.add_argument("--programs", default=ROOT / "build/release/bin", type=pathlib.Path, help="folder of the two programs")
     parser.add_argument("--trials", default=ROOT / "build/fit_calibrated", type=pathlib.Path, help="folder of the trials")
     parser.add_argument("--resume", action="store_true", help="take trials that are there as they are")
@@ -587,8 +588,8 @@ def main():
     parser.add_argument("--report-only", action="store_true", help="leave the constants as they are; exit code 1 if a fit gives others")
     arguments = parser.parse_args()
     arguments.trials.mkdir(parents=True, exist_ok=True)
-    job = fit_modes if arguments.modes else compare_forms if arguments.cross_validate else fit_check
-    if not job(arguments):
+    do = fit_modes if arguments.modes else compare_forms if arguments.cross_validate else fit_check
+    if not do(arguments):
         sys.exit("fit_calibrated: the constants of estimator/calibrated/fitted_constants.h are not those of this fit")
 
 

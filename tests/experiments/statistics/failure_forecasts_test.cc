@@ -97,6 +97,7 @@ TEST_F(FailureForecastsTest, AProbabilityOfAMotionWithoutDirectionIsNotJudged) {
   EXPECT_FALSE(BrierOfStated(records[0], study_.failure));
   records.push_back(StatedMotion(2, 0.25, 50, false));
   EXPECT_EQ(Collected(records).forecasts.size(), 1U);
+  EXPECT_THAT(ForecastsAsTable(MeasureFailureForecasts(Stored(records))), testing::HasSubstr("not judged"));
 }
 
 TEST_F(FailureForecastsTest, AScenesTrialsAreOneCluster) {
@@ -231,6 +232,7 @@ TEST_F(FailureForecastsTest, TableAndFileSayTheSame) {
   EXPECT_THAT(table, testing::HasSubstr("stated"));
   EXPECT_THAT(table, testing::Not(testing::HasSubstr("stands in"))) << "no proxy, no word of it";
   EXPECT_THAT(table, testing::HasSubstr("50.00 % [1.26, 98.74]"));
+  EXPECT_THAT(table, testing::Not(testing::HasSubstr("not judged"))) << "no column without such answers";
   const auto json = nlohmann::json::parse(MakeForecastResult("small", "", measures).json);
   EXPECT_EQ(json["format"], "rcme reliability 1");
   const auto& entry = json["entries"].at(0);
