@@ -37,6 +37,9 @@ inline constexpr auto kCheckSigns = std::to_array<CheckSign>({
     {"log_behind", [](const ModelCheck& c) { return c.log_behind; }},
     {"near_in_right", [](const ModelCheck& c) { return c.near_in_right; }},
     {"parallax_spread", [](const ModelCheck& c) { return c.parallax_spread; }},
+    {"calibration_log_reach", [](const ModelCheck& c) { return std::log(c.calibration.reach_rad); }},
+    {"calibration_root_gain", [](const ModelCheck& c) { return c.calibration.root_gain; }},
+    {"calibration_log_shift", [](const ModelCheck& c) { return std::log(c.calibration.shift_rad); }},
 });
 
 // y_k, for the covariance. The subtracted values, 1.1 and 0.6, are usual for independent noise.

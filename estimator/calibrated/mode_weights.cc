@@ -12,15 +12,18 @@ namespace rcme {
 namespace {
 
 constexpr double kLeastSharedVariance = 10.0;
-constexpr double kAxial = 0.95;    // least forwardness of travel along the axis
-constexpr double kTurnRad = 0.05;  // below it, smaller rotations are hardly more likely
+constexpr double kAxial = 0.95;         // least forwardness of travel along the axis
+constexpr double kTurnRad = 0.05;       // below it, smaller rotations are hardly more likely
+constexpr double kFewExplained = 10.0;  // the width of modes of many more matches counts less
+
+double SignedRoot(double x) { return std::copysign(std::sqrt(std::abs(x)), x); }
 
 double Axial(double forwardness) { return std::max(forwardness - kAxial, 0.0) / (1.0 - kAxial); }
 
 }  // namespace
 
-const std::array<const char*, kNumModeTerms> kModeTermNames = {"exclusive", "shared", "explained", "noise",
-                                                               "forward",   "axial",  "turn"};
+const std::array<const char*, kNumModeTerms> kModeTermNames = {"exclusive", "shared",  "explained", "noise",
+                                                               "width",     "forward", "axial",     "turn"};
 
 double ComputeForwardness(const RelativePose& pose) {
   const double z1 = pose.R.col(2).dot(pose.t), z2 = pose.t.z();  // R' t and t: the baseline in either frame
@@ -31,10 +34,12 @@ std::array<double, kNumModeTerms> ComputeModeTerms(const Contrast& contrast, con
                                                    const ModeTraits& b) {
   const double sd = std::sqrt(contrast.shared_variance + kLeastSharedVariance);
   const double explained = std::max(a.num_explained, 1) / static_cast<double>(std::max(b.num_explained, 1));
-  return {std::copysign(std::sqrt(std::abs(contrast.exclusive)), contrast.exclusive),
+  const double mean_explained = 0.5 * (a.num_explained + b.num_explained);
+  return {SignedRoot(contrast.exclusive),
           contrast.shared / sd,
           std::log(explained),
           std::log(a.scale / b.scale),
+          SignedRoot((b.log_det - a.log_det) / (1.0 + mean_explained / kFewExplained)),
           a.forwardness - b.forwardness,
           Axial(a.forwardness) - Axial(b.forwardness),
           std::log((a.turn_rad + kTurnRad) / (b.turn_rad + kTurnRad))};

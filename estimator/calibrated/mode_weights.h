@@ -14,6 +14,7 @@ namespace rcme {
 struct ModeTraits {
   int num_explained = 0;     // matches that are inliers with a probability above one half
   double scale = 1.0;        // s of the noise (mixture_parameters.h)
+  double log_det = 0.0;      // ln det(s^2 H), H the information of the matches (FindMatchInformation)
   double forwardness = 0.0;  // in [0, 1]: 0 for travel across the optical axes, 1 for travel along them
   double turn_rad = 0.0;     // angle of the rotation
 };
@@ -22,16 +23,19 @@ struct ModeTraits {
 // over the frames of the two cameras. It does not depend on the order of the images.
 double ComputeForwardness(const RelativePose& pose);
 
-inline constexpr size_t kNumModeTerms = 7;
+inline constexpr size_t kNumModeTerms = 8;
 extern const std::array<const char*, kNumModeTerms> kModeTermNames;
 
-// x_1 to x_7, the evidence for mode a against mode b. Four come from the matches,
+// x_1 to x_8, the evidence for mode a against mode b. Five come from the matches,
 //
 //   exclusive   sign(e) sqrt|e|, e the log-likelihood ratio over matches that only one of them explains
 //   shared      the log-likelihood ratio over matches that both explain, over its standard deviation,
 //               sqrt(variance + 10)
 //   explained   ln(n_a / n_b) of the numbers of explained matches
 //   noise       ln(s_a / s_b)
+//   width       sign(d) sqrt(|d| / (1 + n / 10)), d = ln(det(s_b^2 H_b) / det(s_a^2 H_a)), n = (n_a + n_b) /
+//   2:
+//               how much less the matches of a determine the motion, if all had the same noise
 //
 // and three from a prior of the motion, which decides where two motions explain the same matches, as on a
 // plane. f is the forwardness, w the angle of the rotation in rad:
@@ -54,7 +58,7 @@ std::array<double, kNumModeTerms> ComputeModeTerms(const Contrast& a_against_b, 
 // - If noise is dependent or outliers are coherent, densities differ from those of the model. Evidence is
 //   then worth less than its nats, and the more there is, the less each nat is worth. Hence the square root.
 // - A mode that needs less noise or explains more matches is more likely for that alone.
-// - The determinants are left out: the false motion of a plane is the one with the larger covariance.
+// - The ratio of the determinants counts less the more matches there are, as all evidence does.
 // - The prior's weights are 0.6 of the fitted ones, because cameras elsewhere may move otherwise than the
 //   simulator's.
 //

@@ -1,5 +1,6 @@
 #include "estimator/calibrated/weigh_modes.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -8,8 +9,17 @@
 namespace rcme {
 namespace {
 
-ModeTraits FindTraits(const ExplainedMode& mode, CalibratedStep leave_out) {
-  ModeTraits traits{.num_explained = mode.explanation.num_explained, .scale = mode.mode.mixture.scale};
+// ln det(s^2 H) of the information of the matches alone; 0 if it is not positive definite.
+double LogDetOfGeometry(const Mode& mode, const MotionPrior* prior) {
+  const Eigen::LLT<Matrix5d> llt(FindMatchInformation(prior, mode));
+  if (llt.info() != Eigen::Success) return 0.0;
+  return 2.0 * llt.matrixLLT().diagonal().array().log().sum() + 10.0 * std::log(mode.mixture.scale);
+}
+
+ModeTraits FindTraits(const ExplainedMode& mode, const MotionPrior* prior, CalibratedStep leave_out) {
+  ModeTraits traits{.num_explained = mode.explanation.num_explained,
+                    .scale = mode.mode.mixture.scale,
+                    .log_det = LogDetOfGeometry(mode.mode, prior)};
   if (leave_out == CalibratedStep::kUsualMotions) return traits;
   traits.forwardness = ComputeForwardness(mode.mode.pose);
   traits.turn_rad = VectorFromRotation(mode.mode.pose.R).norm();
@@ -21,7 +31,7 @@ class ModeComparison {
   explicit ModeComparison(const std::vector<ExplainedMode>& modes, const MotionPrior* prior = nullptr,
                           CalibratedStep leave_out = CalibratedStep::kNone)
       : modes_(modes), prior_evidence_(modes.size(), 0.0) {
-    for (const ExplainedMode& mode : modes) traits_.push_back(FindTraits(mode, leave_out));
+    for (const ExplainedMode& mode : modes) traits_.push_back(FindTraits(mode, prior, leave_out));
     for (size_t i = 0; prior != nullptr && i < modes.size(); ++i)
       prior_evidence_[i] = ComputePriorEvidence(*prior, modes[i].mode);
   }

@@ -33,7 +33,7 @@ OF_FAMILY, OF_RANDOM = 0.6, 0.3  # weights of a trial of a family, of one with r
 MODES_OF_FAMILY = 2.0  # the same where the modes' weights are fitted: there the families have few trials with two modes
 PRIOR_TERMS, PRIOR_SHARE = ("mode_forward", "mode_axial", "mode_turn"), 0.6  # share of the fitted weights (mode_weights.h)
 Form = collections.namedtuple("Form", "products ridge")  # of the check; the ridge is of the standardised terms' weights, per trial
-FORM, TRIED_FORMS = Form(48, 4e-3), [Form(36, 5e-4), Form(48, 4e-3), Form(60, 2e-3)]
+FORM, TRIED_FORMS = Form(60, 4e-3), [Form(36, 4e-3), Form(48, 4e-3), Form(60, 4e-3)]
 RIDGE_OF_MODES = 5e-4
 FOLDS = 5
 OUTSIDE = 0.005  # share of the training trials beyond either end of a term's domain
@@ -73,11 +73,11 @@ def sources_of_modes(scale):
 def sources(scale):
     """(training, held out) of the check; `scale` 1 for the committed constants."""
     draws = lambda n: max(20, int(n * scale))
-    training = [Source("studies/right_calibration.yaml", 51, draws(6000), 4), Source("studies/any_condition.yaml", 52, draws(1200), 4, fits_covariance=False)]
+    training = [Source("studies/right_calibration.yaml", 51, draws(6000), 4), Source("studies/any_condition.yaml", 55, draws(3000), 4, fits_covariance=False)]
     training += [Source(f"studies/calibrated/{family}.yaml", 53, None, max(2, int(20 * scale)), OF_FAMILY) for family in FAMILIES]
     training.append(Source("studies/right_calibration.yaml", 54, draws(300), 4, OF_RANDOM, fits_covariance=False, listing="permuted"))
-    held_out = [Source("studies/right_calibration.yaml", 66, draws(1200), 4), Source("studies/any_condition.yaml", 67, draws(200), 12),
-                Source("studies/right_calibration.yaml", 68, draws(100), 6, listing="permuted")]
+    held_out = [Source("studies/right_calibration.yaml", 76, draws(1200), 4), Source("studies/any_condition.yaml", 77, draws(600), 4),
+                Source("studies/right_calibration.yaml", 78, draws(100), 6, listing="permuted")]
     return training, held_out
 
 

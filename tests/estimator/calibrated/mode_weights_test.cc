@@ -20,7 +20,7 @@ Contrast Of(double exclusive, double shared, double variance) {
   return contrast;
 }
 
-// {exclusive, shared, explained, noise, forward, axial, turn}
+// {exclusive, shared, explained, noise, width, forward, axial, turn}
 using Terms = std::array<double, kNumModeTerms>;
 
 void ExpectTerms(const Terms& found, const Terms& expected) {
@@ -28,18 +28,21 @@ void ExpectTerms(const Terms& found, const Terms& expected) {
 }
 
 TEST(ComputeModeTerms, OfExamplesByHand) {
-  const ModeTraits usual = {100, 1.0, 0.5, 0.05};
-  ExpectTerms(ComputeModeTerms(Of(9.0, 0.0, 0.0), usual, usual), {3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-  ExpectTerms(ComputeModeTerms(Of(-9.0, 0.0, 0.0), usual, usual), {-3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-  ExpectTerms(ComputeModeTerms(Of(0.0, 20.0, 6.0), usual, usual), {0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0});
-  ExpectTerms(ComputeModeTerms({}, {50, 0.5, 0.96, 0.15}, usual),
-              {0.0, 0.0, std::log(0.5), std::log(0.5), 0.46, 0.2, std::log(2.0)});
-  ExpectTerms(ComputeModeTerms({}, {100, 1.0, 0.95, 0.0}, usual),
-              {0.0, 0.0, 0.0, 0.0, 0.45, 0.0, -std::log(2.0)});
+  const ModeTraits usual = {100, 1.0, 2.0, 0.5, 0.05};
+  ExpectTerms(ComputeModeTerms(Of(9.0, 0.0, 0.0), usual, usual), {3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms(Of(-9.0, 0.0, 0.0), usual, usual), {-3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms(Of(0.0, 20.0, 6.0), usual, usual), {0.0, 5.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0});
+  ExpectTerms(ComputeModeTerms({}, {50, 0.5, 2.0, 0.96, 0.15}, usual),
+              {0.0, 0.0, std::log(0.5), std::log(0.5), 0.0, 0.46, 0.2, std::log(2.0)});
+  ExpectTerms(ComputeModeTerms({}, {100, 1.0, 2.0, 0.95, 0.0}, usual),
+              {0.0, 0.0, 0.0, 0.0, 0.0, 0.45, 0.0, -std::log(2.0)});
+  // 1 + 90 / 10 = 10 for the mean of 80 and 100 matches, of which the wider mode explains fewer.
+  ExpectTerms(ComputeModeTerms({}, {80, 1.0, -38.0, 0.5, 0.05}, usual),
+              {0.0, 0.0, std::log(0.8), 0.0, 2.0, 0.0, 0.0, 0.0});
 }
 
 TEST(ComputeModeTerms, HaveTheOtherSignTheOtherWayRound) {
-  const ModeTraits a = {70, 0.7, 0.99, 0.3}, b = {90, 1.1, 0.2, 0.1};
+  const ModeTraits a = {70, 0.7, 2.0, 0.99, 0.3}, b = {90, 1.1, 5.0, 0.2, 0.1};
   const Terms forth = ComputeModeTerms(Of(4.0, 7.0, 3.0), a, b);
   Terms back = ComputeModeTerms(Of(-4.0, -7.0, 3.0), b, a);
   for (double& x : back) x = -x;
@@ -55,22 +58,23 @@ TEST(ComputeForwardness, IsTheMeanCosineToBothAxes) {
   EXPECT_NEAR(ComputeForwardness({Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitY()}), 0.0, 1e-12);
 }
 
-// What speaks for a mode does so by its sign: more evidence, more matches, less noise, travel along the axis
-// or across it, a smaller rotation.
+// What speaks for a mode does so by its sign: more evidence, more matches, less noise, a greater width,
+// travel along the axis or across it, a smaller rotation.
 TEST(ModeLogOdds, GrowWithWhatSpeaksForTheMode) {
-  const ModeTraits usual = {100, 1.0, 0.7, 0.1};
+  const ModeTraits usual = {100, 1.0, 2.0, 0.7, 0.1};
   EXPECT_EQ(ModeLogOdds({}, usual, usual), 0.0);
   EXPECT_GT(ModeLogOdds(Of(9.0, 0.0, 0.0), usual, usual), 0.0);
   EXPECT_GT(ModeLogOdds(Of(0.0, 9.0, 0.0), usual, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {110, 1.0, 0.7, 0.1}, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {100, 0.9, 0.7, 0.1}, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 1.0, 0.1}, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 0.0, 0.1}, usual), 0.0);
-  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 0.7, 0.0}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {110, 1.0, 2.0, 0.7, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 0.9, 2.0, 0.7, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 1.0, 0.7, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 2.0, 1.0, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 2.0, 0.0, 0.1}, usual), 0.0);
+  EXPECT_GT(ModeLogOdds({}, {100, 1.0, 2.0, 0.7, 0.0}, usual), 0.0);
 }
 
 TEST(ModeLogOdds, AreTheFittedSumOfTheTerms) {
-  const ModeTraits a = {70, 0.7, 0.99, 0.3}, b = {90, 1.1, 0.2, 0.1};
+  const ModeTraits a = {70, 0.7, 2.0, 0.99, 0.3}, b = {90, 1.1, 5.0, 0.2, 0.1};
   const Contrast contrast = Of(4.0, 7.0, 3.0);
   const Terms terms = ComputeModeTerms(contrast, a, b);
   double sum = 0.0;

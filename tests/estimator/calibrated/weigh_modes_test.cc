@@ -75,7 +75,7 @@ TEST(WeighModes, RivalsAddUpToTheirNorm) {
   const ModeWeights weights = WeighModes(modes, kModeBounds, kPrior, {});
   EXPECT_EQ(weights.answer, 0u);
   const auto odds = [](double turn_rad, int num_explained, double scale) {
-    return std::exp(-ModeLogOdds({}, {100, 1.0, 1.0, 0.0}, {num_explained, scale, 1.0, turn_rad}));
+    return std::exp(-ModeLogOdds({}, {100, 1.0, 0.0, 1.0, 0.0}, {num_explained, scale, 0.0, 1.0, turn_rad}));
   };
   const double first = odds(0.2, 90, 2.0), second = odds(0.4, 80, 1.5);
   const double norm = std::pow(std::pow(first, 2.5) + std::pow(second, 2.5), 0.4);
@@ -105,7 +105,7 @@ TEST(WeighModes, ThePriorOfTheMotionCanBeLeftOut) {
   CalibratedOptions options;
   const ModeWeights with = WeighModes(modes, kModeBounds, kPrior, options);
   EXPECT_NEAR(with.of_modes[0] / with.of_modes[1],
-              std::exp(ModeLogOdds({}, {100, 1.0, 1.0, 0.0}, {100, 1.0, 1.0, 0.2})), 1e-9);
+              std::exp(ModeLogOdds({}, {100, 1.0, 0.0, 1.0, 0.0}, {100, 1.0, 0.0, 1.0, 0.2})), 1e-9);
   EXPECT_GT(with.of_modes[0], 2.0 * with.of_modes[1]);
   options.leave_out = CalibratedStep::kUsualMotions;
   const ModeWeights without = WeighModes(modes, kModeBounds, kPrior, options);
