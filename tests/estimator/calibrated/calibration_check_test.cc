@@ -109,22 +109,5 @@ TEST(CalibrationCheck, PlantedDistortionIsSeen) {
   EXPECT_NEAR(log_ratio, 0.0, std::log(2.0));
 }
 
-// A handful of matches, all the same one, and points at infinity of the image.
-TEST(CalibrationCheck, IsFiniteWhateverTheMatches) {
-  for (const int n : {6, 8, 12}) {
-    for (const bool is_one : {false, true}) {
-      FittedMode f = FitScene(n, 0.5, 0.0, 3);
-      if (is_one) {
-        MotionProblem same = f.problem;
-        for (Correspondence& match : same.matches) match = same.matches[0];
-        f = FitFromTruth(same, f.pose_true);
-      }
-      const CalibrationCheck c = CheckFitted(f);
-      for (const double x : {c.reach_rad, c.root_gain, c.shift_rad})
-        EXPECT_TRUE(std::isfinite(x)) << n << is_one;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace rcme

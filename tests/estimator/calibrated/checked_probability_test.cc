@@ -39,6 +39,8 @@ ModelCheck RandomCheck(RandomStream& rng) {
   c.log_behind = -8.0 * rng.Uniform();
   c.near_in_right = -rng.Uniform();
   c.parallax_spread = -2.0 * rng.Uniform();
+  c.calibration = {std::exp(2.0 * rng.Normal() - 3.0), 10.0 * rng.Uniform(),
+                   std::exp(2.0 * rng.Normal() - 4.0)};
   c.partner_dependence = {3.0 * rng.Normal() + 2.0, 3.0 * rng.Normal() + 2.0};
   return c;
 }
@@ -136,6 +138,7 @@ ModelCheck MakePlainCheck() {
   plain.mean_gain = 5.0;
   plain.greatest_leverage = 0.1;
   plain.log_behind = -5.0;
+  plain.calibration = {0.02, 1.5, 0.004};
   plain.partner_dependence = {5.0, 5.0};
   return plain;
 }
@@ -160,6 +163,7 @@ TEST(CheckedProbability, DoubtsRaiseIt) {
             1.5 * raised([](ModelCheck& c) { c.log_rotation_sd = -6.0; }));
   EXPECT_GT(raised([](ModelCheck& c) { c.spread_in_matches = -1.0; }), 1.5 * p);
   EXPECT_GT(raised([](ModelCheck& c) { c.greatest_rival = 0.3; }), 1.5 * p);
+  EXPECT_GT(raised([](ModelCheck& c) { c.calibration = {0.3, 12.0, 0.3}; }), 1.5 * p);
   const auto few = [](ModelCheck& c, double z) {
     c.log_num_right = std::log(12.0), c.partner_dependence = {z, z};
   };

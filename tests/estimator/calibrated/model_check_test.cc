@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimator/calibrated/checked_probability.h"
 #include "tests/test_support/calibrated_mode.h"
 
 namespace rcme {
@@ -257,27 +258,8 @@ TEST(ModelCheckOf, IsFiniteWhateverTheMatches) {
         f = FitFromTruth(same, f.pose_true);
       }
       const ModelCheck c = CheckFittedMode(f);
-      for (const double x : {c.log_noise_ratio,
-                             c.neighbour_z,
-                             c.planar_share,
-                             c.spread_in_matches,
-                             c.log_parallax_share,
-                             c.log_design_2,
-                             c.log_design_4,
-                             c.wrong_share,
-                             c.wrong_coherence,
-                             c.log_rotation_sd,
-                             c.low_depth,
-                             c.log_num_right,
-                             c.mean_probability,
-                             c.mean_gain,
-                             c.greatest_leverage,
-                             c.log_behind,
-                             c.parallax_spread,
-                             c.near_in_right,
-                             c.partner_dependence.order_z,
-                             c.partner_dependence.rank_z})
-        EXPECT_TRUE(std::isfinite(x)) << n << is_one;
+      for (const FitTerm& sign : ListCheckSigns(c)) EXPECT_TRUE(std::isfinite(sign.value)) << n << sign.name;
+      EXPECT_TRUE(std::isfinite(c.wrong_share + c.usual_depth + c.partner_dependence.order_z)) << n << is_one;
     }
   }
 }

@@ -151,13 +151,15 @@ TEST(FindRivals, AreOfWhereTheAnswerIsNow) {
 }
 
 TEST(ListModePairs, HasEveryTwoModesOnceWithTheirTerms) {
-  const std::vector<ModePair> pairs =
-      ListModePairs({ModeAt(0.0), ModeAt(0.2, 90, 2.0), ModeAt(0.4, 80, 1.5)});
+  std::vector<ExplainedMode> modes = {ModeAt(0.0), ModeAt(0.2, 90, 2.0), ModeAt(0.4, 80, 1.5)};
+  modes[2].mode.hessian *= 2.0;
+  const std::vector<ModePair> pairs = ListModePairs(modes);
   ASSERT_EQ(pairs.size(), 3u);
   EXPECT_EQ(pairs[1].a, 0u);
   EXPECT_EQ(pairs[1].b, 2u);
   EXPECT_FALSE(pairs[1].is_second_motion);
-  const auto expected = ComputeModeTerms({}, {100, 1.0, 1.0, 0.0}, {80, 1.5, 1.0, 0.4});
+  const auto expected =
+      ComputeModeTerms({}, {100, 1.0, 0.0, 1.0, 0.0}, {80, 1.5, 5.0 * std::log(2.0), 1.0, 0.4});
   for (size_t k = 0; k < kNumModeTerms; ++k) EXPECT_NEAR(pairs[1].terms[k], expected[k], 1e-12) << k;
 }
 
