@@ -20,6 +20,9 @@ calibration error, calibration slope and intercept, area under the ROC and the
 risk-coverage curve, and failures among the sure answers. Where even right probabilities
 would not give 0, the table shows what they would give.
 
+A pure rotation has no direction of the translation that could be right or wrong. What is
+stated of it is not judged; the table counts such answers.
+
 If an estimator states no probability, its share of inliers is used, recalibrated by
 isotonic regression on the other half of the scenes of the run.
 
