@@ -81,12 +81,13 @@ TEST(CalibrationCheck, ReachIsHowFarTheFitMoves) {
   }
 }
 
-// q'Vq is chi-square with four degrees of freedom, or less where the prior decides.
+// q'Vq is chi-square with four degrees of freedom, or less where the prior decides. Of many matches, because
+// a term that is missing from the residuals' derivative is a bias of the score that grows with their number.
 TEST(CalibrationCheck, MatchesOfARightCalibrationSpeakForNoError) {
-  constexpr int kScenes = 100;
+  constexpr int kScenes = 50;
   double sum = 0.0;
   for (std::uint32_t trial = 0; trial < kScenes; ++trial)
-    sum += std::pow(CheckFitted(FitOneCamera(200, 0.5, trial)).root_gain, 2) / kScenes;
+    sum += std::pow(CheckFitted(FitOneCamera(1000, 0.5, trial)).root_gain, 2) / kScenes;
   EXPECT_GT(sum, 0.5);
   EXPECT_LT(sum, 4.0 + 5.0 * std::sqrt(8.0 / kScenes));
 }
