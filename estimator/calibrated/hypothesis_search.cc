@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/kernels/block_source.h"
@@ -23,6 +22,15 @@ constexpr double kSampleSdRad = 3.0 * kRadPerDeg, kLeastTail = 1e-3;
 struct RankedModel {
   double F[9];  // whitened
   double first_score, score;
+};
+
+// Models are large: it is their ranks that are sorted.
+struct ModelRank {
+  double score;
+  size_t index;
+};
+constexpr auto kIsBetter = [](const ModelRank& a, const ModelRank& b) {
+  return a.score != b.score ? a.score > b.score : a.index < b.index;
 };
 
 // The least N with 1 - (1 - w^5)^N >= 0.999: the samples needed if a share `w` of the matches are inliers.
@@ -66,17 +74,15 @@ class Rounds {
   const LoopCounts& counts() const { return counts_; }
 
  private:
-  // Scores the best of the fresh models on the rest of the matches. It is the order of the models that is
-  // sorted, because they are large.
+  // Scores the best of the fresh models on the rest of the matches.
   void ScoreBest(int first_end) {
     const size_t count = std::min(std::max(kLeastFullScores, fresh_.size() / 4), fresh_.size());
-    std::vector<std::pair<double, size_t>> order;  // first score, index in fresh_
+    std::vector<ModelRank> order;
     order.reserve(fresh_.size());
-    for (size_t i = 0; i < fresh_.size(); ++i) order.emplace_back(fresh_[i].first_score, i);
-    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(count), order.end(),
-                      [](const auto& a, const auto& b) { return a.first > b.first; });
+    for (size_t i = 0; i < fresh_.size(); ++i) order.push_back({fresh_[i].first_score, i});
+    std::ranges::nth_element(order, order.begin() + static_cast<std::ptrdiff_t>(count), kIsBetter);
     for (size_t i = 0; i < count; ++i) {
-      RankedModel& model = fresh_[order[i].second];
+      RankedModel& model = fresh_[order[i].index];
       model.score += scores_.SumScores(model.F, soft_scale_, first_end, scores_.num_matches());
       best_score_ = std::max(best_score_, model.score);
       scored_.push_back(model);
@@ -113,13 +119,14 @@ double Likeness(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 // adds those near the prior.
 std::vector<ScoredEssential> SelectDistinct(const std::vector<RankedModel>& models, const RayScale& scale,
                                             size_t count, const MotionPrior* prior) {
-  std::vector<const RankedModel*> order;
-  for (const RankedModel& model : models) order.push_back(&model);
-  std::stable_sort(order.begin(), order.end(),
-                   [](const RankedModel* a, const RankedModel* b) { return a->score > b->score; });
+  std::vector<ModelRank> order;
+  order.reserve(models.size());
+  for (size_t i = 0; i < models.size(); ++i) order.push_back({models[i].score, i});
+  std::ranges::sort(order, kIsBetter);
   std::vector<ScoredEssential> ranked, taken;
-  for (const RankedModel* model : order)
-    ranked.push_back({EssentialFromWhitened(model->F, scale), model->score});
+  ranked.reserve(models.size());
+  for (const ModelRank& rank : order)
+    ranked.push_back({EssentialFromWhitened(models[rank.index].F, scale), rank.score});
   std::vector<bool> is_taken(ranked.size(), false);
   const auto take = [&](size_t up_to, double too_like, const MotionPrior* near) {
     for (size_t i = 0; i < ranked.size() && taken.size() < up_to; ++i) {

@@ -13,16 +13,35 @@ namespace rcme::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+// F over its largest entry, in single precision: products of such entries stay within its range. False if
+// there is no positive largest entry.
+bool DivideByLargest(const double* F, float* entries) {
+  using DoubleTag = hn::CappedTag<double, 8>;
+  constexpr int kLanes = static_cast<int>(hn::MaxLanes(DoubleTag()));
+  const DoubleTag d;
+  const hn::Rebind<float, DoubleTag> of_entries;
+  auto magnitude = hn::Zero(d);
+  for (int i = 0; i < 8; i += kLanes) magnitude = hn::Max(magnitude, hn::Abs(hn::LoadU(d, F + i)));
+  const double largest = std::max(hn::GetLane(hn::MaxOfLanes(d, magnitude)), F[8] < 0.0 ? -F[8] : F[8]);
+  if (!(largest > 0.0)) return false;
+  for (int i = 0; i < 8; i += kLanes)
+    hn::StoreU(hn::DemoteTo(of_entries, hn::LoadU(d, F + i) / hn::Set(d, largest)), of_entries, entries + i);
+  entries[8] = static_cast<float>(F[8] / largest);
+  return true;
+}
+
 // Each product and sum is rounded separately, and each place of a block has its own partial sum. So every
 // instruction set gives the same bits.
-double SumOverBlocks(const ScoreBlock* blocks, int num_matches, const float* F, float s2) {
+double SumOverBlocks(const ScoreBlock* blocks, int num_matches, const double* F, float s2) {
+  float entries[9];
+  if (!DivideByLargest(F, entries)) return 0.0;
   using FloatTag = hn::CappedTag<float, kScoreBlockSize>;
   using FloatVec = hn::Vec<FloatTag>;
   constexpr int kFloatLanes = static_cast<int>(hn::MaxLanes(FloatTag()));
   const FloatTag d;
   alignas(64) float partial[kScoreBlockSize];
   FloatVec f[9];
-  for (int i = 0; i < 9; ++i) f[i] = hn::Set(d, F[i]);
+  for (int i = 0; i < 9; ++i) f[i] = hn::Set(d, entries[i]);
   const FloatVec scale = hn::Set(d, s2);
   for (int lane = 0; lane < kScoreBlockSize; lane += kFloatLanes) {
     FloatVec sum = hn::Zero(d);
@@ -70,13 +89,9 @@ ScoreMatches::ScoreMatches(const MatchBlocks& matches)
 }
 
 double ScoreMatches::SumScores(const double* F, double scale, int first, int end) const {
-  double largest = 0.0;
-  for (int i = 0; i < 9; ++i) largest = std::max(largest, F[i] < 0.0 ? -F[i] : F[i]);
-  if (!(largest > 0.0) || end <= first) return 0.0;
-  float entries[9];  // of norm about 1, so that products stay within the range of single precision
-  for (int i = 0; i < 9; ++i) entries[i] = static_cast<float>(F[i] / largest);
+  if (end <= first) return 0.0;
   const double sum = HWY_DYNAMIC_DISPATCH(SumOverBlocks)(blocks_.data() + first / kScoreBlockSize,
-                                                         std::min(end, num_matches_) - first, entries,
+                                                         std::min(end, num_matches_) - first, F,
                                                          static_cast<float>(scale * scale));
   return sum == sum ? sum : 0.0;
 }
