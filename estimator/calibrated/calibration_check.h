@@ -1,15 +1,22 @@
-// What errors of the calibration could do to the answer, and whether the matches show them.
+// What unknown errors of the calibration could do to the answer, and whether the matches show them.
 //
-// Errors of usual size are added to the intrinsics of a camera: theta ~ N(0, I) are those of the logarithm of
-// the focal length, both coordinates of the principal point, and k1 of the radial distortion, each over its
-// standard deviation. A camera that took both images has four, two cameras have eight. Let r be the residuals
-// of the matches that the answer explains, in standard deviations, J = dr/dp and G = dr/dtheta their
-// derivatives by the motion and by the errors, and W the weights of the mixture's likelihood. To first order
-// the motion p maximises the likelihood, beside theta, at p - M theta, M = (J'WJ + U)^-1 J'WG. With the
-// motion maximised out, theta has the score q = -(G - J M)' W r and the information I_theta = G'WG - (J'WG)'
-// M. Its posterior given the matches is N(V q, V), V = (I_theta + I)^-1.
+// A camera may have errors of the logarithm of its focal length and of both coordinates of its principal
+// point, and a radial distortion k1 that was not removed. theta are these errors over their usual standard
+// deviations (calibration_check.cc): four if one camera took both images (equal K), eight for two cameras. A
+// priori theta is N(0, I).
 //
-// U is the information of a motion that may be anything: its standard deviations are about 70 deg.
+// r are the residuals of the matches that the answer explains, in standard deviations, J = dr/dp and G =
+// dr/dtheta their derivatives by the motion and by the errors, and W the weights of the mixture's likelihood.
+// To first order the most likely motion given theta is p - M theta with
+//
+//   M = (J'WJ + U)^-1 J'WG,
+//
+// where U is the information of a motion that may be anything (standard deviations of about 70 deg). The
+// likelihood that is maximised over the motion has in theta the score and the information
+//
+//   q = -(G - J M)' W r,   I_theta = G'WG - (J'WG)' M,
+//
+// so that given the matches theta is N(V q, V), V = (I_theta + I)^-1.
 #pragma once
 
 #include "estimator/calibrated/explanation.h"
@@ -17,8 +24,8 @@
 
 namespace rcme {
 
-// The direction of the translation moves by D theta, where D are the last two rows of -M. Lengths are cut to
-// [1e-5, 3].
+// The direction of the translation moves by D theta, where D are the last two rows of -M. Angles are clipped
+// to [1e-5, 3] rad.
 struct CalibrationCheck {
   double reach_rad = 1e-5;  // sqrt(tr D D'): the direction's standard deviation by errors of usual size
   double root_gain = 0.0;   // sqrt(q'Vq), at most 30: how clearly the matches show an error

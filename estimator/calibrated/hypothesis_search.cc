@@ -33,6 +33,29 @@ constexpr auto kIsBetter = [](const ModelRank& a, const ModelRank& b) {
   return a.score != b.score ? a.score > b.score : a.index < b.index;
 };
 
+// The lists of a search.
+struct SearchLists {
+  std::vector<RankedModel> fresh, scored;
+  std::vector<ModelRank> order;
+  std::vector<ScoredEssential> ranked;
+
+  void Clear() {
+    constexpr size_t kMostKept = 1 << 16;  // models
+    if (fresh.capacity() > kMostKept || scored.capacity() > kMostKept) *this = {};
+    fresh.clear();
+    scored.clear();
+    order.clear();
+    ranked.clear();
+  }
+};
+
+// Those of this thread. They stay with it from one call to the next, because memory that goes back to the
+// kernel has to be cleared before it returns: a tenth of the time of a call.
+SearchLists& ListsOfThread() {
+  thread_local SearchLists lists;
+  return lists;
+}
+
 // The least N with 1 - (1 - w^5)^N >= 0.999: the samples needed if a share `w` of the matches are inliers.
 double SamplesNeeded(double w) {
   const double all_right = std::pow(std::clamp(w, 1e-3, 0.999), 5);
@@ -45,13 +68,14 @@ double InlierShare(double score, int num_matches) { return score / (0.88 * num_m
 
 class Rounds {
  public:
-  Rounds(const MatchBlocks& matches, const ScoreMatches& score_matches, double soft_scale, RandomStream& rng)
-      : matches_(matches), scores_(score_matches), soft_scale_(soft_scale), rng_(rng) {}
+  Rounds(const MatchBlocks& matches, const ScoreMatches& score_matches, double soft_scale, RandomStream& rng,
+         SearchLists* lists)
+      : matches_(matches), scores_(score_matches), soft_scale_(soft_scale), rng_(rng), lists_(*lists) {}
 
   // Draws until `num_samples` samples have been drawn in all, and scores their models.
   void Draw(int num_samples) {
     const int first_end = std::min(kFirstMatches, scores_.num_matches());
-    fresh_.reserve(static_cast<size_t>(kModelsOfSample * std::max(num_samples - num_drawn_, 0)));
+    lists_.fresh.reserve(static_cast<size_t>(kModelsOfSample * std::max(num_samples - num_drawn_, 0)));
     while (num_drawn_ < num_samples) {
       source_.FillNext(matches_, RequestedOutputs::kNone, rng_, &block_, &proposals_);
       for (int lane = 0; lane < kBlockSize; ++lane) {
@@ -64,30 +88,29 @@ class Rounds {
         RankedModel model;
         for (int i = 0; i < 9; ++i) model.F[i] = block_.F[i][lane];
         model.first_score = model.score = scores_.SumScores(model.F, soft_scale_, 0, first_end);
-        fresh_.push_back(model);
+        lists_.fresh.push_back(model);
       }
     }
     ScoreBest(first_end);
   }
   double best_score() const { return best_score_; }
-  const std::vector<RankedModel>& scored() const { return scored_; }
   const LoopCounts& counts() const { return counts_; }
 
  private:
   // Scores the best of the fresh models on the rest of the matches.
   void ScoreBest(int first_end) {
-    const size_t count = std::min(std::max(kLeastFullScores, fresh_.size() / 4), fresh_.size());
-    std::vector<ModelRank> order;
-    order.reserve(fresh_.size());
-    for (size_t i = 0; i < fresh_.size(); ++i) order.push_back({fresh_[i].first_score, i});
+    auto& [fresh, scored, order, ranked] = lists_;
+    const size_t count = std::min(std::max(kLeastFullScores, fresh.size() / 4), fresh.size());
+    order.clear();
+    for (size_t i = 0; i < fresh.size(); ++i) order.push_back({fresh[i].first_score, i});
     std::ranges::nth_element(order, order.begin() + static_cast<std::ptrdiff_t>(count), kIsBetter);
     for (size_t i = 0; i < count; ++i) {
-      RankedModel& model = fresh_[order[i].index];
+      RankedModel& model = fresh[order[i].index];
       model.score += scores_.SumScores(model.F, soft_scale_, first_end, scores_.num_matches());
       best_score_ = std::max(best_score_, model.score);
-      scored_.push_back(model);
+      scored.push_back(model);
     }
-    fresh_.clear();
+    fresh.clear();
   }
 
   const MatchBlocks& matches_;
@@ -97,7 +120,7 @@ class Rounds {
   BlockSource<FivePoint> source_;
   HypothesisBlock block_;
   ProposalBlock proposals_{};
-  std::vector<RankedModel> fresh_, scored_;
+  SearchLists& lists_;
   double best_score_ = 0.0;
   int num_drawn_ = 0;
   LoopCounts counts_;
@@ -117,16 +140,15 @@ double Likeness(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
 
 // Selects half of `count` as the best distinct ones, then fills up with those far from all selected, then
 // adds those near the prior.
-std::vector<ScoredEssential> SelectDistinct(const std::vector<RankedModel>& models, const RayScale& scale,
-                                            size_t count, const MotionPrior* prior) {
-  std::vector<ModelRank> order;
-  order.reserve(models.size());
+std::vector<ScoredEssential> SelectDistinct(SearchLists* lists, const RayScale& scale, size_t count,
+                                            const MotionPrior* prior) {
+  auto& [fresh, models, order, ranked] = *lists;
+  order.clear();
   for (size_t i = 0; i < models.size(); ++i) order.push_back({models[i].score, i});
   std::ranges::sort(order, kIsBetter);
-  std::vector<ScoredEssential> ranked, taken;
-  ranked.reserve(models.size());
   for (const ModelRank& rank : order)
     ranked.push_back({EssentialFromWhitened(models[rank.index].F, scale), rank.score});
+  std::vector<ScoredEssential> taken;
   std::vector<bool> is_taken(ranked.size(), false);
   const auto take = [&](size_t up_to, double too_like, const MotionPrior* near) {
     for (size_t i = 0; i < ranked.size() && taken.size() < up_to; ++i) {
@@ -157,7 +179,9 @@ bool IsNearPrior(const MotionPrior& prior, const Eigen::Matrix3d& E) {
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
                                   const CalibratedOptions& options, RandomStream& rng, double soft_scale,
                                   const MotionPrior* prior) {
-  Rounds rounds(matches, score_matches, soft_scale, rng);
+  SearchLists& lists = ListsOfThread();
+  lists.Clear();
+  Rounds rounds(matches, score_matches, soft_scale, rng, &lists);
   for (int num_samples = options.min_samples;;) {
     rounds.Draw(num_samples);
     const double needed = SamplesNeeded(InlierShare(rounds.best_score(), matches.num_matches()));
@@ -165,8 +189,7 @@ HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches
     if (num_samples >= enough) break;
     num_samples = std::min(enough, 2 * num_samples);
   }
-  return {SelectDistinct(rounds.scored(), matches.ray_scale(), static_cast<size_t>(options.num_candidates),
-                         prior),
+  return {SelectDistinct(&lists, matches.ray_scale(), static_cast<size_t>(options.num_candidates), prior),
           rounds.counts()};
 }
 

@@ -33,9 +33,8 @@ extern const std::array<const char*, kNumModeTerms> kModeTermNames;
 //               sqrt(variance + 10)
 //   explained   ln(n_a / n_b) of the numbers of explained matches
 //   noise       ln(s_a / s_b)
-//   width       sign(d) sqrt(|d| / (1 + n / 10)), d = ln(det(s_b^2 H_b) / det(s_a^2 H_a)), n = (n_a + n_b) /
-//   2:
-//               how much less the matches of a determine the motion, if all had the same noise
+//   width       sign(d) sqrt(|d| / (1 + n / 10)), d = ln(det(s_b^2 H_b) / det(s_a^2 H_a)), n the mean of n_a
+//               and n_b: how much less the matches of a would determine the motion at the same noise
 //
 // and three from a prior of the motion, which decides where two motions explain the same matches, as on a
 // plane. f is the forwardness, w the angle of the rotation in rad:
