@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "estimator/calibrated/explanation.h"
 #include "estimator/geometry/essential_matrix.h"
@@ -124,11 +125,18 @@ std::vector<Mode> AtScale(const MatchBlocks& matches, const MixturePrior& prior,
   return modes;
 }
 
+struct Optima {
+  std::vector<Mode> modes;
+  // The most likely fit that did not converge: among points without parallax, c(z) rejects all but the
+  // smallest steps.
+  std::optional<Mode> stuck;
+};
+
 // Adds the optimum reached from `mode` on all matches, unless it is already in the list. Most duplicates show
 // within the first steps, where the fit is then stopped.
-void AddOptimum(const MatchBlocks& matches, const MixturePrior& prior, Mode mode, std::vector<Mode>* optima) {
+void AddOptimum(const MatchBlocks& matches, const MixturePrior& prior, Mode mode, Optima* optima) {
   const auto is_known = [&] {
-    return std::ranges::any_of(*optima, [&](const Mode& other) {
+    return std::ranges::any_of(optima->modes, [&](const Mode& other) {
       return IsSameMode(other, mode) && std::abs(std::log(other.mixture.scale / mode.mixture.scale)) < 0.7;
     });
   };
@@ -137,7 +145,22 @@ void AddOptimum(const MatchBlocks& matches, const MixturePrior& prior, Mode mode
   for (int step = 0; step < kCandidateSteps && !fit.is_converged(); ++step) {
     if (!fit.Step() || (step < kFewSteps && is_known())) return;
   }
-  if (fit.Finish() && !is_known()) optima->push_back(std::move(mode));
+  const bool has_converged = fit.Finish();
+  if (has_converged && !is_known())
+    optima->modes.push_back(std::move(mode));
+  else if (!has_converged && mode.inverse_hessian.allFinite() &&
+           (!optima->stuck || mode.log_likelihood > optima->stuck->log_likelihood))
+    optima->stuck = std::move(mode);
+}
+
+// A fit that did not converge counts if no optimum is as likely: then no other fit has reached its motion.
+std::vector<Mode> TakeModes(Optima optima) {
+  const auto is_less_likely = [&](const Mode& mode) {
+    return mode.log_likelihood < optima.stuck->log_likelihood;
+  };
+  if (optima.stuck && std::ranges::all_of(optima.modes, is_less_likely))
+    optima.modes.push_back(std::move(*optima.stuck));
+  return std::move(optima.modes);
 }
 
 }  // namespace
@@ -146,14 +169,15 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
                             const std::vector<ScoredEssential>& candidates, size_t num_modes) {
   const std::vector<Mode> refined = RefineALittle(matches, prior, candidates);
   const double assumed_scale = NoiseLaw().scale_of_gaussian;
-  std::vector<Mode> optima;
+  Optima found;
   for (Mode& mode : Distinct(AtScale(matches, prior, refined, assumed_scale), (num_modes + 1) / 2)) {
-    AddOptimum(matches, prior, std::move(mode), &optima);
+    AddOptimum(matches, prior, std::move(mode), &found);
   }
   for (Mode& mode : Distinct(refined, prior.estimates_scale ? num_modes / 2 : 0)) {
     mode.mixture.scale = StartScale(matches, mode);
-    AddOptimum(matches, prior, std::move(mode), &optima);
+    AddOptimum(matches, prior, std::move(mode), &found);
   }
+  std::vector<Mode> optima = TakeModes(std::move(found));
   // There may be no optimum, because c(z) can reject every step. Then take the best motion after a few steps.
   for (Mode& mode : Distinct(refined, optima.empty() ? 1 : 0)) {
     mode.used = matches.All();
@@ -166,7 +190,7 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
 
 std::vector<Mode> ModesFrom(const MatchBlocks& matches, const MixturePrior& prior,
                             const std::vector<RelativePose>& starts) {
-  std::vector<Mode> optima;
+  Optima optima;
   for (const RelativePose& start : starts) {
     Mode mode;
     mode.pose = start;
@@ -175,7 +199,7 @@ std::vector<Mode> ModesFrom(const MatchBlocks& matches, const MixturePrior& prio
     mode.mixture.scale = StartScale(matches, mode);
     if (prior.estimates_scale) AddOptimum(matches, prior, std::move(mode), &optima);
   }
-  return optima;
+  return TakeModes(std::move(optima));
 }
 
 }  // namespace rcme

@@ -15,7 +15,8 @@ RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E);
 // 1. Each candidate is refined by a few steps at a wide scale on the first matches.
 // 2. The best distinct ones are refined to their optimum on all matches. Half of them are ranked at the
 //    assumed scale. If sigma is estimated, the other half are ranked at the wide scale and start at the scale
-//    that fits them best. A fit that reaches a known mode is dropped.
+//    that fits them best. A fit that reaches a known mode is dropped, and so is one that does not converge,
+//    unless it is more likely than every optimum.
 //
 // If no candidate has an optimum, returns the best one after a few steps; if no Hessian can be inverted,
 // returns nothing.
