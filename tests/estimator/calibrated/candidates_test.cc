@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "estimator/calibrated/failure_probability.h"
 #include "estimator/geometry/essential_matrix.h"
 #include "tests/test_support/calibrated_mode.h"
 
@@ -50,6 +51,27 @@ TEST(FindModes, TheFirstIsAsLikelyAsTheFitFromTheTruth) {
       }
     }
   }
+}
+
+// Half of the points are so far away that they have no parallax. With noise they lie behind the cameras as
+// often as before them, so that the cheirality c(z) rejects nearly every step of some fits.
+TEST(FindModes, TheMotionIsFoundAmongPointsWithoutParallax) {
+  constexpr int kScenes = 400;
+  int num_found = 0;
+  for (std::uint32_t trial = 0; trial < kScenes; ++trial) {
+    Scene scene = TwoCameraScene(300, trial);
+    for (size_t i = 0; i < scene.points_in_cam1.size(); i += 2) scene.points_in_cam1[i] *= 1e4;
+    const MotionProblem problem = {ObserveTwoCameraScene(scene, 0.5, 0.2, trial).matches, scene.camera1,
+                                   scene.camera2, 0.5};
+    const MatchBlocks matches(problem);
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2756});
+    const HypothesisSearch search = SearchHypotheses(matches, ScoreMatches(matches), {}, rng);
+    const std::vector<Mode> modes = FindModes(matches, MakePrior(problem), search.candidates, 8);
+    num_found += std::ranges::any_of(modes, [&](const Mode& mode) {
+      return IsWithin(mode.pose, {0.05, 0.25}, scene.cam2_from_cam1_true);
+    });
+  }
+  EXPECT_GE(num_found, kScenes - 4);
 }
 
 TEST(FindModes, OfNoCandidateThereAreNone) {
