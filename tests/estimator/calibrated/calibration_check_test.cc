@@ -92,8 +92,8 @@ TEST(CalibrationCheck, MatchesOfARightCalibrationSpeakForNoError) {
   EXPECT_LT(sum, 4.0 + 5.0 * std::sqrt(8.0 / kScenes));
 }
 
-// k1 = 0.1 in both images, which 400 matches show. Correcting the answer by its shift leaves less of the
-// error that the distortion causes, in the mean over the scenes.
+// k1 = 0.1 in both images, which 400 matches show. The shift is as long as the error that the distortion
+// causes, within a factor of two in the geometric mean over the scenes.
 TEST(CalibrationCheck, PlantedDistortionIsSeen) {
   constexpr int kScenes = 20;
   int num_seen = 0;
