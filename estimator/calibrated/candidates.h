@@ -23,8 +23,9 @@ RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E);
 std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prior,
                             const std::vector<ScoredEssential>& candidates, size_t num_modes);
 
-// The optima reached from these motions on all matches, without duplicates. Each fit starts at the assumed
-// scale and, if sigma is estimated, also at the scale that fits its start best.
+// The optima reached from these motions on all matches, without duplicates, and a fit that did not converge
+// if it is more likely than all of them. Each fit starts at the assumed scale and, if sigma is estimated,
+// also at the scale that fits its start best.
 std::vector<Mode> ModesFrom(const MatchBlocks& matches, const MixturePrior& prior,
                             const std::vector<RelativePose>& starts);
 
