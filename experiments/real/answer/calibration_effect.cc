@@ -8,7 +8,7 @@
 #include "estimator/refinement/sampson_equations.h"
 #include "estimator/uncertainty/calibration_prior.h"
 #include "parameters/find_setting.h"
-#include "parameters/plain_text.h"
+#include "parameters/parameter.h"
 #include "stats/constants.h"
 
 namespace rcme {
