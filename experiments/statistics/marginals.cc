@@ -15,9 +15,9 @@
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
-#include "stats/clustered_estimate.h"
 #include "stats/distributions.h"
 #include "stats/moments.h"
+#include "stats/population_mean.h"
 #include "stats/population_rate.h"
 
 namespace rcme {
@@ -60,7 +60,8 @@ double FindClaimedRate(MarginalQuantity quantity) {
 
 struct ConditionValues {
   Moments moments;
-  Moments log_sd_over_crb;  // of the trials with a bound; only for a coverage
+  std::int64_t num_failed = 0;  // number of these trials that failed
+  Moments log_sd_over_crb;      // of those with a bound; only for a coverage
 };
 
 // By estimator, quantity and condition.
@@ -84,6 +85,7 @@ Values CollectValues(const ResultStore& run, const RunDescription& description) 
         if (!value) continue;
         ConditionValues& of_condition = values[e][q][problem.condition];
         of_condition.moments.Add(*value);
+        of_condition.num_failed += HasFailed(records[e], description.failure);
         const double sharpness = records[e].density.sd_over_crb;
         if (kMarginalQuantities[q] == MarginalQuantity::kSureCoverage && sharpness > 0.0)
           of_condition.log_sd_over_crb.Add(std::log(sharpness));
@@ -160,6 +162,7 @@ std::vector<ConditionValues> Select(const std::vector<ConditionValues>& conditio
   for (size_t c = 0; c < conditions.size(); ++c) {
     if (!has[c] || conditions[c].moments.n() == 0) continue;
     of_draw[draws[c]].moments.Merge(conditions[c].moments);
+    of_draw[draws[c]].num_failed += conditions[c].num_failed;
     of_draw[draws[c]].log_sd_over_crb.Merge(conditions[c].log_sd_over_crb);
   }
   std::vector<ConditionValues> selected;
@@ -171,22 +174,28 @@ bool IsShare(MarginalQuantity quantity) {
   return quantity == MarginalQuantity::kFailure || quantity == MarginalQuantity::kSureCoverage;
 }
 
-// Measures the share of failures minus the mean stated probability, by betting on the sums of the draws:
-// valid for any law, also at the small levels of many simultaneous intervals, where Student's interval misses
-// a skewed mean many times too often, and if no failure was seen. An estimator that states P = 0.001 and did
-// not fail in 100 trials is not too cautious.
-ClusteredEstimate MeasureDifference(const std::vector<ConditionValues>& conditions, MarginalQuantity quantity,
-                                    double confidence) {
-  const Interval range{quantity == MarginalQuantity::kSureFailed ? -kSureBelow : -1.0, 1.0};
-  std::vector<double> means;
-  std::vector<std::int64_t> draws;
-  for (size_t c = 0; c < conditions.size(); ++c) {
-    const Moments& moments = conditions[c].moments;
-    means.resize(means.size() + static_cast<size_t>(moments.n()),
-                 std::clamp(moments.mean(), range.lower, range.upper));
-    draws.resize(means.size(), static_cast<std::int64_t>(c));
+// Measures the share of failures minus the mean stated probability. If fewer than kLeastConditions
+// conditions had a failure, or fewer had a non-failure, the spread between conditions does not show how many
+// failures may have been missed. The interval is then extended by that of the failure rate. For instance, an
+// estimator that states P = 0.001 and did not fail in 100 trials is not too cautious.
+PopulationMean MeasureDifference(const std::vector<ConditionValues>& conditions, double confidence) {
+  std::vector<Moments> moments;
+  std::vector<ConditionCount> failures;
+  size_t num_with_failures = 0, num_with_others = 0;
+  for (const ConditionValues& one : conditions) {
+    moments.push_back(one.moments);
+    failures.push_back({one.num_failed, one.moments.n()});
+    num_with_failures += one.num_failed > 0;
+    num_with_others += one.num_failed < one.moments.n();
   }
-  return MeasureBoundedClusteredMean(means, range, draws, confidence);
+  PopulationMean mean = MeasurePopulationMean(moments, ConditionWeights::kByTrials, confidence);
+  if (std::min(num_with_failures, num_with_others) < kLeastConditions) {
+    const PopulationRate rate = MeasurePopulationRate(failures, ConditionWeights::kByTrials, confidence);
+    const double stated = rate.value - mean.value;
+    mean.interval.lower = std::min(mean.interval.lower, rate.interval.lower - stated);
+    mean.interval.upper = std::max(mean.interval.upper, rate.interval.upper - stated);
+  }
+  return mean;
 }
 
 Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantity quantity,
@@ -197,7 +206,7 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
   if (IsShare(quantity)) {
     std::vector<ConditionCount> counts;
     Moments log_sd_over_crb;
-    for (const auto& [moments, of_condition] : conditions) {
+    for (const auto& [moments, num_failed, of_condition] : conditions) {
       counts.push_back({std::llround(moments.mean() * static_cast<double>(moments.n())), moments.n()});
       log_sd_over_crb.Merge(of_condition);
     }
@@ -205,7 +214,7 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
     const PopulationRate rate = MeasurePopulationRate(counts, ConditionWeights::kByTrials, confidence);
     marginal.value = rate.value, marginal.interval = rate.interval, marginal.n = rate.n;
   } else {
-    const ClusteredEstimate mean = MeasureDifference(conditions, quantity, confidence);
+    const PopulationMean mean = MeasureDifference(conditions, confidence);
     marginal.value = mean.value, marginal.interval = mean.interval, marginal.n = mean.n;
   }
   marginal.num_conditions = std::ssize(conditions);

@@ -127,7 +127,7 @@ TEST(RiskCoverageArea, EndsOfTheMatter) {
   std::vector<ClusteredOutcome> bad = good;
   for (ClusteredOutcome& outcome : bad) outcome.failed = true;
   const ClusteredEstimate all = MeasureRiskCoverageArea(bad);
-  EXPECT_EQ(all.value, 1.0);
+  EXPECT_NEAR(all.value, 1.0, 1e-12);
   EXPECT_NEAR(all.interval.lower, 1.0 - rate * (1.0 - std::log(rate)), 1e-12);
   EXPECT_EQ(all.interval.upper, 1.0);
   const ClusteredEstimate one = MeasureRiskCoverageArea(std::vector<ClusteredOutcome>{{1.0, true, 0}});

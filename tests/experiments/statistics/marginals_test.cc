@@ -7,7 +7,6 @@
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/statistics/marginals_output.h"
-#include "stats/clustered_estimate.h"
 #include "stats/random.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/expect_input_error.h"
@@ -122,23 +121,6 @@ TEST_F(MarginalsOfRun, AnEstimatorThatIsFarTooCautiousIsNamed) {
   const Marginals marginals = Measure([](const Condition&) { return 0.0; }, false, 0.5);
   EXPECT_EQ(marginals.rows.front().quantity, MarginalQuantity::kFailedLessStated);
   EXPECT_GT(marginals.rows.front().excess, 0.0);
-}
-
-// Student's interval would miss the mean of so skewed a difference many times too often at the level that
-// simultaneous intervals have.
-TEST_F(MarginalsOfRun, DifferencesHaveTheIntervalsOfBetting) {
-  std::vector<double> differences(48 * 40, -0.25);
-  std::vector<std::int64_t> draws;
-  for (std::int64_t i = 0; i < 48 * 40; ++i) draws.push_back(i / 40);
-  const Marginals marginals = Measure([](const Condition&) { return 0.0; }, false, 0.25);
-  const auto all = std::ranges::find_if(marginals.rows, [](const Marginal& one) {
-    return one.num_conditions == 48 && one.quantity == MarginalQuantity::kFailedLessStated;
-  });
-  ASSERT_NE(all, marginals.rows.end());
-  const double confidence = 1.0 - 0.05 / static_cast<double>(marginals.num_intervals);
-  EXPECT_EQ(all->interval.upper,
-            MeasureBoundedClusteredMean(differences, {-1.0, 1.0}, draws, confidence).interval.upper);
-  EXPECT_GT(all->interval.upper, -0.2);
 }
 
 TEST_F(MarginalsOfRun, OneOrTwoConditionsAreNoRegime) {

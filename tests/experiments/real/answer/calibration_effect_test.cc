@@ -13,13 +13,13 @@ namespace rcme {
 namespace {
 
 // Matches without noise, and the true motion as the answer that explains them all.
-struct Answered {
+struct ExactAnswer {
   MotionProblem problem;
   MotionEstimate estimate;
 };
 
-Answered MakeAnswered(int num_matches, std::uint32_t trial, bool has_one_camera) {
-  RandomStream rng = StreamFor({5, 0, trial, 0}, StreamPurpose::kScene);
+ExactAnswer MakeExactAnswer(int num_matches, std::uint32_t trial, bool has_one_camera) {
+  RandomStream rng({.seed = 5, .trial = trial, .purpose = 460});
   RandomProblem random = MakeRandomProblem(rng, {.num_matches = num_matches});
   if (has_one_camera) {
     MotionProblem& problem = random.problem;
@@ -27,7 +27,7 @@ Answered MakeAnswered(int num_matches, std::uint32_t trial, bool has_one_camera)
       match.x2_px = problem.camera1.Project(problem.camera2.Ray(match.x2_px));
     problem.camera2 = problem.camera1;
   }
-  Answered made{random.problem, {}};
+  ExactAnswer made{random.problem, {}};
   made.estimate.status = MotionStatus::kOk;
   made.estimate.cam2_from_cam1 = random.pose_true;
   made.estimate.inliers.resize(made.problem.matches.size());
@@ -41,7 +41,7 @@ struct Moves {
 };
 
 template <typename Change>
-void AddMoves(const Answered& answered, const Change& change, Moves* sum) {
+void AddMoves(const ExactAnswer& answered, const Change& change, Moves* sum) {
   MotionProblem changed = answered.problem;
   change(changed);
   const RefinedMotion fit = RefineAllBySampson(changed, answered.estimate.cam2_from_cam1);
@@ -63,7 +63,7 @@ void ScaleFocal(Camera& camera) { camera.fx *= 1.0001, camera.fy *= 1.0001; }
 
 TEST(CalibrationEffect, IsHowFarFitsWithOtherIntrinsicsMove) {
   for (std::uint32_t trial = 0; trial < 5; ++trial) {
-    const Answered answered = MakeAnswered(100, trial, false);
+    const ExactAnswer answered = MakeExactAnswer(100, trial, false);
     const std::vector<CalibrationEffect> effects =
         ComputeCalibrationEffects(answered.problem, answered.estimate);
     ASSERT_EQ(effects.size(), 3u);
@@ -83,7 +83,7 @@ TEST(CalibrationEffect, IsHowFarFitsWithOtherIntrinsicsMove) {
 // Both images have the same error.
 TEST(CalibrationEffect, OfOneCameraIsOfTheSameErrorInBothImages) {
   for (std::uint32_t trial = 0; trial < 5; ++trial) {
-    const Answered answered = MakeAnswered(100, trial, true);
+    const ExactAnswer answered = MakeExactAnswer(100, trial, true);
     const std::vector<CalibrationEffect> effects =
         ComputeCalibrationEffects(answered.problem, answered.estimate);
     ASSERT_EQ(effects.size(), 3u);
@@ -96,7 +96,7 @@ TEST(CalibrationEffect, OfOneCameraIsOfTheSameErrorInBothImages) {
 
 TEST(CalibrationEffect, IsBoundedOrEmptyWithoutEnoughMatches) {
   EXPECT_TRUE(ComputeCalibrationEffects({}, {}).empty());
-  Answered answered = MakeAnswered(20, 0, false);
+  ExactAnswer answered = MakeExactAnswer(20, 0, false);
   answered.estimate.inliers = {0, 1, 2, 3};
   for (const CalibrationEffect& effect : ComputeCalibrationEffects(answered.problem, answered.estimate)) {
     EXPECT_LE(effect.rotation_rms_deg, 180.0);
