@@ -12,8 +12,9 @@ from surface.condition_encoder import ConditionEncoder
 FOLDS = 10
 CONFIDENCE = 0.9  # of the predictive intervals
 BINS = 10  # of the histogram of probability integral transforms
-NODES, NODE_WEIGHTS = np.polynomial.hermite_e.hermegauss(40)
+NODES, NODE_WEIGHTS = np.polynomial.hermite_e.hermegauss(64)
 NODE_WEIGHTS = NODE_WEIGHTS / NODE_WEIGHTS.sum()
+MAX_STEPS = 100  # of Newton's method
 
 
 @dataclass
@@ -100,13 +101,31 @@ def score_count(successes, trials, mean, sd):
 
 
 def count_masses(trials, mean, sd):
-    """Probabilities of 0 .. trials events: the binomial distribution, averaged over the logit."""
-    counts = np.arange(trials + 1)
-    logits = mean + sd * NODES
-    logs = (counts[:, None] * logits - trials * np.logaddexp(0, logits)
-            + (special.gammaln(trials + 1) - special.gammaln(counts + 1) - special.gammaln(trials - counts + 1))[:, None])
+    """Probabilities of 0 .. trials events: the binomial distribution, averaged over the logit. Each count has its own nodes
+    (adaptive Gauss-Hermite quadrature): centred at the mode of likelihood x normal, in units of the width of that peak,
+    which is about 1 / sqrt(n p q) and may be far below sd."""
+    counts = np.arange(trials + 1)[:, None]
+    mode, width = integrand_peaks(counts, trials, mean, sd)
+    logits = mode + width * NODES
+    logs = (counts * logits - trials * np.logaddexp(0, logits) - 0.5 * ((logits - mean) / sd)**2 + 0.5 * NODES**2
+            + np.log(width / sd)
+            + special.gammaln(trials + 1) - special.gammaln(counts + 1) - special.gammaln(trials - counts + 1))
     mass = np.exp(logs) @ NODE_WEIGHTS
     return mass / mass.sum()
+
+
+def integrand_peaks(counts, trials, mean, sd):
+    """Mode and width of exp(g), g(x) = k x - n log(1 + e^x) - (x - mean)^2 / (2 sd^2), for each count k; with h = -d2g/dx2 the
+    width is h^(-1/2). Newton's method with log(1 + |s|) in place of each step s: it never overshoots, as |dh/dx| <= h."""
+    mode = np.full(counts.shape, float(mean))
+    for _ in range(MAX_STEPS):
+        rate = special.expit(mode)
+        curvature = trials * rate * (1 - rate) + 1 / sd**2
+        step = (counts - trials * rate - (mode - mean) / sd**2) / curvature
+        mode = mode + np.sign(step) * np.log1p(np.abs(step))
+        if np.abs(step).max() < 1e-6:
+            break
+    return mode, 1 / np.sqrt(curvature)
 
 
 def score_value(observed, standard_error, mean, sd):

@@ -10,7 +10,7 @@ import pandas as pd
 import surface_report as script
 import yaml
 from known_surface import conditions, events, surface_file
-from scipy import stats
+from scipy import special, stats
 from surface.cross_validation import count_masses, cross_validate, exact_interval, score_count, transform_histogram
 from surface.effects import WIDEST_BAND, measure_effects
 from surface.proposals import propose
@@ -46,6 +46,16 @@ class PredictionTest(SurfaceTestCase):
         expected = np.average(stats.binom.pmf(7, 12, 1 / (1 + np.exp(-logits))), weights=weights)
         self.assertAlmostEqual(count_masses(12, 0.5, 1.1)[7], expected, places=6)
 
+    def test_masses_are_those_of_a_dense_grid_for_many_trials_and_wide_predictions(self):
+        """Likelihoods from far wider to far narrower than the prediction. Not statistical."""
+        for trials in (1, 20, 60, 1000, 100_000):
+            for sd in (0.1, 1.5, 6):
+                mass = count_masses(trials, -1, sd)
+                for count in {0, 1, trials // 2, trials}:
+                    expected = log_mass(count, trials, -1, sd)
+                    if expected > -300:  # of a representable probability
+                        self.assertAlmostEqual(np.log(mass[count]), expected, delta=1e-3, msg=f"{count} of {trials}, sd {sd}")
+
     def test_exact_intervals_are_clopper_and_pearsons(self):
         np.testing.assert_allclose(exact_interval(5, 20), (0.08657, 0.49105), atol=1e-5)  # R: binom.test(5, 20)
         self.assertEqual(exact_interval(0, 20)[0], 0)
@@ -65,6 +75,18 @@ class PredictionTest(SurfaceTestCase):
             self.assertEqual(check.beats_constant, beats)
             share, low, high, expected = check.inside
             self.assertTrue(low <= expected <= high, f"{share} of the held-out conditions inside, {expected} expected")
+
+
+def log_mass(count, trials, mean, sd):
+    """Logarithm of the probability of a count whose rate has a normal logit: sums over 20,000 logits, first over all, then
+    where the integrand is."""
+    def log_integrand(x):
+        return stats.norm(mean, sd).logpdf(x) + stats.binom.logpmf(count, trials, 1 / (1 + np.exp(-x)))
+    x = np.linspace(-45, 30, 20_001)
+    logs = log_integrand(x)
+    is_there = logs > logs.max() - 50
+    x = np.linspace(x[is_there][0] - 1e-3, x[is_there][-1] + 1e-3, 20_001)
+    return special.logsumexp(log_integrand(x)) + np.log(x[1] - x[0])
 
 
 class HeadingTest(SurfaceTestCase):
