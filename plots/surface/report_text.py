@@ -36,8 +36,12 @@ def heading(data):
     trials = data.trials
     spread = f"{trials.min():.0f}" if trials.min() == trials.max() else f"{trials.min():.0f} to {trials.max():.0f}"
     lines = [f"Surface of {data.quantity} ({QUANTITY[data.quantity]})", f"Study {data.study}, estimator {data.estimator}", ""]
-    text = (f"{len(trials)} conditions with {spread} trials each that count, {int(trials.sum())} in all. "
+    of_draws = "" if data.shared_draws is None else f" of {len(set(data.shared_draws))} draws"
+    text = (f"{len(trials)} conditions{of_draws} with {spread} trials each that count, {int(trials.sum())} in all. "
             + (f"{data.num_without} conditions have no such trial. " if data.num_without else ""))
+    if of_draws:
+        text += ("Conditions of one draw share what its factors do not explain: intervals and cross-validation count draws, not "
+                 "conditions. ")
     num_sample = int(data.is_sample.sum())
     if num_sample == 0:
         text += ("None of them is a random draw of a population: they are levels that somebody chose, or draws that were "
