@@ -83,7 +83,7 @@ def make(arguments):
     progress.step()
     figures = {} if options.no_figures else figures_of(data, model, check, effects)
     progress.step()
-    report = report_of(data, model, check, effects, proposed, options.level)
+    report = report_of(data, check, effects, proposed, options.level, options.out)
     written = write_all(options, data, check, effects, proposed, figures, report)
     progress.end()
     print(report)

@@ -1,5 +1,7 @@
 """The report of `rcme surface`: what a reader needs, in 80 columns."""
 
+import os
+import shlex
 import textwrap
 
 WIDTH = 80
@@ -7,7 +9,8 @@ QUANTITY = {"failure": "share of the trials that failed", "coverage": "truth wit
             "P-y": "stated probability of failure less the failure"}
 
 
-def report_of(data, model, check, effects, proposed, level):
+def report_of(data, check, effects, proposed, level, out):
+    """`out`: the folder that receives next.yaml, as the user gave it."""
     parts = [heading(data), verdict(check, data), calibration(check, data)]
     if check.beats_constant:
         parts += [indices_table(effects), groups_in_words(effects), ranges_table(effects), what_is_not_known(effects)]
@@ -16,7 +19,7 @@ def report_of(data, model, check, effects, proposed, level):
             "So this run does not show that the quantity depends on the factors, or it has too few conditions or trials to "
             "show how. Shares, effects and maps are left out."))
     if proposed is not None:
-        parts.append(proposals(proposed, level, data))
+        parts.append(proposals(proposed, level, data, out))
     return "\n".join(parts)
 
 
@@ -133,12 +136,13 @@ def what_is_not_known(effects):
         "of both numbers (or at the same words). Such cells are grey and hatched.")
 
 
-def proposals(proposed, level, data):
+def proposals(proposed, level, data, out):
+    study = shlex.quote(os.path.join(out, "next.yaml"))
     where = "the quantity is least known" if level is None else f"it is least certain on which side of {level:g} a condition lies"
     num = proposed.draw.nunique()
     return paragraph(
         f"Proposed: {num} of {data.candidates.draw.nunique()} later draws of the population, one after the other where {where}, "
-        "each as if those before had been run. What the simulator cannot make shows when they are run.") + "\n" + \
-        "\n".join(["  rcme run next.yaml --out next.sqlite", "  rcme surface RUN.sqlite next.sqlite --out OUT"]) + "\n\n" + paragraph(
-            "They were chosen for what they say of the surface, and are no random sample: they may enter no rate over the "
-            "population.")
+        "each as if those before had been run. What the simulator cannot make shows when they are run.") + (
+            f"\n  rcme run {study} --out next.sqlite\n  rcme surface RUN.sqlite next.sqlite --out OUT\n\n") + paragraph(
+                "They were chosen for what they say of the surface, and are no random sample: they may enter no rate over "
+                "the population.")

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """Tests of plots/surface_report.py and what it is made of; run as: /usr/bin/python3 tests/plots/surface_report_test.py"""
 
+import pathlib
+import shlex
 import unittest
 
 from plot_test_case import PlotTestCase
@@ -225,6 +227,13 @@ class ScriptTest(SurfaceTestCase):
         draws = sorted(pd.read_csv(self.out() / "proposed.csv").draw)
         self.assertEqual(study["conditions"]["draws"], draws)
         self.assertEqual(len(draws), 4)
+
+    def test_the_command_of_the_proposed_study_can_be_typed(self):
+        code, out, err = self.run_script(self.write(self.known()), "--out", self.folder / "a b", "--propose", "2", "--no-figures")
+        self.assertEqual(code, 0, err)
+        words = shlex.split(next(line for line in out.splitlines() if line.startswith("  rcme run")))
+        self.assertEqual(words, ["rcme", "run", str(self.folder / "a b" / "next.yaml"), "--out", "next.sqlite"])
+        self.assertTrue(pathlib.Path(words[2]).is_file())
 
     def test_noise_gets_no_maps_and_what_stood_there_is_gone(self):
         self.out().mkdir()
