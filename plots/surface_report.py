@@ -15,6 +15,11 @@ import re
 import sys
 import time
 
+from common.interrupt import end_on_interrupt
+
+if __name__ == "__main__":
+    end_on_interrupt()  # before the imports that take long
+
 from common.command_line import Parser, PlotError, run
 from common import sheet, style
 from common.whole_file import write_text
@@ -83,7 +88,7 @@ def make(arguments):
     progress.step()
     figures = {} if options.no_figures else figures_of(data, model, check, effects)
     progress.step()
-    report = report_of(data, model, check, effects, proposed, options.level)
+    report = report_of(data, check, effects, proposed, options.level, options.out)
     written = write_all(options, data, check, effects, proposed, figures, report)
     progress.end()
     print(report)

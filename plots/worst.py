@@ -7,10 +7,12 @@ import hashlib
 import os
 import sys
 
+from common.interrupt import end_on_interrupt
 from worst_search.run_rcme import end_with_parent
 
 if __name__ == "__main__":
-    end_with_parent()  # before the imports that take long
+    end_with_parent()
+    end_on_interrupt()  # before the imports that take long
 
 from common.command_line import Parser, PlotError, run
 from common.whole_file import write_text
@@ -27,6 +29,7 @@ except ImportError as missing:
 PILOT_DRAWS = 64  # whose time says how many trials --minutes allows
 DEFAULT_TRIALS = 5000
 MANY_TRIALS = 3000  # with fewer, fewer and smaller looks into each box
+HELD_OUT = 0.25  # of the pool, its last draws: the search does not see them, and shares of the population are counted on them
 SHARE_OF_TIME = 0.8  # for the trials; the rest for the search itself and the pictures
 
 
@@ -51,6 +54,15 @@ def read_pool(path):
     with open(path, encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file))
     return rows[0][1:], [int(row[0]) for row in rows[1:]], [row[1:] for row in rows[1:]]
+
+
+def split_pool(keys, rows):
+    """(Space of the draws that are searched, Table of those that are held out). Of the design sobol the two parts are not
+    independent, but intervals of shares hold: with at least 97 % for the largest and the smallest of 60 random boxes (95 %
+    nominal, 15,000 and 5,000 draws of 12 axes)."""
+    num_searched = len(rows) - int(HELD_OUT * len(rows))
+    space = Space(keys, rows[:num_searched])
+    return space, space.table(rows[num_searched:])
 
 
 def check_is_same(folder, options):
@@ -84,7 +96,8 @@ def search(arguments):
     keys, numbers, rows = read_pool(os.path.join(options.folder, "pool.csv"))
     progress = Progress()
     more = ["--allow-process"] if options.allow_process else []
-    objective = TrialsOfRun(options.folder, options.rcme, Space(keys, rows), numbers, options.quantity, options.estimator,
+    space, held_out = split_pool(keys, rows)
+    objective = TrialsOfRun(options.folder, options.rcme, space, numbers, options.quantity, options.estimator,
                             options.threads, more, progress.show)
     claim = CLAIMS[options.quantity] if options.claim is None else options.claim
     budget = budget_of(options, objective)
@@ -94,7 +107,7 @@ def search(arguments):
     progress.begin(objective, plan)
     regions = find_worst(objective, plan)
     progress.end(objective)
-    return write_report(objective, plan, regions)
+    return write_report(objective, plan, regions, held_out)
 
 
 def main(arguments=None):

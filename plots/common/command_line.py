@@ -8,6 +8,7 @@ import os
 import sys
 
 from common import sheet
+from common.interrupt import STOPPED, interrupts_raised
 from common.plot_error import PlotError
 from common.style_file import read_style
 
@@ -120,9 +121,9 @@ def rare_garbage_collection():
 
 def run(name, make, arguments):
     """The exit code of a script: `make(arguments)` writes and returns the paths, which are printed; what the user can put
-    right is one line on standard error."""
+    right, and an interrupt, is one line on standard error."""
     try:
-        with rare_garbage_collection():
+        with interrupts_raised(), rare_garbage_collection():
             written = make(arguments)
     except PlotError as error:
         print(f"{name}: {printable(str(error))}", file=sys.stderr)
@@ -130,6 +131,9 @@ def run(name, make, arguments):
     except OSError as error:
         print(f"{name}: cannot write {error.filename or 'the output'}: {error.strerror}.", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("stopped", file=sys.stderr)
+        return STOPPED
     print("\n".join(written))
     return 0
 

@@ -1,5 +1,6 @@
 """How a rate, or a mean, depends on the condition: a Gaussian process on the logit of the rate (or on the mean itself),
-which knows how few trials a condition has and that conditions differ by more than their factors.
+which knows how few trials a condition has and that conditions, and draws with several conditions, differ by more than
+their factors.
 
     model = ConditionModel().fit(levels, successes, trials)   # levels: a table of texts, a row a condition
     rate, low, high = model.predict_rate(candidates)
@@ -29,17 +30,17 @@ class ConditionModel:
     def __init__(self, encoder=None):
         self.encoder = encoder
 
-    def fit(self, levels, successes, trials, start=None):
+    def fit(self, levels, successes, trials, start=None, draws=None):
         """`successes` of `trials` in each condition; those without trials do not count. `start`: a fitted model whose
-        variances are the first guess."""
+        variances are the first guess. `draws`: the number of each condition's draw, where draws have several conditions."""
         successes, trials = np.asarray(successes, float), np.asarray(trials, float)
         self.has_counts, self.center, self.spread = True, 0.0, 1.0
         is_used = trials > 0
-        self._begin(levels[is_used], start)
+        self._begin(levels[is_used], start, None if draws is None else draws[is_used])
         self._fit_counts(successes[is_used], trials[is_used], start)
         return self
 
-    def fit_values(self, levels, mean, standard_error, start=None):
+    def fit_values(self, levels, mean, standard_error, start=None, draws=None):
         """Of a quantity that is no rate: its mean in each condition with the standard error from the condition's trials.
         Conditions without a mean do not count."""
         mean, standard_error = np.asarray(mean, float), np.asarray(standard_error, float)
@@ -47,7 +48,7 @@ class ConditionModel:
         is_used = np.isfinite(mean) & np.isfinite(standard_error)
         mean, variance = mean[is_used], standard_error[is_used]**2
         self.center, self.spread = mean.mean(), max(mean.std(), 1e-9)
-        self._begin(levels[is_used], start)
+        self._begin(levels[is_used], start, None if draws is None else draws[is_used])
         response = (mean - self.center) / self.spread
         noise = np.maximum(variance / self.spread**2, 1e-6)
         self._learn(response, noise)
@@ -56,10 +57,10 @@ class ConditionModel:
 
     def predict(self, levels, own=True):
         """Mean and standard deviation on the logit scale (of `fit_values`: on that of the values): what the model does not
-        know about each condition's rate, without the noise of its trials. own=False: of the surface, without what is each
-        condition's own."""
+        know about the rate of a condition of a further draw, without the noise of its trials. own=False: of the surface
+        alone."""
         mean, variance = self._predict_features(self.encoder.encode(levels))
-        variance = variance + own * self.kernel.own_variance
+        variance = variance + own * self.kernel.unexplained_variance
         return self.center + self.spread * mean, self.spread * np.sqrt(variance)
 
     def predict_rate(self, levels, confidence=0.9):
@@ -70,12 +71,11 @@ class ConditionModel:
             return mean, mean - half, mean + half
         return average_rate(mean, sd**2), expit(mean - half), expit(mean + half)
 
-    def covariance(self, levels, own=True):
-        """Of the conditions' logits (or values), given what is known: a matrix."""
+    def covariance(self, levels):
+        """Of the surface at these conditions, on the logit scale (or that of values), given what is known: a matrix."""
         features = self.encoder.encode(levels)
         half = linalg.solve_triangular(self.root, self.kernel.surface(self.features, features), lower=True)
-        cov = self.kernel.surface(features, features) - half.T @ half
-        return self.spread**2 * (cov + own * self.kernel.own_variance * np.eye(len(cov)))
+        return self.spread**2 * (self.kernel.surface(features, features) - half.T @ half)
 
     def draw_surfaces(self, number, random):
         """Surfaces from the posterior, as Surface; `random`: a numpy Generator. Variances are drawn as well."""
@@ -95,11 +95,12 @@ class ConditionModel:
 
     # ---- fitting
 
-    def _begin(self, levels, start):
+    def _begin(self, levels, start, draws):
         if self.encoder is None:
             self.encoder = ConditionEncoder().fit(levels)
         self.features = self.encoder.encode(levels)
-        self.kernel = AnovaKernel(self.encoder, None if start is None else start.kernel.theta)
+        self.draws = draws
+        self.kernel = AnovaKernel(self.encoder, None if start is None else start.kernel.theta, draws is not None)
         order = np.random.default_rng(1).permutation(len(self.features))
         self.learned_from = np.sort(order[:MOST_FOR_VARIANCES])
 
@@ -120,11 +121,11 @@ class ConditionModel:
     def _learn(self, response, noise, fixed=()):
         """Variances and roughness: the mode of their posterior. Those at the places `fixed` stay."""
         used = self.learned_from
-        features, response, noise = self.features[used], response[used], noise[used]
+        features, response, noise, draws = self.features[used], response[used], noise[used], self._draws_learned_from()
 
         def objective(theta):
-            value, gradient = log_likelihood(AnovaKernel(self.encoder, theta), features, response, noise, gradient=True)
-            prior, slope = log_prior(theta)
+            value, gradient = log_likelihood(AnovaKernel(self.encoder, theta), features, response, noise, draws, True)
+            prior, slope = log_prior(theta, len(self.encoder.blocks))
             return (-value - prior, -gradient - slope) if np.isfinite(value) else (1e25, 0 * gradient)
         bounds = self.kernel.bounds
         bounds[list(fixed)] = NO_EFFECT
@@ -166,12 +167,16 @@ class ConditionModel:
 
     def _covariance_of_logits(self):
         """Prior, of the conditions that the model was fitted to."""
-        return self.kernel.surface(self.features, self.features) + self.kernel.own_variance * np.eye(len(self.features))
+        return self.kernel.surface(self.features, self.features) + self.kernel.deviations(np.zeros(len(self.features)), self.draws)
+
+    def _draws_learned_from(self):
+        return None if self.draws is None else self.draws[self.learned_from]
 
     def _evidence(self, kernel, gradient=False):
         """Logarithm of the marginal likelihood of the working responses."""
         used = self.learned_from
-        return log_likelihood(kernel, self.features[used], self.response[used], self.noise[used], gradient)
+        return log_likelihood(kernel, self.features[used], self.response[used], self.noise[used], self._draws_learned_from(),
+                              gradient)
 
     # ---- predicting
 
@@ -187,7 +192,8 @@ class ConditionModel:
         mode, bounds = self.kernel.theta, self.kernel.bounds
 
         def slope(theta):
-            return self._evidence(AnovaKernel(self.encoder, theta), gradient=True)[1] + log_prior(theta)[1]
+            prior_slope = log_prior(theta, len(self.encoder.blocks))[1]
+            return self._evidence(AnovaKernel(self.encoder, theta), gradient=True)[1] + prior_slope
         step = 0.05
         curvature = np.array([(slope(mode + step * e) - slope(mode - step * e)) / (2 * step) for e in np.eye(len(mode))])
         values, vectors = np.linalg.eigh(-0.5 * (curvature + curvature.T))
@@ -201,7 +207,9 @@ class ConditionModel:
         prior = draw_prior(kernel, random)
         noise = self.noise + kernel.own_variance
         residual = self.response - prior.at(self.features) - np.sqrt(noise) * random.standard_normal(len(noise))
-        K = kernel.surface(self.features, self.features) + np.diag(noise)
+        if kernel.has_draws:
+            residual -= np.sqrt(kernel.draw_variance) * random.standard_normal(self.draws.max() + 1)[self.draws]
+        K = kernel.surface(self.features, self.features) + kernel.deviations(self.noise, self.draws)
         return move(prior, kernel, self.features, linalg.solve(K, residual, assume_a="pos"), self)
 
     def mean_surface(self):
@@ -212,7 +220,7 @@ class ConditionModel:
 
 class Surface:
     """f as a quadratic form of the features: constant + F w + 1/2 F W F', where W has no entries within a group. `own`: the
-    variance of each condition's own."""
+    variance of what no factor explains, of a condition and of its draw."""
 
     def __init__(self, constant, linear, pairs, own):
         self.constant, self.linear, self.pairs, self.own = constant, linear, pairs, own
@@ -223,7 +231,7 @@ class Surface:
         return Exchange(self, features).values
 
     def expected(self, standardised):
-        """The mean rate (or value) of conditions with that f, over what is each condition's own."""
+        """The mean rate (or value) of conditions with that f, over what no factor explains."""
         value = self.center + self.spread * standardised
         return average_rate(value, self.own) if self.has_counts else value
 
@@ -262,7 +270,7 @@ def move(surface, kernel, features, weights, model):
     linear = surface.linear + variances * (features.T @ weights)
     pairs = kernel.tau * np.outer(variances, variances) * (features.T @ (features * weights[:, None]))
     moved = Surface(surface.constant + CONSTANT * weights.sum(), linear,
-                    surface.pairs + pairs * between_groups(kernel.encoder), kernel.own_variance)
+                    surface.pairs + pairs * between_groups(kernel.encoder), kernel.unexplained_variance)
     moved.center, moved.spread, moved.has_counts = model.center, model.spread, model.has_counts
     return moved
 

@@ -15,7 +15,7 @@ def propose(data, model, number, level=None):
     candidates = data.candidates
     levels = candidates[data.names]
     mean, _ = model.predict(levels, own=False)
-    cov = model.covariance(levels, own=False)
+    cov = model.covariance(levels)
     noise = noise_of_condition(data, model, mean)
     rate, lower, upper = model.predict_rate(levels)
     draws, chosen, scores = candidates.draw.to_numpy(), [], []
@@ -25,8 +25,9 @@ def propose(data, model, number, level=None):
         best = draws[int(np.argmax(score))]
         chosen.append(best)
         scores.append(score.max())
-        for place in np.flatnonzero(draws == best):
-            cov = cov - np.outer(cov[place], cov[place]) / (cov[place, place] + noise[place])
+        places = np.flatnonzero(draws == best)
+        said = cov[np.ix_(places, places)] + np.diag(noise[places]) + model.spread**2 * model.kernel.draw_variance
+        cov = cov - cov[:, places] @ np.linalg.solve(said, cov[places])
     rows = pd.DataFrame({"draw": draws, "rate": rate, "lower": lower, "upper": upper}).join(levels)
     order = pd.DataFrame({"draw": chosen, "order": range(1, len(chosen) + 1), "score": scores})
     return order.merge(rows, on="draw", how="left")
@@ -42,7 +43,8 @@ def undecided(model, mean, variance, level):
 
 
 def noise_of_condition(data, model, mean):
-    """Variance of what a further condition would say of the surface: its own and that of the usual number of trials."""
+    """Variance of what a further condition would say of the surface, beside that of its draw: its own and that of the usual
+    number of trials."""
     own = model.spread**2 * model.kernel.own_variance
     if not data.is_rate:
         return np.full(len(mean), own + np.median(data.standard_errors())**2)

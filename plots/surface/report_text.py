@@ -1,5 +1,7 @@
 """The report of `rcme surface`: what a reader needs, in 80 columns."""
 
+import os
+import shlex
 import textwrap
 
 WIDTH = 80
@@ -7,7 +9,8 @@ QUANTITY = {"failure": "share of the trials that failed", "coverage": "truth wit
             "P-y": "stated probability of failure less the failure"}
 
 
-def report_of(data, model, check, effects, proposed, level):
+def report_of(data, check, effects, proposed, level, out):
+    """`out`: the folder that receives next.yaml, as the user gave it."""
     parts = [heading(data), verdict(check, data), calibration(check, data)]
     if check.beats_constant:
         parts += [indices_table(effects), groups_in_words(effects), ranges_table(effects), what_is_not_known(effects)]
@@ -16,7 +19,7 @@ def report_of(data, model, check, effects, proposed, level):
             "So this run does not show that the quantity depends on the factors, or it has too few conditions or trials to "
             "show how. Shares, effects and maps are left out."))
     if proposed is not None:
-        parts.append(proposals(proposed, level, data))
+        parts.append(proposals(proposed, level, data, out))
     return "\n".join(parts)
 
 
@@ -36,8 +39,12 @@ def heading(data):
     trials = data.trials
     spread = f"{trials.min():.0f}" if trials.min() == trials.max() else f"{trials.min():.0f} to {trials.max():.0f}"
     lines = [f"Surface of {data.quantity} ({QUANTITY[data.quantity]})", f"Study {data.study}, estimator {data.estimator}", ""]
-    text = (f"{len(trials)} conditions with {spread} trials each that count, {int(trials.sum())} in all. "
+    of_draws = "" if data.shared_draws is None else f" of {len(set(data.shared_draws))} draws"
+    text = (f"{len(trials)} conditions{of_draws} with {spread} trials each that count, {int(trials.sum())} in all. "
             + (f"{data.num_without} conditions have no such trial. " if data.num_without else ""))
+    if of_draws:
+        text += ("Conditions of one draw share what its factors do not explain: intervals and cross-validation count draws, not "
+                 "conditions. ")
     num_sample = int(data.is_sample.sum())
     if num_sample == 0:
         text += ("None of them is a random draw of a population: they are levels that somebody chose, or draws that were "
@@ -129,12 +136,13 @@ def what_is_not_known(effects):
         "of both numbers (or at the same words). Such cells are grey and hatched.")
 
 
-def proposals(proposed, level, data):
+def proposals(proposed, level, data, out):
+    study = shlex.quote(os.path.join(out, "next.yaml"))
     where = "the quantity is least known" if level is None else f"it is least certain on which side of {level:g} a condition lies"
     num = proposed.draw.nunique()
     return paragraph(
         f"Proposed: {num} of {data.candidates.draw.nunique()} later draws of the population, one after the other where {where}, "
-        "each as if those before had been run. What the simulator cannot make shows when they are run.") + "\n" + \
-        "\n".join(["  rcme run next.yaml --out next.sqlite", "  rcme surface RUN.sqlite next.sqlite --out OUT"]) + "\n\n" + paragraph(
-            "They were chosen for what they say of the surface, and are no random sample: they may enter no rate over the "
-            "population.")
+        "each as if those before had been run. What the simulator cannot make shows when they are run.") + (
+            f"\n  rcme run {study} --out next.sqlite\n  rcme surface RUN.sqlite next.sqlite --out OUT\n\n") + paragraph(
+                "They were chosen for what they say of the surface, and are no random sample: they may enter no rate over "
+                "the population.")

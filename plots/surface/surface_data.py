@@ -44,6 +44,19 @@ class SurfaceData:
         """Events in each condition."""
         return np.round(self.conditions["mean"].to_numpy(float) * self.trials)
 
+    @property
+    def draw_numbers(self):
+        """0, 1, ... for the draw of each condition, counted anew; a condition of no draw counts as one."""
+        keys = [(run, draw if draw == draw else condition) for run, draw, condition in
+                self.conditions[["run", "draw", "condition"]].astype(float).itertuples(index=False)]
+        return pd.factorize(pd.Series(keys, dtype=object))[0]
+
+    @property
+    def shared_draws(self):
+        """The same, or None where every draw has one condition."""
+        numbers = self.draw_numbers
+        return None if len(set(numbers)) == len(numbers) else numbers
+
     def standard_errors(self):
         """Of each condition's mean. Few equal trials do not mean that it is known: the spread of all conditions counts as
         that of some trials more."""
@@ -53,11 +66,12 @@ class SurfaceData:
 
     def fit(self, chosen=slice(None), start=None, encoder=None):
         """A ConditionModel of the chosen conditions."""
-        model, levels = ConditionModel(encoder or self.encoder), self.levels[chosen]
+        model, levels, draws = ConditionModel(encoder or self.encoder), self.levels[chosen], self.shared_draws
+        draws = None if draws is None else draws[chosen]
         if self.is_rate:
-            return model.fit(levels, self.successes[chosen], self.trials[chosen], start)
+            return model.fit(levels, self.successes[chosen], self.trials[chosen], start, draws)
         return model.fit_values(levels, self.conditions["mean"].to_numpy(float)[chosen], self.standard_errors()[chosen],
-                                start)
+                                start, draws)
 
 
 def read_surface_data(path):

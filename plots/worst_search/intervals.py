@@ -1,4 +1,4 @@
-"""Exact intervals of rates that hold together."""
+"""Exact intervals of rates and shares that hold together."""
 
 import dataclasses
 
@@ -20,10 +20,20 @@ class Rate:
     upper: float
 
 
-def simultaneous_rate(counts, num_regions, level=0.95):
-    """Of one region of several, so that all intervals hold together with this probability (Bonferroni). `counts`: fresh,
-    independent trials. A difference of two rates on the same trials is bounded by the exact intervals of its two parts."""
-    each = 1 - (1 - level) / num_regions
+def level_of_each(num_intervals, level=0.95):
+    """The confidence level of each interval, so that all of them hold together with `level` (Bonferroni)."""
+    return 1 - (1 - level) / num_intervals
+
+
+def simultaneous_share(count, size, num_intervals):
+    """Of `count` among `size` independent draws, as one of several intervals that hold together."""
+    return Rate(count / size, *clopper_pearson(count, size, level_of_each(num_intervals)))
+
+
+def simultaneous_rate(counts, num_intervals):
+    """One of several intervals that hold together. `counts`: fresh, independent trials. A difference of two rates on the same
+    trials is bounded by the exact intervals of its two parts."""
+    each = level_of_each(num_intervals)
     if counts.trials == 0:
         return Rate(float("nan"), -1.0 if counts.is_difference else 0.0, 1.0)
     if not counts.is_difference:

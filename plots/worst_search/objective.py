@@ -37,6 +37,7 @@ class Objective:
 
     space = None
     is_difference = False
+    what_counts = ""  # of the answers, as a sentence, for the message that none does
     calls = 0  # trials that were asked for so far
 
     def try_draws(self, name, numbers, trials, first=0):

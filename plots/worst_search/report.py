@@ -9,9 +9,10 @@ import numpy as np
 
 from common.command_line import PlotError
 from common.whole_file import write_text
-from worst_search.intervals import clopper_pearson
+from worst_search.intervals import simultaneous_share
 from worst_search.run_rcme import run_rcme
 from worst_search.run_trials import QUANTITIES, SHARPNESS, number_text, study_text
+from worst_search.search import INTERVALS_OF_REGION
 
 
 def limit_text(space, key, limit):
@@ -23,8 +24,10 @@ def limit_text(space, key, limit):
     return f"{key}: {' '.join(ends)} (drawn from {least:.3g} to {most:.3g})"
 
 
-def share_interval(region, pool):
-    return clopper_pearson(int(region.box.contains(pool).sum()), pool.size, 0.95)
+def share_of(region, num_regions, held_out):
+    """A region's share of the population, on draws that had no part in the search, so that the shares and rates of all regions
+    hold together."""
+    return simultaneous_share(int(region.box.contains(held_out).sum()), held_out.size, INTERVALS_OF_REGION * num_regions)
 
 
 def fresh_answer(objective, region):
@@ -49,12 +52,11 @@ def sharpness_text(row):
     return []
 
 
-def row_of(objective, plan, number, region):
-    lower, upper = share_interval(region, objective.space.pool)
+def row_of(objective, plan, number, region, share):
     return {"region": number, "rate": region.rate.estimate, "lower": region.rate.lower, "upper": region.rate.upper,
             "events": region.fresh.events, "reverse": region.fresh.reverse, "trials": region.fresh.trials,
-            "claim": plan.claim, "is_find": region.is_find, "share": region.share, "share_lower": lower,
-            "share_upper": upper, "search_rate": region.search_rate, **sharpness_columns(objective, region),
+            "claim": plan.claim, "is_find": region.is_find, "share": share.estimate, "share_lower": share.lower,
+            "share_upper": share.upper, "search_rate": region.search_rate, **sharpness_columns(objective, region),
             "limits": "; ".join(limit_text(objective.space, k, v) for k, v in region.box.limits)}
 
 
@@ -70,10 +72,11 @@ def percent(value):
     return f"{100 * value:.1f}"
 
 
-def as_text(objective, plan, regions, rows):
+def as_text(objective, plan, regions, rows, num_held_out):
     who = objective.labels[0] + (f" less {objective.labels[1]}" if objective.is_difference else "")
     lines = [f"{objective.study['name']}: {who}, {objective.quantity}: {QUANTITIES[objective.quantity]}",
-             f"{objective.calls} trials were spent; all intervals hold together with 95 %"]
+             f"{objective.calls} trials were spent; the intervals of all rates and shares hold together with 95 %",
+             f"(shares: of {num_held_out} draws of the population that had no part in the search)"]
     if not rows:
         lines.append("No region was found.")
     for row, region in zip(rows, regions):
@@ -112,9 +115,10 @@ def show(objective, number, study, answer):
     return [out + suffix for suffix in (".txt", ".png", ".pdf")]
 
 
-def write_report(objective, plan, regions):
-    """The paths that were written."""
-    rows = [row_of(objective, plan, number, region) for number, region in enumerate(regions, 1)]
+def write_report(objective, plan, regions, held_out):
+    """The paths that were written. `held_out`: a Table of draws of the population that had no part in the search."""
+    rows = [row_of(objective, plan, number, region, share_of(region, len(regions), held_out))
+            for number, region in enumerate(regions, 1)]
     paths = []
     for number, region in enumerate(regions, 1):
         study = objective.study_of_box(region.name, region.box, plan.num_fresh, "random")
@@ -124,7 +128,7 @@ def write_report(objective, plan, regions):
         path = os.path.join(objective.folder, f"region_{number}.yaml")
         write_text(path, study_text(study))
         paths += [path, *show(objective, number, path, fresh_answer(objective, region))]
-    text = as_text(objective, plan, regions, rows)
+    text = as_text(objective, plan, regions, rows, held_out.size)
     files = {"worst.txt": text, "worst.csv": as_csv(rows),
              "worst.json": json.dumps({"format": "rcme worst 1", "study": objective.study["name"],
                                        "estimators": objective.labels, "quantity": objective.quantity,

@@ -29,6 +29,8 @@ QUANTITIES = {"failure": "share of the trials that failed",
                           f"{SURE_OF_COVERAGE:g}, or of successes if the estimator states no P",
               "difference": "share of the trials that failed, less that of the other estimator"}
 SHARPNESS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg")  # beside a coverage: wide regions cover
+STATEMENTS = {"sure_failure": ("failure_probability", "a probability of failure"),  # column and name of what answers have to state
+              "coverage": ("rotation_sd_deg", "a covariance")}
 CLAIMS = {"failure": 0.5, "sure_failure": SURE_BELOW, "coverage": 0.05, "difference": 0.0}
 
 
@@ -180,6 +182,8 @@ class TrialsOfRun(Objective):
         self.quantity, self.labels, self.threads, self.more, self.say = quantity, labels, threads, list(more), say
         self.study = read_study(os.path.join(folder, "study.yaml"))
         self.is_difference, self.calls, self.seconds = quantity == "difference", 0, 0.0
+        self.what_counts = f"{quantity} is the {QUANTITIES[quantity]}."
+        self.num_answers, self.num_stating = 0, 0  # of the first estimator; with what the quantity needs
         os.makedirs(os.path.join(folder, "trials"), exist_ok=True)
 
     def path(self, name, suffix):
@@ -228,8 +232,17 @@ class TrialsOfRun(Objective):
             found = json.load(file)
         self.calls += found["calls"]
         self.seconds += found["seconds"]
+        self.check_statements(found)
         self.say(self)
         return found
+
+    def check_statements(self, found):
+        """An estimator that never states what the quantity is about would use up all trials for nothing."""
+        self.num_answers += found.get("answers", 0)
+        self.num_stating += found.get("stating", 0)
+        if self.num_answers and not self.num_stating:
+            raise PlotError(f"no answer of {self.labels[0]} states {STATEMENTS[self.quantity][1]}; {self.quantity} needs an "
+                            "estimator that does.")
 
     def run(self, name, study):
         write_text(self.path(name, ".yaml"), study_text(study))
@@ -249,6 +262,7 @@ class TrialsOfRun(Objective):
         rows = csv.DictReader(io.StringIO(table.stdout))
         levels, answers, num_calls = {}, {label: {} for label in self.labels}, 0
         measured = []  # of a coverage, the answers that count
+        is_stating = []  # of the first estimator's valid answers
         names = rows.fieldnames[3:rows.fieldnames.index("trial")]  # after study, condition, draw
         columns = {name if name in self.space.keys else name.removeprefix("level_"): name for name in names}
         for row in rows:
@@ -256,6 +270,8 @@ class TrialsOfRun(Objective):
             levels.setdefault(condition, (int(row["draw"]), [row[columns[key]].removeprefix("'") if key in columns else ABSENT
                                                                 for key in self.space.keys]))
             num_calls += row["estimator"] == self.labels[0]
+            if row["estimator"] == self.labels[0] and row["status"] == "ok" and self.quantity in STATEMENTS:
+                is_stating.append(bool(row[STATEMENTS[self.quantity][0]]))
             if trial >= first:
                 answers[row["estimator"]][condition, trial] = event_of(self.quantity, row)
                 if self.quantity == "coverage" and answers[row["estimator"]][condition, trial] != NOT_THERE:
@@ -277,4 +293,5 @@ class TrialsOfRun(Objective):
                 "events": [counts[c][0] for c in order], "trials": [counts[c][1] for c in order],
                 "reverse": [counts[c][2] for c in order], "conditions": order, "failing": failing,
                 "calls": num_calls, "seconds": round(self.last_seconds, 3),
+                "answers": len(is_stating), "stating": sum(is_stating),
                 **({"sharpness": sharpness_of(measured)} if self.quantity == "coverage" else {})}

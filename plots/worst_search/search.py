@@ -7,6 +7,7 @@ import dataclasses
 
 import numpy as np
 
+from common.plot_error import PlotError
 from worst_search.grow_box import AXIS_DRAWS, first_box, peel, widen
 from worst_search.intervals import clopper_pearson, simultaneous_rate
 from worst_search.space import Box, overlap
@@ -14,6 +15,7 @@ from worst_search.surrogate import Surrogate, choose_promising
 
 MIN_EVENTS = 4  # in a look into a box; with fewer it is given up
 MAX_CYCLES, LEAST_EXPLORED = 6, 200  # exploring, racing and growing again with what is left
+INTERVALS_OF_REGION = 2  # its rate and its share of the population, which all hold together
 NUM_LOOKED_AT = 3000  # draws of which the surrogate says which to try
 
 
@@ -38,7 +40,6 @@ class Plan:
 @dataclasses.dataclass
 class Region:
     box: Box
-    share: float  # of the population
     seed_draw: int  # of the pool
     search_rate: float  # of the last look into the box: only to choose by
     name: str = ""  # of the request for its fresh trials
@@ -167,7 +168,7 @@ def grow(objective, plan, name, draw, evidence):
         rate = (kept.events.sum() + 1) / (kept.trials.sum() + 2)
         if look + 1 < plan.num_looks:
             box = widen(objective, f"{name}_wider_{look}", box, *rates_apart(plan, rate))
-    return Region(box, box.share(space.pool), draw, rate) if rate > plan.claim else None
+    return Region(box, draw, rate) if rate > plan.claim else None
 
 
 def next_draw(objective, plan, evidence, regions, given_up):
@@ -209,6 +210,8 @@ def find_worst(objective, plan):
     exploring = spent_by(objective, plan)[0]
     for cycle in range(MAX_CYCLES):
         explore(objective, plan, evidence, exploring, cycle)
+        if not evidence.trials.any():
+            raise PlotError(f"none of the {objective.calls} trials so far counts: {objective.what_counts}")
         race(objective, plan, evidence, cycle)
         grow_regions(objective, plan, evidence, regions, given_up)
         exploring = left_of(objective, plan) // 2
@@ -220,6 +223,6 @@ def find_worst(objective, plan):
         region.name = f"fresh_{number}"
         fresh = objective.try_box(region.name, region.box, plan.num_fresh)
         region.fresh = fresh.total(objective.is_difference)
-        region.rate = simultaneous_rate(region.fresh, len(regions))
+        region.rate = simultaneous_rate(region.fresh, INTERVALS_OF_REGION * len(regions))
         region.is_find = region.rate.lower > plan.claim
     return sorted(regions, key=lambda region: -region.rate.lower)

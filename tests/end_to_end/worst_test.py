@@ -129,6 +129,12 @@ class WorstTest(unittest.TestCase):
             self.assertEqual(end.returncode, 2)
             self.assertIn(said, end.stderr)
 
+    def test_an_estimator_without_a_probability_ends_the_search_of_sure_failures(self):
+        end = subprocess.run(self.command("unsure", "--quantity", "sure_failure"), capture_output=True, text=True, check=False)
+        self.assertEqual(end.returncode, 2)
+        self.assertIn("no answer of standard states a probability of failure", end.stderr)
+        self.assertEqual(len(list((self.folder / "unsure" / "trials").glob("*.sqlite"))), 1)  # of the first answers
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -29,11 +29,22 @@ def events(logit, trials, own_sd, seed):
     return random.binomial(trials, 1 / (1 + np.exp(-logit - own)))
 
 
-def surface_file(levels, successes, trials, candidates=None, is_sample=True, quantity="failure"):
-    """What `rcme surface` hands over, as a value for JSON."""
+def crossed_conditions(num_draws, num_levels, seed):
+    """Draws of a population, each crossed with levels of num_matches: levels, logits and the number of each condition's draw.
+    Nothing that is drawn has an effect, but draws differ with a standard deviation of 1; a level has an effect of 0.5."""
+    drawn, _ = conditions(num_draws, seed)
+    draws, level = np.repeat(np.arange(num_draws), num_levels), np.tile(np.arange(num_levels), num_draws)
+    of_draw = np.random.default_rng([seed, 11]).standard_normal(num_draws)[draws]
+    levels = drawn.loc[draws].reset_index(drop=True).assign(num_matches=texts(50.0 * 2**level))
+    return levels, -1 + of_draw - 0.5 * level, draws
+
+
+def surface_file(levels, successes, trials, candidates=None, is_sample=True, quantity="failure", draws=None):
+    """What `rcme surface` hands over, as a value for JSON. `draws`: the number of each condition's draw, if not its own."""
+    draws = range(len(levels)) if draws is None else draws
     def row(number, levels):
         return {"draw": number, "levels": list(levels)}
-    conditions = [{"run": 0, "condition": c, **row(c, levels.iloc[c]), "n": trials, "mean": successes[c] / trials,
+    conditions = [{"run": 0, "condition": c, **row(int(draws[c]), levels.iloc[c]), "n": trials, "mean": successes[c] / trials,
                    "sd": float(np.sqrt(successes[c] / trials * (1 - successes[c] / trials)))} for c in range(len(levels))]
     ends = {"sigma_px": ("log", 0.1, 3), "outlier_ratio": ("linear", 0, 0.8)}
     factors = [{"name": name, "scale": None, **dict(zip(("scale", "low", "high"), ends.get(name, ())))} for name in levels]

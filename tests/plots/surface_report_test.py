@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """Tests of plots/surface_report.py and what it is made of; run as: /usr/bin/python3 tests/plots/surface_report_test.py"""
 
+import pathlib
+import shlex
 import unittest
 
 from plot_test_case import PlotTestCase
@@ -9,9 +11,10 @@ import numpy as np
 import pandas as pd
 import surface_report as script
 import yaml
-from known_surface import conditions, events, surface_file
-from scipy import stats
-from surface.cross_validation import count_masses, cross_validate, exact_interval, score_count, transform_histogram
+from known_surface import conditions, crossed_conditions, events, surface_file
+from scipy import special, stats
+from surface.cross_validation import (assign_folds, count_masses, cross_validate, exact_interval, interval_over_draws, score_count,
+                                      standard_error_of_mean, transform_histogram)
 from surface.effects import WIDEST_BAND, measure_effects
 from surface.proposals import propose
 from surface.report_text import heading
@@ -46,6 +49,16 @@ class PredictionTest(SurfaceTestCase):
         expected = np.average(stats.binom.pmf(7, 12, 1 / (1 + np.exp(-logits))), weights=weights)
         self.assertAlmostEqual(count_masses(12, 0.5, 1.1)[7], expected, places=6)
 
+    def test_masses_are_those_of_a_dense_grid_for_many_trials_and_wide_predictions(self):
+        """Likelihoods from far wider to far narrower than the prediction. Not statistical."""
+        for trials in (1, 20, 60, 1000, 100_000):
+            for sd in (0.1, 1.5, 6):
+                mass = count_masses(trials, -1, sd)
+                for count in {0, 1, trials // 2, trials}:
+                    expected = log_mass(count, trials, -1, sd)
+                    if expected > -300:  # of a representable probability
+                        self.assertAlmostEqual(np.log(mass[count]), expected, delta=1e-3, msg=f"{count} of {trials}, sd {sd}")
+
     def test_exact_intervals_are_clopper_and_pearsons(self):
         np.testing.assert_allclose(exact_interval(5, 20), (0.08657, 0.49105), atol=1e-5)  # R: binom.test(5, 20)
         self.assertEqual(exact_interval(0, 20)[0], 0)
@@ -65,6 +78,59 @@ class PredictionTest(SurfaceTestCase):
             self.assertEqual(check.beats_constant, beats)
             share, low, high, expected = check.inside
             self.assertTrue(low <= expected <= high, f"{share} of the held-out conditions inside, {expected} expected")
+
+
+def log_mass(count, trials, mean, sd):
+    """Logarithm of the probability of a count whose rate has a normal logit: sums over 20,000 logits, first over all, then
+    where the integrand is."""
+    def log_integrand(x):
+        return stats.norm(mean, sd).logpdf(x) + stats.binom.logpmf(count, trials, 1 / (1 + np.exp(-x)))
+    x = np.linspace(-45, 30, 20_001)
+    logs = log_integrand(x)
+    is_there = logs > logs.max() - 50
+    x = np.linspace(x[is_there][0] - 1e-3, x[is_there][-1] + 1e-3, 20_001)
+    return special.logsumexp(log_integrand(x)) + np.log(x[1] - x[0])
+
+
+class SharedDrawsTest(SurfaceTestCase):
+    """Studies that cross the draws of a population with levels."""
+
+    def crossed(self):
+        levels, logit, draws = crossed_conditions(12, 4, 1)
+        return surface_file(levels, events(logit, TRIALS, 0.3, 1), TRIALS, draws=draws)
+
+    def test_conditions_of_a_draw_are_left_out_together(self):
+        data = self.data(self.crossed())
+        self.assertEqual(set(pd.Series(assign_folds(data)).groupby(data.shared_draws).nunique()), {1})
+        self.assertIsNone(self.data(self.known()).shared_draws)
+        self.assertIsNotNone(data.fit().draws)
+
+    def test_copies_of_a_condition_say_nothing_more_of_a_mean(self):
+        values, draws = np.random.default_rng(1).standard_normal(30), np.arange(30)
+        expected = values.std(ddof=1) / np.sqrt(30)
+        self.assertAlmostEqual(standard_error_of_mean(values, draws), expected)
+        self.assertAlmostEqual(standard_error_of_mean(np.repeat(values, 4), np.repeat(draws, 4)), expected)
+
+    def test_copies_of_a_condition_say_nothing_more_of_a_share(self):
+        is_inside, draws = np.repeat([1.0, 0.0], [25, 5]), np.arange(30)
+        self.assertEqual(interval_over_draws(is_inside, draws), exact_interval(25, 30))
+        copies = interval_over_draws(np.repeat(is_inside, 4), np.repeat(draws, 4))
+        np.testing.assert_allclose(copies, exact_interval(25, 30), atol=0.015)
+        self.assertEqual(interval_over_draws(np.ones(120), np.repeat(draws, 4)), exact_interval(30, 30))
+
+    def test_intervals_over_draws_hold_as_often_as_they_say(self):
+        """A share of .9 in 40 draws of four conditions whose rates scatter, 400 times: the interval holds in 95.6 %, so that
+        fewer than 92 % have probability .001; Clopper and Pearson of all conditions holds in 87.5 % and passes with .003."""
+        random, draws, held = np.random.default_rng(1), np.repeat(np.arange(40), 4), []
+        for rates in random.beta(1.8, 0.2, (400, 40)):
+            low, high = interval_over_draws(random.binomial(1, np.repeat(rates, 4)).astype(float), draws)
+            held.append(low < 0.9 < high)
+        self.assertGreater(np.mean(held), 0.92)
+
+    def test_the_report_says_that_draws_count(self):
+        text = " ".join(heading(self.data(self.crossed())).split())
+        self.assertIn("48 conditions of 12 draws", text)
+        self.assertNotIn("draws with", " ".join(heading(self.data(self.known())).split()))
 
 
 class HeadingTest(SurfaceTestCase):
@@ -161,6 +227,13 @@ class ScriptTest(SurfaceTestCase):
         draws = sorted(pd.read_csv(self.out() / "proposed.csv").draw)
         self.assertEqual(study["conditions"]["draws"], draws)
         self.assertEqual(len(draws), 4)
+
+    def test_the_command_of_the_proposed_study_can_be_typed(self):
+        code, out, err = self.run_script(self.write(self.known()), "--out", self.folder / "a b", "--propose", "2", "--no-figures")
+        self.assertEqual(code, 0, err)
+        words = shlex.split(next(line for line in out.splitlines() if line.startswith("  rcme run")))
+        self.assertEqual(words, ["rcme", "run", str(self.folder / "a b" / "next.yaml"), "--out", "next.sqlite"])
+        self.assertTrue(pathlib.Path(words[2]).is_file())
 
     def test_noise_gets_no_maps_and_what_stood_there_is_gone(self):
         self.out().mkdir()

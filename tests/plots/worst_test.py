@@ -9,13 +9,17 @@ from unittest import mock
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "studies"))
 
+import numpy as np
+
 import plot_test_case  # noqa: F401  makes plots/ importable
+from common.plot_error import PlotError
 from planted_regions import PlantedRegion
-from worst_search.intervals import clopper_pearson, simultaneous_rate
-from worst_search.objective import Counts
-from worst_search.report import sharpness_text
+from worst import split_pool
+from worst_search.intervals import clopper_pearson, simultaneous_rate, simultaneous_share
+from worst_search.objective import Counts, Tried
+from worst_search.report import share_of, sharpness_text
 from worst_search.run_trials import TrialsOfRun, event_of, narrowed_conditions, sharpness_of
-from worst_search.search import Plan, find_worst
+from worst_search.search import Plan, Region, find_worst
 from worst_search.space import Box, Space, overlap
 
 WORDS_BOX = {"a": frozenset(["one"]), "x0": (0.2, 0.45), "x1": (0.5, 0.75)}  # 1/80 of all draws
@@ -54,7 +58,7 @@ class KnownFunctions(unittest.TestCase):
             fresh = objective.requests[region.name].total(False)
             self.assertEqual((region.fresh.events, region.fresh.trials), (fresh.events, fresh.trials))
             self.assertEqual(region.rate.estimate, fresh.events / fresh.trials)
-            each = 1 - 0.05 / len(regions)
+            each = 1 - 0.05 / (2 * len(regions))  # rates and shares
             self.assertEqual((region.rate.lower, region.rate.upper), clopper_pearson(fresh.events, fresh.trials, each))
         last = list(objective.requests)[-len(regions):]
         self.assertEqual(set(last), {region.name for region in regions})  # nothing is chosen after they were seen
@@ -73,13 +77,46 @@ class KnownFunctions(unittest.TestCase):
         self.assertEqual([r.fresh.trials for r in regions], [50] * len(regions))
 
     def test_nothing_is_claimed_where_every_draw_is_alike(self):
-        # The claim is the rate itself. A search has a false find with probability .025 at most; of 20, four or more with .002.
+        # The claim is the rate itself. A search has a false find with probability .0125 at most; of 20, four or more with .0002.
         finds = 0
         for seed in range(20):
             objective = PlantedRegion([], seed, outside=0.3, pool_size=1000)
             finds += any(r.is_find for r in find_worst(objective, Plan(budget=700, num_fresh=60, claim=0.3, num_raced=40,
                                                                        num_looks=2, box_draws=40, seed=seed)))
         self.assertLess(finds, 4)
+
+
+    def test_a_search_ends_where_nothing_counts(self):
+        objective = Recorder([WORDS_BOX], seed=5, pool_size=400)
+        objective.tried = lambda name, table, trials: Tried(table, *np.zeros((3, table.size), dtype=int))
+        with self.assertRaisesRegex(PlotError, "none of the .* trials so far counts"):
+            find_worst(objective, Plan(budget=1500, num_fresh=50))
+
+
+class Shares(unittest.TestCase):
+    def test_the_search_does_not_see_what_is_held_out(self):
+        space, held_out = split_pool(["scene"], [["room"]] * 6 + [["plane"]] * 2)
+        self.assertEqual((space.pool.size, held_out.size), (6, 2))
+        self.assertEqual(space.words["scene"], ["room"])
+        region = Region(Box((("scene", frozenset(["plane"])),)), 0, 0.5)
+        share = share_of(region, 3, held_out)
+        self.assertEqual((share.estimate, share.lower, share.upper), (1.0, *clopper_pearson(2, 2, 1 - 0.05 / 6)))
+
+    def test_shares_of_chosen_regions_hold_together(self):
+        """150 pools of 1000 uniform draws; of 40 boxes of share 1/40 the three that seem largest are reported. Their shares fail
+        together in at most 2.5 %, so more than ten times with probability .002. Intervals of 95 % on the draws that chose fail
+        in 57 of 150 pools."""
+        random, num_wrong = np.random.default_rng(1), {"held out": 0, "same pool": 0}
+        boxes = [Box((("x", (i / 40, (i + 1) / 40)),)) for i in range(40)]
+        for _ in range(150):
+            space, held_out = split_pool(["x"], [[repr(x)] for x in random.random(1000)])
+            largest = sorted(boxes, key=lambda box: -box.share(space.pool))[:3]
+            shares = [share_of(Region(box, 0, 0.5), 3, held_out) for box in largest]
+            naive = [clopper_pearson(int(box.contains(space.pool).sum()), space.pool.size, 0.95) for box in largest]
+            num_wrong["held out"] += not all(share.lower <= 1 / 40 <= share.upper for share in shares)
+            num_wrong["same pool"] += not all(lower <= 1 / 40 <= upper for lower, upper in naive)
+        self.assertLessEqual(num_wrong["held out"], 10)
+        self.assertGreater(num_wrong["same pool"], 30)
 
 
 class Requests(unittest.TestCase):
@@ -103,6 +140,22 @@ class Requests(unittest.TestCase):
         self.assertEqual(list(tried.table.columns["sigma_px"]), [9, 0, 1, 2, 3, 4, 5])
 
 
+    def test_an_estimator_that_never_states_what_is_asked_for_ends_the_search(self):
+        def check(quantity, *counts):
+            objective = TrialsOfRun(folder, "rcme", Space(["sigma_px"], [["1"], ["2"]]), [0, 1], quantity, ["mine"], 1)
+            for answers, stating in counts:
+                objective.check_statements({"answers": answers, "stating": stating})
+
+        with tempfile.TemporaryDirectory() as folder:
+            Path(folder, "study.yaml").write_text("conditions: {}\n")
+            with self.assertRaisesRegex(PlotError, "no answer of mine states a probability of failure; sure_failure needs"):
+                check("sure_failure", (0, 0), (5, 0))
+            with self.assertRaisesRegex(PlotError, "states a covariance; coverage"):
+                check("coverage", (5, 0))
+            check("sure_failure", (5, 1), (5, 0))
+            check("failure", (0, 0))
+
+
 class Intervals(unittest.TestCase):
     def test_known_answers(self):
         # R: binom.test(7, 50)$conf.int
@@ -113,6 +166,10 @@ class Intervals(unittest.TestCase):
         one, three = (simultaneous_rate(Counts(30, 100), k) for k in (1, 3))
         self.assertLess(three.lower, one.lower)
         self.assertGreater(three.upper, one.upper)
+
+    def test_shares_are_those_of_clopper_and_pearson_at_their_part_of_the_error(self):
+        share = simultaneous_share(7, 50, 2)
+        self.assertEqual((share.lower, share.upper), clopper_pearson(7, 50, 0.975))
 
     def test_a_difference_holds_both_parts(self):
         rate = simultaneous_rate(Counts(30, 100, 5, True), 1)
