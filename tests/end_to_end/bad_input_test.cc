@@ -74,7 +74,7 @@ TEST_F(BadInput, AllPointsOnOneLine) {
 }
 
 TEST_F(BadInput, EmptyAndBinaryFiles) {
-  EXPECT_TRUE(IsRefused(Estimate("m.csv", ""), {"m.csv", "size1", "is missing"}));
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", ""), {"m.csv: is empty"}));
   std::string bytes;
   for (unsigned i = 0; i < 100'000; ++i) bytes += static_cast<char>((i * i) >> 3);
   EXPECT_TRUE(IsRefused(Estimate("m.csv", bytes), {"m.csv"}));
