@@ -204,6 +204,8 @@ TEST(ParseStudyErrors, NamesOfMoreThanOneLine) {
         << text;
   }
   EXPECT_EQ(ParseStudy(Edited("label: ours", "label: =_1+1"), "small.yaml").estimators[1].label, "=_1+1");
+  EXPECT_TRUE(Refuses(Edited("label: ours", "label: \"a b,c\""),
+                      {"bad.yaml:9: label: 'a b,c' is not allowed", "without a comma"}));
 }
 
 TEST(ParseStudyErrors, OptionsThatContradictEachOther) {
