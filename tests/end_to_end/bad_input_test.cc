@@ -111,7 +111,11 @@ TEST_F(BadInput, StudiesThatCannotBePlannedNameTheirFile) {
 TEST_F(BadInput, CommandLine) {
   EXPECT_TRUE(IsRefused(RunRcme({}), {"subcommand", "--help"}));
   EXPECT_TRUE(IsRefused(RunRcme({"frobnicate"}), {"frobnicate"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"frobnicate", "--help"}), {"there is no command 'frobnicate'"}));
+  EXPECT_EQ(RunRcme({"frobnicate", "--help"}).err, RunRcme({"frobnicate"}).err);
   EXPECT_TRUE(IsRefused(RunRcme({"run"}), {"study"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"run", "--frobnicate"}), {"not expected: --frobnicate"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"summarize", folder_.path()}), {"is a folder, not a result file"}));
   EXPECT_TRUE(IsRefused(RunRcme({"run", study_}), {"--out"}));
   EXPECT_TRUE(IsRefused(Run({"--out", out_, "--frobnicate"}), {"--frobnicate"}));
   EXPECT_TRUE(IsRefused(RunRcme({"list", "moons"}), {"moons", "estimators", "scenes"}));
