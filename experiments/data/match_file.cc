@@ -138,7 +138,8 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.path = path;
   MatchHeader header(path);
   MatchRows rows(&file);
-  for (std::string_view line; lines.Next(&line);) {
+  bool is_empty = true;
+  for (std::string_view line; lines.Next(&line); is_empty = false) {
     if (lines.line_number() == 1 && line.starts_with(kByteOrderMark))
       line.remove_prefix(kByteOrderMark.size());
     line = Trim(line);
@@ -149,7 +150,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
       rows.Add(line, lines);
     }
   }
-  if (lines.line_number() == 0)
+  if (is_empty)
     throw InputError(fmt::format("{}: is empty; a match file has a row x1,y1,x2,y2 for each match", path));
   const Lens lens1 = ReadLens(header, 1, given, file.matches),
              lens2 = ReadLens(header, 2, given, file.matches);
