@@ -199,13 +199,16 @@ std::string DescribeTerms(const Answer& a) {
 
 std::string DescribeNextCommands(const Answer& a, const std::string& folder) {
   const auto in_folder = [&](const char* name) { return QuoteForShell(folder + name); };
+  const std::string study = FormatParagraph(
+      fmt::format("The study is {}/study.yaml. Next, all of it on one page, and up to which share of wrong "
+                  "matches it holds:",
+                  folder));
   return fmt::format(
-      "\nThe study is {}/study.yaml. Next, all of it on one page, and up to which share of\n"
-      "wrong matches it holds:\n"
+      "\n{}"
       "  rcme report {} --out {}\n"
       "  rcme solve {} --estimators {} --over outlier_ratio \\\n"
       "    --from 0.05 --to 0.9 --at {:g} --trials 2000 --out {} --max-time 5m\n",
-      folder, in_folder("/run.sqlite"), in_folder("/report.html"), in_folder("/study.yaml"),
+      study, in_folder("/run.sqlite"), in_folder("/report.html"), in_folder("/study.yaml"),
       QuoteForShell(a.best.label), a.at_most, in_folder("/solve"));
 }
 
