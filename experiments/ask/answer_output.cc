@@ -12,8 +12,10 @@
 #include <vector>
 
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/core/text/shell_word.h"
 #include "stats/equivalence.h"
 #include "stats/risk_control.h"
 
@@ -195,6 +197,21 @@ std::string DescribeTerms(const Answer& a) {
                      promise);
 }
 
+std::string DescribeNextCommands(const Answer& a, const std::string& folder) {
+  const auto in_folder = [&](const char* name) { return QuoteForShell(folder + name); };
+  const std::string study = FormatParagraph(
+      fmt::format("The study is {}/study.yaml. Next, all of it on one page, and up to which share of wrong "
+                  "matches it holds:",
+                  folder));
+  return fmt::format(
+      "\n{}"
+      "  rcme report {} --out {}\n"
+      "  rcme solve {} --estimators {} --over outlier_ratio \\\n"
+      "    --from 0.05 --to 0.9 --at {:g} --trials 2000 --out {} --max-time 5m\n",
+      study, in_folder("/run.sqlite"), in_folder("/report.html"), in_folder("/study.yaml"),
+      QuoteForShell(a.best.label), a.at_most, in_folder("/solve"));
+}
+
 nlohmann::ordered_json EstimatorAsJson(const AskedEstimator& estimator) {
   return {{"label", estimator.label},
           {"success", RenderJson(estimator.success)},
@@ -234,14 +251,8 @@ void AddStated(const Answer& a, nlohmann::ordered_json* json) {
 std::string AnswerAsText(const Answer& answer, const std::string& question, const std::string& folder) {
   Table table{{Column::Key("part"), Column::Text("answer")}};
   for (const auto& [part, words] : DescribeAnswer(answer)) table.rows.push_back({part, words});
-  return question + "\n\n" + RenderText(table) + "\n" + DescribeTerms(answer) +
-         fmt::format(
-             "\nThe study is {0}/study.yaml. Next, all of it on one page, and up to which share of\n"
-             "wrong matches it holds:\n"
-             "  rcme report {0}/run.sqlite --out {0}/report.html\n"
-             "  rcme solve {0}/study.yaml --estimators {2} --over outlier_ratio \\\n"
-             "    --from 0.05 --to 0.9 --at {1:g} --trials 2000 --out {0}/solve --max-time 5m\n",
-             folder, answer.at_most, answer.best.label);
+  return FormatParagraph(question) + "\n" + RenderText(table) + "\n" + DescribeTerms(answer) +
+         DescribeNextCommands(answer, folder);
 }
 
 std::string AnswerAsJson(const Answer& a, const std::string& question) {

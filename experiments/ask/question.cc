@@ -10,6 +10,8 @@
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
+#include "simulator/motion_registry.h"
+#include "simulator/outlier_registry.h"
 #include "simulator/scene_registry.h"
 
 namespace rcme {
@@ -55,20 +57,22 @@ void ReadSize(const std::string& text, int* width, int* height) {
       Quoted(text)));
 }
 
-void ReadScene(const std::string& text, std::string* scene) {
-  std::vector<std::string> scenes;
-  for (const SceneEntry& entry : SceneRegistry()) scenes.push_back(entry.name);
-  if (std::ranges::count(scenes, text) == 0) {
-    throw InputError(fmt::format("--scene: {} is not a scene{}; give one of: {}", Quoted(text),
-                                 DidYouMean(text, scenes), fmt::join(scenes, ", ")));
-  }
-  *scene = text;
+// Reads the name of an entry of a registry; `kind`: "a scene".
+template <typename Entry>
+std::string ReadName(const char* option, const char* kind, const std::vector<Entry>& registry,
+                     const std::string& text) {
+  std::vector<std::string> names;
+  for (const Entry& entry : registry) names.push_back(entry.name);
+  if (std::ranges::count(names, text) > 0) return text;
+  throw InputError(fmt::format("{}: {} is not {}{}; give one of: {}", option, Quoted(text), kind,
+                               DidYouMean(text, names), fmt::join(names, ", ")));
 }
 
 struct AskedText {
   const char *option, *question;
   std::string AskedTexts::*text;
   void (*read)(const std::string& text, Question* question);
+  bool is_needed = true;
 };
 constexpr AskedText kAskedTexts[] = {
     {"--image", "Size of an image in px, such as 1280x720", &AskedTexts::image,
@@ -78,9 +82,21 @@ constexpr AskedText kAskedTexts[] = {
     {"--noise", "Noise of a point in px, per coordinate, such as 0.7", &AskedTexts::sigma_px,
      [](const std::string& text, Question* q) { q->sigma_px = ReadNumber("--noise", text, 0.001, 100.0); }},
     {"--scene", "Scene, such as corridor, room, street, plane or uniform_volume", &AskedTexts::scene,
-     [](const std::string& text, Question* q) { ReadScene(text, &q->scene); }},
+     [](const std::string& text, Question* q) {
+       q->scene = ReadName("--scene", "a scene", SceneRegistry(), text);
+     }},
     {"--wrong", "Share of wrong matches, such as 0.4 or 40%", &AskedTexts::wrong,
-     [](const std::string& text, Question* q) { q->outlier_ratio = ReadShare("--wrong", text, 0.95); }}};
+     [](const std::string& text, Question* q) { q->outlier_ratio = ReadShare("--wrong", text, 0.95); }},
+    {"--motion", "Motion, such as forward or sideways; Enter: the scene's usual one", &AskedTexts::motion,
+     [](const std::string& text, Question* q) {
+       q->motion = ReadName("--motion", "a motion", MotionRegistry(), text);
+     },
+     false},
+    {"--outliers", "Kind of wrong matches, such as clustered_both; Enter: uniform", &AskedTexts::outliers,
+     [](const std::string& text, Question* q) {
+       q->outliers = ReadName("--outliers", "a kind of wrong matches", OutlierRegistry(), text);
+     },
+     false}};
 
 // Whether the answer of a person can be used; says on `out` why not.
 bool IsUsable(const AskedText& asked, const std::string& text, std::ostream& out) {
@@ -95,14 +111,27 @@ bool IsUsable(const AskedText& asked, const std::string& text, std::ostream& out
   }
 }
 
-// Reads a line without its end; false at the end of input.
+// Reads a line without its end and without blanks around it; false at the end of input.
 bool ReadTypedLine(std::istream& in, std::string* line) {
   bool is_there = false;
+  line->clear();
   for (char c = 0; in.get(c); *line += c) {
     is_there = true;
     if (c == '\n') break;
   }
+  const size_t begin = line->find_first_not_of(" \t\r"), end = line->find_last_not_of(" \t\r");
+  *line = begin == std::string::npos ? "" : line->substr(begin, end - begin + 1);
   return is_there;
+}
+
+// Asks for one text until it can be used, or is empty and not needed. False at the end of input.
+bool AskFor(const AskedText& asked, std::istream& in, std::ostream& out, std::string* text) {
+  do {
+    out << asked.question << ": " << std::flush;
+    if (!ReadTypedLine(in, text)) return false;
+    if (text->empty() && !asked.is_needed) return true;
+  } while (!IsUsable(asked, *text, out));
+  return true;
 }
 
 }  // namespace
@@ -110,25 +139,19 @@ bool ReadTypedLine(std::istream& in, std::string* line) {
 std::vector<std::string> MissingOptions(const AskedTexts& texts) {
   std::vector<std::string> missing;
   for (const AskedText& asked : kAskedTexts) {
-    if ((texts.*asked.text).empty()) missing.emplace_back(asked.option);
+    if (asked.is_needed && (texts.*asked.text).empty()) missing.emplace_back(asked.option);
   }
   return missing;
 }
 
 void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts) {
+  if (MissingOptions(*texts).empty()) return;
   for (const AskedText& asked : kAskedTexts) {
     std::string& text = texts->*asked.text;
-    if (!text.empty()) continue;
-    do {
-      out << asked.question << ": " << std::flush;
-      text.clear();
-      if (!ReadTypedLine(in, &text)) {
-        throw InputError(
-            fmt::format("ask: give {}, or answer at a terminal", fmt::join(MissingOptions(*texts), ", ")));
-      }
-      const size_t begin = text.find_first_not_of(" \t\r"), end = text.find_last_not_of(" \t\r");
-      text = begin == std::string::npos ? "" : text.substr(begin, end - begin + 1);
-    } while (!IsUsable(asked, text, out));
+    if (!text.empty() || AskFor(asked, in, out, &text)) continue;
+    if (!asked.is_needed) return;
+    throw InputError(
+        fmt::format("ask: give {}, or answer at a terminal", fmt::join(MissingOptions(*texts), ", ")));
   }
 }
 

@@ -16,6 +16,9 @@ struct AskedTexts {
   std::string sigma_px;  // standard deviation of the noise per coordinate
   std::string scene;     // see `rcme list scenes`
   std::string wrong;     // share of wrong matches, "0.4" or "40%"
+  // Not needed: the scene has a usual motion, and wrong matches are uniform.
+  std::string motion = {};    // see `rcme list motions`
+  std::string outliers = {};  // see `rcme list outliers`
 };
 
 struct Question {
@@ -31,10 +34,11 @@ struct Question {
 };
 
 // Asks on `out` for each missing text and reads it as a line of `in`; says why a text cannot be used and asks
-// again. Throws InputError that names the options of the missing texts if `in` ends early.
+// again. If a needed text is missing, it asks for the others too, which may stay empty. Throws InputError
+// that names the options of the missing texts if `in` ends early.
 void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts);
 
-// The options of the missing texts: {"--focal"}.
+// The options of the needed texts that are missing: {"--focal"}.
 std::vector<std::string> MissingOptions(const AskedTexts& texts);
 
 // Parses a share, also in percent: 0.4 for "0.4", "40%" and "40 %". Returns false if the text is not a share.

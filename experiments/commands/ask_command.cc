@@ -79,21 +79,26 @@ int ChooseTrials(const RunReport& pilot, double seconds) {
   return chosen;
 }
 
-// The number of trials last requested for the existing result file; 0: there is no file.
-int FindTrialsAskedBefore(const AskArguments& arguments) {
+// The number of trials that the existing result file holds, and at least that which was last requested for
+// it, if the run was interrupted; 0: there is no file.
+int CountEarlierTrials(const AskArguments& arguments) {
   if (!std::filesystem::exists(ResultPath(arguments))) return 0;
-  return ResultStore::OpenForReading(ResultPath(arguments)).Description().trials;
+  const ResultStore store = ResultStore::OpenForReading(ResultPath(arguments));
+  return std::max(store.Description().trials, static_cast<int>(store.NumTrials()));
 }
 
 // Runs the requested number of trials, else the number requested before, else as many as fit into the time.
 void RunQuestion(const AskArguments& arguments) {
-  const int before = FindTrialsAskedBefore(arguments);
+  const int before = CountEarlierTrials(arguments);
   if (arguments.trials > 0) {
     RunAskedTrials(arguments, arguments.trials);
+    const auto held = ResultStore::OpenForReading(ResultPath(arguments)).NumTrials();
+    if (held > arguments.trials)
+      PrintMessage("The answer is of all {} trials that {} holds\n", held, ResultPath(arguments));
   } else if (before > kPilotTrials) {
-    PrintMessage("The answer is of the {} trials that {} was begun with; --trials N takes more\n", before,
-                 ResultPath(arguments));
     RunAskedTrials(arguments, before);
+    PrintMessage("The answer is of the {} trials that {} holds; --trials N takes more\n", before,
+                 ResultPath(arguments));
   } else {
     const int trials =
         ChooseTrials(RunAskedTrials(arguments, kPilotTrials), ParseDuration(arguments.within).value());
@@ -145,7 +150,7 @@ cannot tell from it (of those that succeed as often the fastest leads whose erro
 not greater by more than chance); up to which stated probability of failure to accept answers;
 whether probabilities and covariances are right; what it takes for an inlier; and how
 many trials tell the first two apart. Without the first five options it asks for them
-at a terminal.
+at a terminal, and for --motion and --outliers, which have defaults.
 
 The study, the result file and what you can do next are named at the end. The same
 command again answers from the trials that are there; --trials N takes more.
@@ -167,12 +172,12 @@ Examples:
   command->add_option("--noise", texts.sigma_px, "standard deviation of a point's noise per coordinate, px");
   command->add_option("--scene", texts.scene, "kind of scene (`rcme list scenes`)");
   command->add_option("--wrong", texts.wrong, "share of wrong matches, 0 to 0.95 or 0% to 95%");
-  command
-      ->add_option("--motion", question.motion, "kind of motion (`rcme list motions`); default: the scene's")
+  command->add_option("--motion", texts.motion, "kind of motion (`rcme list motions`); default: the scene's")
       ->check(MakeChoiceValidator(ListNames(MotionRegistry())));
-  command->add_option("--outliers", question.outliers, "kind of wrong matches (`rcme list outliers`)")
-      ->check(MakeChoiceValidator(ListNames(OutlierRegistry())))
-      ->capture_default_str();
+  command
+      ->add_option("--outliers", texts.outliers,
+                   "kind of wrong matches (`rcme list outliers`); default: uniform")
+      ->check(MakeChoiceValidator(ListNames(OutlierRegistry())));
   command->add_option("--matches", question.num_matches, "matches of a pair, wrong ones included")
       ->transform(WholeNumberIn(8, 100'000))
       ->capture_default_str();

@@ -10,6 +10,7 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/run/store/new_trials.h"
 #include "experiments/run/store/salvage.h"
 #include "experiments/statistics/preregistration.h"
@@ -130,8 +131,26 @@ void PrintCheckWithLock(const CheckArguments& arguments, const RunDescription& r
                      "file was changed");
 }
 
-// Reports, and saves what is asked for; throws the error again if that was nothing.
-void ReportDamage(const CheckArguments& arguments, const InputError& error) {
+// The options that name the study of the run, for a command that the user copies.
+std::string FormatStudyOptions(const CheckArguments& arguments) {
+  if (arguments.study.empty()) return "";
+  std::string options = " --study " + QuoteForShell(arguments.study);
+  for (const std::string& text : arguments.changes.overrides) options += " --set " + QuoteForShell(text);
+  for (const std::string& file : arguments.changes.estimators)
+    options += " --add-estimator " + QuoteForShell(file);
+  if (arguments.changes.seed >= 0) options += fmt::format(" --seed {}", arguments.changes.seed);
+  return options;
+}
+
+// The command that saves the sound trials. Without any, the study in the file may be the damaged part.
+std::string FormatSaveCommand(const CheckArguments& arguments, std::int64_t num_sound) {
+  const bool is_study_lost = num_sound == 0 && arguments.study.empty();
+  return fmt::format("rcme check {}{} --save-good NEW.sqlite", QuoteForShell(arguments.run),
+                     is_study_lost ? " --study ITS_STUDY.yaml" : FormatStudyOptions(arguments));
+}
+
+// Reports, and saves what is asked for; throws InputError if that was nothing.
+void ReportDamage(const CheckArguments& arguments) {
   std::optional<Study> study;
   if (!arguments.study.empty()) study = LoadChangedStudy(arguments.study, arguments.changes);
   Salvage salvage(arguments.run, study);
@@ -147,17 +166,15 @@ void ReportDamage(const CheckArguments& arguments, const InputError& error) {
   check.text = fmt::format("{}: damaged; {} trials are sound\n", arguments.run, check.num_trials);
   for (const std::string& finding : check.findings) check.text += fmt::format("  {}\n", finding);
   check.text += DamageAsText(check.damage);
-  const bool is_study_lost = check.num_trials == 0 && arguments.study.empty();
+  const std::string save = FormatSaveCommand(arguments, check.num_trials);
   check.text +=
       arguments.save_good.empty()
-          ? fmt::format(
-                "Next: rcme check {} --save-good NEW.sqlite{}, then rcme run its study with --out "
-                "NEW.sqlite\n",
-                arguments.run, is_study_lost ? " --study ITS_STUDY.yaml" : "")
+          ? fmt::format("Next: {}, then rcme run its study with --out NEW.sqlite\n", save)
           : fmt::format("{}: {} trials saved; `rcme run` of the study with --out {} adds the others\n",
                         arguments.save_good, check.num_trials, arguments.save_good);
   PrintCheck(arguments, check);
-  if (arguments.save_good.empty()) throw error;
+  if (arguments.save_good.empty())
+    throw InputError(fmt::format("{}: is damaged; `{}` saves what is sound", arguments.run, save));
 }
 
 void CheckCounts(const CheckArguments& arguments) {
@@ -188,13 +205,13 @@ void CheckFile(const CheckArguments& arguments) {
   if (KeepsCounts(arguments.run)) return CheckCounts(arguments);
   try {
     CheckTrials(arguments);
-  } catch (const DamagedFileError& error) {
-    ReportDamage(arguments, error);
-  } catch (const InputError& error) {
+  } catch (const DamagedFileError&) {
+    ReportDamage(arguments);
+  } catch (const InputError&) {
     // The run was killed while it wrote: to open its file for reading trials has undone the half of a write.
     if (KeepsCounts(arguments.run)) return CheckCounts(arguments);
     if (arguments.study.empty()) throw;
-    ReportDamage(arguments, error);  // it does not look like a result file, but is said to be one
+    ReportDamage(arguments);  // it does not look like a result file, but is said to be one
   }
 }
 

@@ -9,6 +9,7 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
 #include "experiments/commands/number_option.h"
+#include "experiments/core/text/shell_word.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -30,22 +31,15 @@ std::vector<std::string> CheckNames() {
   return names;
 }
 
-// Quotes a word for a shell.
-std::string InQuotes(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 // The command that repeats this check.
 std::string Again(const EstimatorCheckArguments& arguments, const std::string& check,
                   const std::string& problem) {
   const EstimatorChoice& choice = arguments.estimator;
   std::string command =
-      "check-estimator " + (choice.file ? "--estimator-file " + InQuotes(*choice.file) : choice.name);
-  for (const std::string& text : choice.overrides) command += " --set " + InQuotes(text);
+      "check-estimator " + (choice.file ? "--estimator-file " + QuoteForShell(*choice.file) : choice.name);
+  for (const std::string& text : choice.overrides) command += " --set " + QuoteForShell(text);
   command += fmt::format(" --seed {} --only {}", arguments.seed, check);
-  if (!problem.empty()) command += " --problem " + InQuotes(problem);
+  if (!problem.empty()) command += " --problem " + QuoteForShell(problem);
   return command;
 }
 

@@ -93,7 +93,7 @@ GivenCameras ParseCameras(const EstimateArguments& arguments) {
     throw InputError(fmt::format("{}: given more than twice; give it once for both images, or once for each",
                                  has_lens ? "--camera" : "--K"));
   const auto parse = has_lens ? ParseNamedCamera : ParseIntrinsics;
-  return std::array<Lens, 2>{parse(texts.front()), parse(texts.back())};
+  return CamerasOfOption{{parse(texts.front()), parse(texts.back())}, has_lens ? "--camera" : "--K"};
 }
 
 // The files that the arguments name, with folders replaced by their files.

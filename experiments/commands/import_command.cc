@@ -88,8 +88,9 @@ void Import(const ImportArguments& arguments) {
                                  arguments.labels.size(), arguments.answers.size()));
   }
   for (const std::string& label : arguments.labels) {
-    if (label.empty() || FindNotInLine(label) != std::string::npos)
-      throw InputError(fmt::format("--label: {} is not allowed; give one line of text", Quoted(label)));
+    if (label.empty() || FindNotInLine(label) != std::string::npos || label.find(',') != std::string::npos)
+      throw InputError(
+          fmt::format("--label: {} is not allowed; give one line of text without commas", Quoted(label)));
   }
   Study study = LoadStudy(arguments.study);
   if (arguments.allow_process) AllowAndSay(&study.estimators);

@@ -97,12 +97,13 @@ Stanford diagram. Only counts are kept, so that millions of trials need no room.
 command is stopped, run it again: it goes on.
 
 Exit code, over all trials: 0 if the risk is kept for rotation and direction, 1 if it is
-exceeded for one of them, 3 if that is undecided: there are too few answers, or none. With
+exceeded for one of them, 3 if that is undecided: there are too few answers, or none. To
+show that a risk of 0.001 is kept takes at least 3,688 answers, of 0.01 at least 368. With
 an estimator that keeps its risk the exit code is 1 with probability at most 5 %. 2: wrong
 input.
 
 Examples:
-  rcme integrity own_camera --estimator rcme_calibrated --out integrity
+  rcme integrity own_camera --estimator rcme_calibrated --trials 5000 --out integrity
   rcme integrity own_camera --estimator opencv_magsac --risk 0.01 --rotation-limit 2
   rcme plot stanford integrity/integrity.json --out stanford
   rcme integrity STUDY --shard 3/64 --out parts/3.json          the share of one machine

@@ -36,6 +36,15 @@ void CheckIsPlain(int argc, const char* const* argv) {
   }
 }
 
+// Whether words that the parser did not expect say more than its error: a command that there is not before
+// --help, and a misspelt option where another is missing too.
+bool IsOfUnexpectedWords(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  if (dynamic_cast<const CLI::CallForHelp*>(&error)) return chosen.empty() && !app.remaining().empty();
+  if (!dynamic_cast<const CLI::RequiredError*>(&error)) return false;
+  return !(chosen.empty() ? app.remaining() : chosen.front()->remaining()).empty();
+}
+
 // Memory that is not to be had, wherever it was asked for: not an abort, and no message that needs some
 // itself.
 [[noreturn]] void EndWithoutMemory() {
@@ -90,6 +99,10 @@ int RunCommandLine(int argc, const char* const* argv, const CommandSet& commands
     PrintMessage("{}", DescribeUnexpected(app));
     return 2;
   } catch (const CLI::ParseError& error) {
+    if (IsOfUnexpectedWords(app, error)) {
+      PrintMessage("{}", DescribeUnexpected(app));
+      return 2;
+    }
     if (app.exit(error) != 0) {
       PrintMessage("{}", SuggestionsFor(app));
       return 2;

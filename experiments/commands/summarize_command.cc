@@ -119,7 +119,8 @@ Examples:
   rcme summarize run.sqlite
   rcme summarize run.sqlite --quantities failure,nees_coverage
   rcme summarize run.sqlite --format csv --out summary.csv
-  rcme summarize run.sqlite --format latex --quantities failure,nees_coverage --labels rcme=RCME
+  rcme summarize run.sqlite --format latex --quantities failure,nees_coverage \
+                 --labels standard=RANSAC
   rcme summarize run.sqlite --fifths-of crb_direction_deg
   rcme summarize run.sqlite --by-strata
   rcme summarize run.sqlite --raw csv --out trials.csv)");

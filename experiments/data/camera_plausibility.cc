@@ -230,22 +230,40 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
   return doubts;
 }
 
+namespace {
+
+// Both checks for one image. If the key points are outside of the stated size, but K fits them, the size is
+// wrong, and what the checks say of K by that size is left out.
+std::vector<CameraDoubt> FindImageDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
+                                         Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
+                                         const std::string& place) {
+  std::vector<CameraDoubt> of_points = FindKeyPointDoubts(camera, matches, x_px, is_size_known, place);
+  if (!is_size_known) return of_points;
+  std::vector<CameraDoubt> doubts = FindCameraDoubts(camera, place);
+  if (!of_points.empty() && FindKeyPointDoubts(camera, matches, x_px, false, place).empty()) {
+    const Eigen::Vector2d implied(2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0);
+    return {{place, fmt::format("key points lie far outside of an image of {}, its size, but fit K, whose "
+                                "principal point is the centre of one of {}; correct the size",
+                                DescribeSize({camera.width, camera.height}), DescribeSize(implied))}};
+  }
+  doubts.insert(doubts.end(), of_points.begin(), of_points.end());
+  return doubts;
+}
+
+}  // namespace
+
 std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
                                         const std::vector<Correspondence>& matches,
                                         const std::array<std::string, 2>& places,
                                         const std::array<bool, 2>& are_sizes_known) {
-  std::vector<CameraDoubt> doubts;
-  const auto add = [&](const std::vector<CameraDoubt>& more) {
-    for (const CameraDoubt& doubt : more) {
-      const bool is_known =
-          std::ranges::any_of(doubts, [&](const CameraDoubt& d) { return d.what == doubt.what; });
-      if (!is_known) doubts.push_back(doubt);
-    }
-  };
-  if (are_sizes_known[0]) add(FindCameraDoubts(camera1, places[0]));
-  if (are_sizes_known[1]) add(FindCameraDoubts(camera2, places[1]));
-  add(FindKeyPointDoubts(camera1, matches, &Correspondence::x1_px, are_sizes_known[0], places[0]));
-  add(FindKeyPointDoubts(camera2, matches, &Correspondence::x2_px, are_sizes_known[1], places[1]));
+  std::vector<CameraDoubt> doubts =
+      FindImageDoubts(camera1, matches, &Correspondence::x1_px, are_sizes_known[0], places[0]);
+  for (const CameraDoubt& doubt :
+       FindImageDoubts(camera2, matches, &Correspondence::x2_px, are_sizes_known[1], places[1])) {
+    const bool is_known =
+        std::ranges::any_of(doubts, [&](const CameraDoubt& d) { return d.what == doubt.what; });
+    if (!is_known) doubts.push_back(doubt);
+  }
   return doubts;
 }
 

@@ -31,7 +31,8 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
                                             Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
                                             const std::string& place);
 
-// Both checks for both images of a pair; equal findings are reported once.
+// Both checks for both images of a pair; equal findings are reported once. Key points that lie outside of the
+// stated size and fit K make the size doubtful, not K.
 std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
                                         const std::vector<Correspondence>& matches,
                                         const std::array<std::string, 2>& places,

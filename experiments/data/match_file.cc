@@ -45,12 +45,15 @@ std::optional<TruthSd> ReadTruthSd(const MatchHeader& header) {
   return TruthSd{kRadPerDeg * Eigen::Vector3d(sd[0], sd[1], sd[2]), {sd[3], sd[4], sd[5]}};
 }
 
-// Returns the first word as a number; NaN if it is not positive.
+// The first word; the unit of the data set may follow, in any words.
 double ReadBaseline(const MatchHeader& header) {
+  const std::string key = "baseline";
   double baseline = 0.0;
-  if (!header.Has("baseline")) return MatchFile().baseline;
-  const std::vector<std::string> words = SplitAtBlanks(header.Text("baseline"));
-  if (words.empty() || !ParseReal(words.front(), &baseline) || baseline <= 0.0) return MatchFile().baseline;
+  if (!header.Has(key)) return MatchFile().baseline;
+  const std::vector<std::string> words = SplitAtBlanks(header.Text(key));
+  if (words.empty() || !ParseReal(words.front(), &baseline) || baseline <= 0.0)
+    header.Fail(
+        key, fmt::format("{} is not allowed; give a length > 0, such as 0.83 m", Quoted(header.Text(key))));
   return baseline;
 }
 
@@ -135,7 +138,8 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.path = path;
   MatchHeader header(path);
   MatchRows rows(&file);
-  for (std::string_view line; lines.Next(&line);) {
+  bool is_empty = true;
+  for (std::string_view line; lines.Next(&line); is_empty = false) {
     if (lines.line_number() == 1 && line.starts_with(kByteOrderMark))
       line.remove_prefix(kByteOrderMark.size());
     line = Trim(line);
@@ -146,13 +150,13 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
       rows.Add(line, lines);
     }
   }
-  const Lens lens1 = ReadLens(header, "1", given ? &given->front() : nullptr, file.matches,
-                              &Correspondence::x1_px),
-             lens2 = ReadLens(header, "2", given ? &given->back() : nullptr, file.matches,
-                              &Correspondence::x2_px);
+  if (is_empty)
+    throw InputError(fmt::format("{}: is empty; a match file has a row x1,y1,x2,y2 for each match", path));
+  const Lens lens1 = ReadLens(header, 1, given, file.matches),
+             lens2 = ReadLens(header, 2, given, file.matches);
   file.camera1 = lens1.camera;
   file.camera2 = lens2.camera;
-  file.doubts = FindHeaderDoubts(header, file, given.has_value());
+  file.doubts = FindHeaderDoubts(header, file, given);
   UndistortMatches(lens1, lens2, rows, &file);
   file.cam2_from_cam1_true = ReadTruePose(header);
   file.truth_sd = ReadTruthSd(header);

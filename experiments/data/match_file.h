@@ -28,8 +28,8 @@ namespace rcme {
 //   # truth_sd: 0.01 0.01 0.01 2e-3 2e-3 2e-3   optional: standard deviations of that motion along the axes
 //                                          of camera 2: rotation in degrees, translation relative to the
 //                                          baseline
-//   # baseline: 1.628 m                    optional: length of the true translation in the data set's unit,
-//                                          which may follow it
+//   # baseline: 1.628 m                    optional: length of the true translation > 0, in the data set's
+//                                          unit, which may follow in any words
 //   # sigma_px: 0.7                        optional: the noise level that estimators are told, per coordinate
 //   # noise_level: 1.2                     optional: factor for the noise of a template (rcme twin)
 //   # image1: frames/0001.png                optional, with image2: names the images, so that pairs of a
@@ -81,7 +81,11 @@ inline constexpr size_t kMaxMatchesPerFile = 1'000'000;
 inline constexpr double kUsualSigmaPx = 0.5;  // assumed if neither the caller nor the file states a level
 
 // The cameras of files without intrinsics, camera 1 first; their width and height are ignored.
-using GivenCameras = std::optional<std::array<Lens, 2>>;
+struct CamerasOfOption {
+  std::array<Lens, 2> lenses;
+  std::string option = "--K";  // that gave them, for messages
+};
+using GivenCameras = std::optional<CamerasOfOption>;
 
 // Reads a match file line by line; memory is that of the matches. Columns are separated by commas or, in a
 // line without commas, by blanks. Throws InputError that names the file, the line, what is wrong and what is

@@ -21,10 +21,15 @@ std::array<int, 2> ReadSize(const MatchHeader& header, const std::string& key) {
   return {static_cast<int>(size[0]), static_cast<int>(size[1])};
 }
 
+// Throws InputError if an option gives the intrinsics that the header has under this key.
+void RefuseGiven(const MatchHeader& header, const std::string& key, const GivenCameras& given) {
+  if (given && header.Has(key))
+    header.Fail(key, "the file has its own intrinsics; leave out " + given->option);
+}
+
 // Reads the key `camera1` or `camera2`, which excludes the other keys of that camera.
 Lens ReadNamedLens(const MatchHeader& header, const std::string& camera_key, const std::string& size_key,
-                   const std::string& k_key, const Lens* given) {
-  if (given) header.Fail(camera_key, "the file has its own intrinsics; leave out --K and --camera");
+                   const std::string& k_key) {
   for (const std::string& key : {size_key, k_key}) {
     if (header.Has(key)) header.Fail(key, fmt::format("{} says it already; leave one out", camera_key));
   }
@@ -33,17 +38,17 @@ Lens ReadNamedLens(const MatchHeader& header, const std::string& camera_key, con
 
 }  // namespace
 
-Lens ReadLens(const MatchHeader& header, const std::string& number, const Lens* given,
-              const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px) {
-  const std::string size_key = "size" + number, k_key = "K" + number + "_fx_fy_cx_cy",
-                    camera_key = "camera" + number;
-  if (header.Has(camera_key)) return ReadNamedLens(header, camera_key, size_key, k_key, given);
+Lens ReadLens(const MatchHeader& header, int number, const GivenCameras& given,
+              const std::vector<Correspondence>& matches) {
+  const std::string size_key = fmt::format("size{}", number), k_key = fmt::format("K{}_fx_fy_cx_cy", number),
+                    camera_key = fmt::format("camera{}", number);
+  RefuseGiven(header, camera_key, given);
+  if (header.Has(camera_key)) return ReadNamedLens(header, camera_key, size_key, k_key);
+  RefuseGiven(header, k_key, given);
   Lens lens;
   Camera& camera = lens.camera;
-  if (given) {
-    if (header.Has(k_key)) header.Fail(k_key, "the file has its own intrinsics; leave out --K");
-    lens = *given;
-  }
+  if (given) lens = number == 1 ? given->lenses.front() : given->lenses.back();
+  const auto x_px = number == 1 ? &Correspondence::x1_px : &Correspondence::x2_px;
   const std::array<int, 2> size =
       given && !header.Has(size_key) ? LikelySize(camera, matches, x_px) : ReadSize(header, size_key);
   if (!given) {
@@ -56,11 +61,13 @@ Lens ReadLens(const MatchHeader& header, const std::string& number, const Lens* 
   return lens;
 }
 
-std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file, bool is_given) {
+std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file,
+                                          const GivenCameras& given) {
   const auto has_own = [&](const std::string& number) { return header.Has("camera" + number); };
   const auto place = [&](const std::string& number) {
     if (has_own(number)) return header.Place("camera" + number);
-    return is_given ? fmt::format("{}: --K", file.path) : header.Place("K" + number + "_fx_fy_cx_cy");
+    return given ? fmt::format("{}: {}", file.path, given->option)
+                 : header.Place("K" + number + "_fx_fy_cx_cy");
   };
   return FindPairDoubts(file.camera1, file.camera2, file.matches, {place("1"), place("2")},
                         {header.Has("size1") || has_own("1"), header.Has("size2") || has_own("2")});

@@ -11,12 +11,12 @@
 
 namespace rcme {
 
-// Reads camera 1 or 2 (`number`). x_px selects the points in its image. If `given` is null, the header must
-// have all of the camera.
-Lens ReadLens(const MatchHeader& header, const std::string& number, const Lens* given,
-              const std::vector<Correspondence>& matches, Eigen::Vector2d Correspondence::*x_px);
+// Reads camera 1 or 2 (`number`). If none is given, the header must have all of the camera.
+Lens ReadLens(const MatchHeader& header, int number, const GivenCameras& given,
+              const std::vector<Correspondence>& matches);
 
-// Returns doubts about the cameras of a file. `is_given`: K was not read from the file.
-std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file, bool is_given);
+// Returns doubts about the cameras of a file.
+std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file,
+                                          const GivenCameras& given);
 
 }  // namespace rcme

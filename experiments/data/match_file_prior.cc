@@ -23,8 +23,10 @@ RotationPrior ReadRotationPrior(const MatchHeader& header) {
   const std::string key = "prior_rotation_sd_deg";
   RotationPrior prior;
   prior.R = header.Rotation("prior_rotation_rowmajor");
-  const bool is_one = header.Has(key) && SplitAtBlanks(header.Text(key)).size() == 1;
-  const std::vector<double> sd_deg = header.Numbers(key, is_one ? 1 : 3);
+  const size_t count = header.Has(key) ? SplitAtBlanks(header.Text(key)).size() : 3;
+  if (count != 1 && count != 3) header.Fail(key, fmt::format("has {} numbers; give one or three", count));
+  const bool is_one = count == 1;
+  const std::vector<double> sd_deg = header.Numbers(key, count);
   for (int axis = 0; axis < 3; ++axis) {
     const double sd = ReadPriorSd(header, key, sd_deg[is_one ? 0 : static_cast<size_t>(axis)]);
     prior.cov(axis, axis) = sd * sd;

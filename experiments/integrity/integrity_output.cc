@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "experiments/trial/truth_error.h"
 #include "stats/clustered_estimate.h"
 #include "stats/intervals.h"
+#include "stats/risk_control.h"
 
 namespace rcme {
 namespace {
@@ -218,6 +220,21 @@ std::string DescribeColumns(const IntegrityReport& report) {
           : ""));
 }
 
+// Empty where the answers suffice, or where trials that belong together leave no such number.
+std::string DescribeFewestAnswers(const IntegrityReport& report) {
+  constexpr double kTail = 0.025;  // of a 95 % interval
+  const std::int64_t fewest = FewestCertifyingTrials(report.terms.risk, kTail);
+  const IntegrityCounts all = CountAll(report);
+  std::int64_t answers = fewest;
+  for (size_t q = 0; q < kNumIntegrityQuantities; ++q) answers = std::min(answers, all.tally.NumAnswers(q));
+  const bool is_open = JudgeRisk(report) == RiskVerdict::kUndecided;
+  if (!is_open || answers == fewest || !ListTallyClusters(report).by_trial) return "";
+  return FormatParagraph(fmt::format(
+      "Undecided: at least {} answers, none of them misleading, are needed to show that a risk of {:g} is "
+      "kept; --trials N takes more, or --risk R tests a greater one.",
+      fewest, report.terms.risk));
+}
+
 Json RegionsAsJson(const RegionCounts& counts) {
   Json json = Json::object();
   for (size_t r = 0; r < kNumStanfordRegions; ++r) json[Name(static_cast<StanfordRegion>(r))] = counts[r];
@@ -303,7 +320,7 @@ std::string IntegrityAsText(const IntegrityReport& report) {
       text += FormatParagraph(fmt::format("The first {} of {} conditions; integrity.json has all.",
                                           kMostConditionsInText, report.conditions.size()));
   }
-  return text + DescribeColumns(report);
+  return text + DescribeColumns(report) + DescribeFewestAnswers(report);
 }
 
 std::string IntegrityAsJson(const IntegrityReport& report) {

@@ -92,7 +92,7 @@ void Begin(const StudyPlan& plan, ResultStore* store) {
         "--until: repeats of a scene (repeats_per_scene) are not independent, as its intervals require; "
         "give --trials instead");
   }
-  store->NoteStoppingRule("a rate's interval is narrow enough");
+  store->NoteStoppingRule(kUntilRule);
 }
 
 std::vector<std::uint32_t> AllConditions(const StudyPlan& plan) {

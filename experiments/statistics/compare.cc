@@ -125,7 +125,8 @@ Comparison Compare(const ReadableRun& readable, const std::string& reference, co
                         {},
                         pairs.num_trials(),
                         run.NumTrials(),
-                        {}};
+                        {},
+                        IsTargetOpen(run)};
   if (pairs.is_weighted()) {
     comparison.caution = "trials are weighted (tilted_to), so this comparison has no counts of them";
     return comparison;

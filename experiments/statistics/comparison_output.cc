@@ -8,6 +8,7 @@
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/study/run_description.h"
 
 namespace rcme {
 namespace {
@@ -150,9 +151,9 @@ Table MakeRowTable(const Comparison& comparison) {
 }
 
 std::string ComparisonAsTable(const Comparison& comparison) {
-  std::string text =
-      fmt::format("Study {} against {}: {} of {} trials done\n", comparison.study, comparison.reference,
-                  comparison.num_trials_done, comparison.num_trials_planned);
+  std::string text = fmt::format(
+      "Study {} against {}: {}\n", comparison.study, comparison.reference,
+      DescribeProgress(comparison.num_trials_done, comparison.num_trials_planned, comparison.is_target_open));
   if (!comparison.caution.empty()) text += fmt::format("Caution: {}.\n", comparison.caution);
   for (const Compared& compared : comparison.compared) text += RenderComparedTable(compared, comparison);
   text += "\n";

@@ -72,6 +72,7 @@ struct Summary {
   Settings efforts;                              // by label: what limits the work of a call; empty: not known
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
+  bool is_target_open = false;  // `rcme run --until` has not ended
   int repeats_per_scene = 1;
   std::string truth_quality;      // truth_quality.h
   bool is_of_population = false;  // intervals are for the population (population_summary.h)

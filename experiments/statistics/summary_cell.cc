@@ -348,6 +348,7 @@ GroupSummarizer::GroupSummarizer(const RunDescription& run, const TrialGroups& g
   summary_.factor_names = groups.factor_names;
   summary_.levels = groups.levels;
   summary_.num_trials_planned = run.NumTrials();
+  summary_.is_target_open = IsTargetOpen(run);
   summary_.repeats_per_scene = run.repeats_per_scene;
   summary_.truth_quality = DescribeTruthQuality(run.identity);
   summary_.population = DescribePopulation(run.identity);

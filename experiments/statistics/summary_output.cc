@@ -12,6 +12,7 @@
 #include "experiments/core/text/json_output.h"
 #include "experiments/statistics/preregistration_output.h"
 #include "experiments/statistics/quantity_table.h"
+#include "experiments/study/run_description.h"
 
 namespace rcme {
 
@@ -234,8 +235,10 @@ std::string FormatPopulation(const Summary& summary) {
 
 // The study, its progress, and these quantities.
 std::string FormatQuantities(const Summary& summary, const std::vector<std::string>& quantities) {
-  return fmt::format("Study {}: {} of {} trials done\n\n{}\n", summary.study, summary.num_trials_done,
-                     summary.num_trials_planned, RenderQuantityTable(summary, quantities));
+  return fmt::format(
+      "Study {}: {}\n\n{}\n", summary.study,
+      DescribeProgress(summary.num_trials_done, summary.num_trials_planned, summary.is_target_open),
+      RenderQuantityTable(summary, quantities));
 }
 
 // Explains the intervals of the tables.

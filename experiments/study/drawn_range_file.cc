@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "experiments/data/make_data.h"
 #include "parameters/parameter.h"
@@ -78,19 +79,10 @@ DrawnRange ReadWord(const Place& place, const YAML::Node& node, const std::strin
       place.Fail(node, fmt::format("{}: {} is not allowed; give {}[..., ...]", key, Quoted(text), beginning));
     }
   };
-  const auto at_line = [&](auto read) {  // the rest has no line of its own
-    DrawnRange range;
-    place.At(node, [&] { range = read(); });
-    return range;
-  };
-  const Place nowhere(place.path());
-  if (text.starts_with(kLogOf))
-    return at_line([&] { return ReadEnds(nowhere, rest(kLogOf), key, DrawnRange::Kind::kLogUniform); });
-  if (text.starts_with(kAnyOf)) {
-    return at_line([&] {
-      return DrawnRange{DrawnRange::Kind::kAnyOf, 0.0, 0.0, ReadWords(nowhere, rest(kAnyOf), key)};
-    });
-  }
+  const Place here = place.AtLineOf(node);
+  if (text.starts_with(kLogOf)) return ReadEnds(here, rest(kLogOf), key, DrawnRange::Kind::kLogUniform);
+  if (text.starts_with(kAnyOf))
+    return {DrawnRange::Kind::kAnyOf, 0.0, 0.0, ReadWords(here, rest(kAnyOf), key)};
   if (text != kAny) return {DrawnRange::Kind::kAnyOf, 0.0, 0.0, {text}};
   if (!IsChoice(key)) {
     place.Fail(
@@ -104,10 +96,9 @@ void AddRanges(const Place& place, const YAML::Node& node, const std::string& na
                std::vector<DrawnKey>* keys);
 
 // Reads a map: {log: ...}, {any: ...}, or the names of a choice, each with the keys that are drawn with it.
-void ReadMap(const Place& place, const YAML::Node& node, const std::string& key, const Settings& with,
-             std::vector<DrawnKey>* keys) {
+void ReadMap(const Place& place, const YAML::Node& node, DrawnKey drawn, std::vector<DrawnKey>* keys) {
+  const std::string key = drawn.key;
   const auto entries = Entries(place, node, key, {});
-  DrawnKey drawn{key, with, {}};
   if (entries.size() == 1 && entries[0].first == kLog) {
     drawn.range = ReadEnds(place, entries[0].second, key, DrawnRange::Kind::kLogUniform);
     return keys->push_back(drawn);
@@ -123,7 +114,7 @@ void ReadMap(const Place& place, const YAML::Node& node, const std::string& key,
   keys->push_back(drawn);
   for (const auto& [word, inside] : entries) {
     if (inside.IsNull()) continue;
-    Settings deeper = with;
+    Settings deeper = drawn.with;
     deeper.emplace_back(key, word);
     if (deeper.size() > kMaxDepth) place.Fail(inside, fmt::format("{}: too many names within names", key));
     AddRanges(place, inside, fmt::format("{}: {}", key, word), deeper, keys);
@@ -132,14 +123,17 @@ void ReadMap(const Place& place, const YAML::Node& node, const std::string& key,
 
 void AddRanges(const Place& place, const YAML::Node& node, const std::string& name, const Settings& with,
                std::vector<DrawnKey>* keys) {
-  for (const auto& [key, value] : Entries(place, node, name, {})) {
+  const auto entries = Entries(place, node, name, {});
+  std::map<std::string, std::string> places;
+  for (const auto& entry : node) places[entry.first.Scalar()] = place.Text(entry.first);
+  for (const auto& [key, value] : entries) {
+    DrawnKey drawn{key, with, {}, places.at(key)};
     if (value.IsMap()) {
-      ReadMap(place, value, key, with, keys);
-    } else if (value.IsSequence()) {
-      keys->push_back({key, with, ReadList(place, value, key)});
-    } else {
-      keys->push_back({key, with, ReadWord(place, value, key)});
+      ReadMap(place, value, drawn, keys);
+      continue;
     }
+    drawn.range = value.IsSequence() ? ReadList(place, value, key) : ReadWord(place, value, key);
+    keys->push_back(std::move(drawn));
   }
 }
 

@@ -59,6 +59,16 @@ void CheckEstimatorName(const std::string& name) {
 
 }  // namespace
 
+std::string ReadLabel(const Place& place, const YAML::Node& node) {
+  const std::string label = Name(place, node, "label");
+  if (label.find(',') != std::string::npos) {
+    place.Fail(node, fmt::format("label: {} is not allowed; give one without a comma, which separates labels "
+                                 "in lists (--estimators A,B)",
+                                 Quoted(label)));
+  }
+  return label;
+}
+
 bool IsNameOfEstimatorFile(const std::string& name) {
   if (std::ranges::count(EstimatorRegistry(), name, &EstimatorEntry::name) > 0) return false;
   const std::vector<std::string> files = NamesIn(SharedFolder::kEstimators);
@@ -77,7 +87,7 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
                  fmt::format("{}: name, process, answers and conform exclude each other; give one", block));
     if (key == "name") spec.name = Name(place, value, key);
     if (is_short) ReadShortForm(place, value, key, &spec);
-    if (key == "label") spec.label = Name(place, value, key);
+    if (key == "label") spec.label = ReadLabel(place, value);
     if (key == "budget_ms") {
       place.At(value, [&, value = value] {
         BudgetParameter(&spec.budget_ms.emplace()).SetFromText(Scalar(place, value, "budget_ms"));

@@ -13,6 +13,9 @@ namespace rcme {
 EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, const std::string& block,
                                  const std::set<std::string>& keys_of_caller = {});
 
+// Reads the label of an estimator: a name without commas.
+std::string ReadLabel(const Place& place, const YAML::Node& node);
+
 // Returns whether only a file that comes with the program has this name, and no estimator.
 bool IsNameOfEstimatorFile(const std::string& name);
 

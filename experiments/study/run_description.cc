@@ -1,5 +1,7 @@
 #include "experiments/study/run_description.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace rcme {
@@ -49,5 +51,16 @@ RunDescription Describe(const StudyPlan& plan) {
 }
 
 Settings ListBounds(FailureBounds bounds) { return ListValues(Parameters(bounds)); }
+
+bool IsTargetOpen(const RunDescription& run) {
+  return run.stopping_rule == kUntilRule && run.until_trials == 0;
+}
+
+std::string DescribeProgress(std::int64_t num_done, std::int64_t num_planned, bool is_target_open) {
+  if (!is_target_open) return fmt::format("{} of {} trials done", num_done, num_planned);
+  return fmt::format(
+      "{} trials done\nThe target of `rcme run --until` is not reached; the same command continues it.",
+      num_done);
+}
 
 }  // namespace rcme

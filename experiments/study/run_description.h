@@ -53,6 +53,15 @@ struct RunDescription {
   std::int64_t NumTrials() const;
 };
 
+// The stopping rule of `rcme run --until`.
+inline constexpr const char* kUntilRule = "a rate's interval is narrow enough";
+
+// Whether `rcme run --until` has never ended in this run, so that its target is not reached.
+bool IsTargetOpen(const RunDescription& run);
+
+// "10 of 12 trials done"; while the target is open, how many there will be is not known.
+std::string DescribeProgress(std::int64_t num_done, std::int64_t num_planned, bool is_target_open);
+
 // Describes a run that has not begun.
 RunDescription Describe(const StudyPlan& plan);
 

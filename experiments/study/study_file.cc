@@ -75,7 +75,7 @@ EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
   std::string label;
   for (const auto& [key, value] : Entries(place, node, "estimators: file", {"file", "label"})) {
     const std::string text = Scalar(place, value, key);
-    if (key == "label") label = Name(place, value, key);
+    if (key == "label") label = ReadLabel(place, value);
     if (key != "file") continue;
     const std::filesystem::path path = std::filesystem::path(place.path()).parent_path() / text;
     place.At(value, [&] { spec = LoadEstimatorFile(std::filesystem::exists(path) ? path.string() : text); });
@@ -211,16 +211,27 @@ EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
       fmt::join(BoundKeys(), ", "), options.empty() ? "none" : fmt::format("{}", fmt::join(options, ", "))));
 }
 
+// Sets the option of an estimator that has the name of a failure bound of the study.
+void FollowBound(const Place& place, const YAML::Node& root, const Parameter& bound, EstimatorSpec* spec) {
+  try {
+    SetOptions(spec, {{bound.name(), bound.Value()}});
+  } catch (const InputError& error) {
+    place.Fail(root["failure"][bound.name()],
+               fmt::format("failure: the estimator {} takes this bound for its option of that name: {}",
+                           Quoted(spec->label), error.what()));
+  }
+}
+
 // Estimators that state a failure probability have failure bounds of their own. They get those of the study
 // unless their entry gives others. Estimator files keep theirs.
-void FollowFailureBounds(const YAML::Node& entries, Study* study) {
+void FollowFailureBounds(const Place& place, const YAML::Node& root, Study* study) {
+  const YAML::Node entries = root["estimators"];
   for (size_t i = 0; i < study->estimators.size(); ++i) {
     EstimatorSpec& spec = study->estimators[i];
     if (!entries[i].IsMap() || entries[i]["file"]) continue;
     for (const Parameter& bound : Parameters(study->failure)) {
       const bool is_given = entries[i]["options"] && entries[i]["options"][bound.name()];
-      if (!is_given && FindSetting(spec.options, bound.name()))
-        SetOptions(&spec, {{bound.name(), bound.Value()}});
+      if (!is_given && FindSetting(spec.options, bound.name())) FollowBound(place, root, bound, &spec);
     }
   }
 }
@@ -290,7 +301,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
   SeePathsFrom(folder, &study);
   place.At(root["data"] ? root["data"] : root,
            [&] { study.data = WithNoiseFile(WithCalibration(study.data)); });
-  FollowFailureBounds(root["estimators"], &study);
+  FollowFailureBounds(place, root, &study);
   SettleData(place, root, &study);
   if (root["hypotheses"])
     study.hypotheses = ReadHypotheses(place, root["hypotheses"], ListStatableNames(study));

@@ -34,7 +34,7 @@ TEST_F(AskProgram, AnswersWithStudyAndResultFile) {
   const ProgramResult result = Ask({"--image", "640x480", "--trials", "12"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const std::string part :
-       {"640 x 480 px, f 500 px, noise 0.5 px; corridor; 20 % wrong (uniform) of 80 matches", "Estimator",
+       {"640 x 480 px, f 500 px, noise 0.5 px; corridor; 20 % wrong (uniform) of 80\nmatches", "Estimator",
         "Next best", "Accept if", "Inlier threshold", "Covariance", "Time", "Trials", "Success: an error of",
         "rcme report ", "rcme solve "})
     EXPECT_THAT(result.out, HasSubstr(part));
@@ -60,6 +60,11 @@ TEST_F(AskProgram, TheSameQuestionInOtherWordsGoesOn) {
   EXPECT_EQ(same.exit_code, 0) << same.err;
   EXPECT_THAT(same.err, HasSubstr("21 of 21 trials are there already"));
   EXPECT_EQ(ReadBytes(folder_.Path("asked/study.yaml")), study);
+  EXPECT_THAT(same.err, HasSubstr("The answer is of the 21 trials that " + folder_.Path("asked/run.sqlite") +
+                                  " holds; --trials N takes more"));
+  const ProgramResult fewer = Ask({"--image", "640x480", "--trials", "10"});
+  EXPECT_THAT(fewer.err, HasSubstr("The answer is of all 21 trials that "));
+  EXPECT_EQ(Ask({"--image", "640x480", "--trials", "21"}).exit_code, 0);
   const ProgramResult other = Ask({"--image", "640x481", "--trials", "21"});
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.err, HasSubstr("holds the results of another study"));

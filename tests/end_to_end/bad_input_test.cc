@@ -74,7 +74,7 @@ TEST_F(BadInput, AllPointsOnOneLine) {
 }
 
 TEST_F(BadInput, EmptyAndBinaryFiles) {
-  EXPECT_TRUE(IsRefused(Estimate("m.csv", ""), {"m.csv", "size1", "is missing"}));
+  EXPECT_TRUE(IsRefused(Estimate("m.csv", ""), {"m.csv: is empty"}));
   std::string bytes;
   for (unsigned i = 0; i < 100'000; ++i) bytes += static_cast<char>((i * i) >> 3);
   EXPECT_TRUE(IsRefused(Estimate("m.csv", bytes), {"m.csv"}));
@@ -111,7 +111,11 @@ TEST_F(BadInput, StudiesThatCannotBePlannedNameTheirFile) {
 TEST_F(BadInput, CommandLine) {
   EXPECT_TRUE(IsRefused(RunRcme({}), {"subcommand", "--help"}));
   EXPECT_TRUE(IsRefused(RunRcme({"frobnicate"}), {"frobnicate"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"frobnicate", "--help"}), {"there is no command 'frobnicate'"}));
+  EXPECT_EQ(RunRcme({"frobnicate", "--help"}).err, RunRcme({"frobnicate"}).err);
   EXPECT_TRUE(IsRefused(RunRcme({"run"}), {"study"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"run", "--frobnicate"}), {"not expected: --frobnicate"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"summarize", folder_.path()}), {"is a folder, not a result file"}));
   EXPECT_TRUE(IsRefused(RunRcme({"run", study_}), {"--out"}));
   EXPECT_TRUE(IsRefused(Run({"--out", out_, "--frobnicate"}), {"--frobnicate"}));
   EXPECT_TRUE(IsRefused(RunRcme({"list", "moons"}), {"moons", "estimators", "scenes"}));

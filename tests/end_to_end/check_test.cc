@@ -98,6 +98,27 @@ TEST_F(Check, SavesWhatIsSoundAndTheRunIsCompleted) {
   EXPECT_EQ(Csv(saved_), csv_);
 }
 
+// The way out is named at once, and every command that is printed reads the study from where it is sound.
+TEST_F(Check, ADamagedStudyIsReplacedByItsOwnFile) {
+  std::string bytes = ReadBytes(run_);
+  for (size_t at = bytes.find("uniform_volume"); at != std::string::npos;
+       at = bytes.find("uniform_volume", at + 1)) {
+    bytes[at] = static_cast<char>(0x96);
+  }
+  folder_.Write("run.sqlite", bytes);
+  const ProgramResult found = RunRcme({"check", run_});
+  EXPECT_EQ(found.exit_code, 2);
+  EXPECT_THAT(found.err, HasSubstr("the study stored in it cannot be read"));
+  EXPECT_THAT(found.err, HasSubstr("rcme check " + run_ + " --study STUDY.yaml"));
+  EXPECT_THAT(found.err, Not(HasSubstr("UTF-8")));
+  const ProgramResult read = RunRcme({"check", run_, "--study", study_, "--seed", "3"});
+  EXPECT_EQ(read.exit_code, 2);
+  const std::string save = "rcme check " + run_ + " --study " + study_ + " --seed 3 --save-good NEW.sqlite";
+  EXPECT_THAT(read.out, HasSubstr("80 trials are sound"));
+  EXPECT_THAT(read.out, HasSubstr("Next: " + save));
+  EXPECT_THAT(read.err, HasSubstr(save));
+}
+
 TEST_F(Check, AnotherInstructionSetIsWarnedOf) {
   {
     ResultStore store = ResultStore::OpenForRun(run_, MakePlan(SmallStudy()));

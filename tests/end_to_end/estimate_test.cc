@@ -340,7 +340,9 @@ TEST(Estimate, ABareFileWithIntrinsicsIsTheFileWithItsHeader) {
     EXPECT_THAT(result.err, testing::HasSubstr(what));
   };
   refuses({"estimate", bare}, "rcme estimate --K");
-  refuses({"estimate", whole, "--K", k[1]}, "has its own intrinsics");
+  refuses({"estimate", whole, "--K", k[1]}, "has its own intrinsics; leave out --K");
+  refuses({"estimate", whole, "--camera", "PINHOLE,600,600,319.5,239.5"}, "leave out --camera");
+  refuses({"estimate", "-"}, "standard input: is empty");
   for (const char* wrong : {"1,2,3", "1,2,3,4,5", "1,1,x,1", "0,1,1,1", "", "inf,1,1,1", "1 1 1 1"})
     refuses({"estimate", bare, "--K", wrong}, "give fx,fy,cx,cy in px");
   refuses({"estimate", bare, "--K", k[1], "--K", k[1], "--K", k[1]}, "more than twice");

@@ -58,6 +58,7 @@ TEST_F(Integrity, EndsWithThreeIfItIsUndecided) {
       RunRcme({"integrity", study_, "--estimator", "rcme_calibrated", "--trials", "2", "--risk", "1e-3"});
   EXPECT_EQ(few.exit_code, 3) << few.out << few.err;
   EXPECT_THAT(few.out, HasSubstr("undecided"));
+  EXPECT_THAT(few.out, HasSubstr("at least 3688 answers, none of them misleading, are needed"));
 }
 
 TEST_F(Integrity, RefusesWhatMakesNoSense) {

@@ -133,6 +133,19 @@ TEST_F(LockedStudy, GoesWithProblemsThatAreAnsweredElsewhere) {
   EXPECT_THAT(summary, HasSubstr("reason: answers were imported: mine"));
 }
 
+// A lock beside an installed study would hold for everybody who runs it.
+TEST_F(LockedStudy, AnInstalledStudyNeedsAPathForItsLock) {
+  const ProgramResult refused = Rcme({"lock", "own_camera"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("is installed for everybody"));
+  EXPECT_THAT(refused.err, HasSubstr("copy "));
+  EXPECT_THAT(refused.err, HasSubstr("--out"));
+  const std::string lock = folder_.Path("mine.lock");
+  const ProgramResult locked = Rcme({"lock", "own_camera", "--out", lock});
+  EXPECT_EQ(locked.exit_code, 0) << locked.err;
+  EXPECT_THAT(locked.err, HasSubstr("rcme run own_camera --lock " + lock));
+}
+
 TEST_F(LockedStudy, InputsThatAreWrong) {
   EXPECT_THAT(Rcme({"lock", folder_.Write("bare.yaml", SmallStudyYaml())}).err,
               HasSubstr("'ademp' is missing"));

@@ -29,8 +29,14 @@ void CheckIsUtf8(std::string_view text, const std::string& path) {
 
 }  // namespace
 
+Place Place::AtLineOf(const YAML::Node& value) const {
+  Place place(path_);
+  place.line_ = value.Mark().line;
+  return place;
+}
+
 std::string Place::Text(const YAML::Mark& mark) const {
-  return fmt::format("{}:{}", path_, std::max(mark.line, 0) + 1);
+  return fmt::format("{}:{}", path_, std::max(line_.value_or(mark.line), 0) + 1);
 }
 
 void Place::Fail(const YAML::Mark& mark, const std::string& what) const {

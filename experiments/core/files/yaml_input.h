@@ -3,6 +3,7 @@
 
 #include <yaml-cpp/yaml.h>
 
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -18,6 +19,8 @@ class Place {
  public:
   explicit Place(std::string path) : path_(std::move(path)) {}
   const std::string& path() const { return path_; }
+  // For a text inside a value, which has no lines of its own: all its messages name the line of the value.
+  Place AtLineOf(const YAML::Node& value) const;
   // "file:line".
   std::string Text(const YAML::Mark& mark) const;
   std::string Text(const YAML::Node& node) const { return Text(node.Mark()); }
@@ -35,6 +38,7 @@ class Place {
 
  private:
   std::string path_;
+  std::optional<int> line_;  // of all messages, from 0; empty: each has its own
 };
 
 // Returns the text of a scalar node. Throws InputError if the node is no scalar or has control characters.

@@ -104,8 +104,19 @@ size_t FindWidth(const Cells& cells, size_t c, size_t most = std::string::npos) 
   return width;
 }
 
+// The width of the longest number in column c; of an estimate with a note, what is before the note.
+size_t FindNumberWidth(const Cells& cells, size_t c) {
+  size_t width = 0;
+  for (size_t r = 1; r < cells.size(); ++r) {
+    const size_t note = cells[r][c].find(": ");
+    width = std::max(width, note == std::string::npos ? cells[r][c].size() : note + 1);
+  }
+  return width;
+}
+
 // The greatest width of a cell by column. A text column gets half of `width`, or less if the keys leave
-// less; the only column beside the keys gets all that they leave.
+// less; the only column beside the keys gets all that they leave. So does an estimate, whose note is broken
+// and whose number never is.
 std::vector<size_t> FindMostWidths(const std::vector<Column>& columns, const Cells& cells, size_t width) {
   const size_t half = width / 2;
   size_t keys_width = 0, num_others = 0;
@@ -116,8 +127,14 @@ std::vector<size_t> FindMostWidths(const std::vector<Column>& columns, const Cel
   const size_t rest =
       std::clamp(width - std::min(keys_width, width), half / 2, num_others == 1 ? width : half);
   std::vector<size_t> most;
-  for (const Column& column : columns)
-    most.push_back(column.type != ColumnType::kText ? std::string::npos : column.is_key ? half : rest);
+  for (size_t c = 0; c < columns.size(); ++c) {
+    const bool is_text = columns[c].type == ColumnType::kText;
+    if (columns[c].type == ColumnType::kEstimate) {
+      most.push_back(std::max(width - std::min(keys_width, width), FindNumberWidth(cells, c)));
+    } else {
+      most.push_back(!is_text ? std::string::npos : columns[c].is_key ? half : rest);
+    }
+  }
   return most;
 }
 

@@ -7,6 +7,7 @@
 
 #include "estimator/conform/conform_estimator.h"
 #include "estimator/conform/conform_file.h"
+#include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/real/answer/motion_words.h"
 #include "experiments/real/answer/refusal_advice.h"
@@ -373,15 +374,14 @@ std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnsw
 std::string AnswerLegend(bool with_errors, std::optional<double> integrity_risk) {
   std::string text =
       "turned: by how much camera 2 is rotated, deg; stands: where it is, seen from camera 1; (sd): their "
-      "standard\ndeviations, deg";
+      "standard deviations, deg";
   if (integrity_risk) {
     text += fmt::format(
-        "; levels: the errors of rotation/direction exceed them with a\nprobability of at most {:g} each, "
-        "deg",
+        "; levels: the errors of rotation/direction exceed them with a probability of at most {:g} each, deg",
         *integrity_risk);
   }
   if (with_errors) text += "; errors: of rotation/direction against the file's true motion, deg";
-  return text + "\n";
+  return FormatParagraph(text);
 }
 
 bool IsBadInput(MotionStatus status) {

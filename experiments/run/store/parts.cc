@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 #include <tuple>
 
@@ -56,7 +55,7 @@ std::uint32_t ReadNumShards(const RunDescription& run) {
 }
 
 std::unique_ptr<ResultFile> OpenPart(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
+  RequireResultFile(path);
   return NamingFile(path, [&] {
     auto part = std::make_unique<ResultFile>(path, SQLite::OPEN_READONLY, FileLocks::kNone);
     part->database.exec("BEGIN");

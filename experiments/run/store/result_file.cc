@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "experiments/core/files/checksum.h"
@@ -10,6 +11,12 @@
 #include "experiments/run/store/schema.h"
 
 namespace rcme {
+
+void RequireResultFile(const std::string& path) {
+  if (std::filesystem::is_directory(path))
+    throw InputError(fmt::format("{}: is a folder, not a result file; give one in it", path));
+  if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
+}
 
 ResultFile::ResultFile(const std::string& file, int sqlite_flags, FileLocks locks)
     : path(file), database(OpenDatabase(file, sqlite_flags, locks)) {}

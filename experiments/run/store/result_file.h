@@ -12,6 +12,9 @@
 
 namespace rcme {
 
+// Throws InputError that says what is at the path, unless it is a regular file.
+void RequireResultFile(const std::string& path);
+
 // Throws SQLite::Exception and Damage; callers use NamingFile to translate them.
 class ResultFile {
  public:

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "estimator/instruction_set.h"
 #include "experiments/core/files/first_difference.h"
@@ -73,7 +72,7 @@ ResultStore ResultStore::OpenForRun(const std::string& path, const StudyPlan& pl
 }
 
 ResultStore ResultStore::OpenForReading(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
+  RequireResultFile(path);
   return NamingFile(path, [&] {
     // Opened read-write if possible, because rolling back the journal of a killed run writes to the file.
     auto connection =

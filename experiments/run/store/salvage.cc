@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "experiments/core/files/checksum.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/run/store/schema.h"
 #include "experiments/run/store/trial_checksum.h"
 #include "experiments/study/study_file.h"
@@ -103,6 +104,20 @@ void NamingLostFile(const std::string& path, bool has_study, Action action) {
       what, has_study ? "" : " (if its study alone is lost, give that with --study)"));
 }
 
+// Reads the study in a file whose description is damaged. Its lines are of no use to the reader, who has no
+// such file to correct.
+Study ReadStoredStudy(SQLite::Database& database, const std::string& path) {
+  const std::string text = UncheckedRunValue(database, "study");
+  try {
+    return ParseStudy(text, path + " (its study)");
+  } catch (const InputError&) {
+    throw DamagedFileError(
+        fmt::format("{}: is damaged: the study stored in it cannot be read; `rcme check {} --study "
+                    "STUDY.yaml` reads the trials with the study's own file",
+                    path, QuoteForShell(path)));
+  }
+}
+
 void Append(std::uint32_t trial, std::vector<TrialRange>* ranges) {
   if (!ranges->empty() && ranges->back().end == trial) {
     ++ranges->back().end;
@@ -163,7 +178,7 @@ std::optional<RunDescription> Salvage::ReadStored() {
 
 RunDescription Salvage::DescribeStudy() {
   CheckTables(file_.database, {"run"});
-  Study study = ParseStudy(UncheckedRunValue(file_.database, "study"), file_.path + " (its study)");
+  Study study = ReadStoredStudy(file_.database, file_.path);
   study.trials = 1;
   study.description.clear();
   study.ademp.reset();

@@ -44,6 +44,34 @@ TEST(Ask, AsksForWhatIsMissingAlone) {
   EXPECT_THROW(AskForMissing(nothing, out, &texts), InputError);
 }
 
+// An empty line takes the default; with all that is needed nothing is asked.
+TEST(Ask, AsksForMotionAndOutliersAfterTheOthers) {
+  AskedTexts texts = Corridor();
+  std::ostringstream out;
+  std::istringstream unread("forward\n");
+  AskForMissing(unread, out, &texts);
+  EXPECT_EQ(out.str(), "");
+  texts.wrong = "";
+  std::istringstream in("40%\n\nclustered\nclustered_both\n");
+  AskForMissing(in, out, &texts);
+  EXPECT_EQ(texts.motion, "");
+  EXPECT_EQ(texts.outliers, "clustered_both");
+  EXPECT_NE(out.str().find("'clustered' is not a kind of wrong matches"), std::string::npos) << out.str();
+  Question question;
+  ReadTexts(texts, &question);
+  EXPECT_EQ(question.motion, "");
+  EXPECT_EQ(question.outliers, "clustered_both");
+}
+
+TEST(Ask, TheNextCommandsAreQuotedForAShell) {
+  Answer answer;
+  answer.best.label = "ours";
+  const std::string text = AnswerAsText(answer, "?", "my dir");
+  for (const char* part : {"rcme report 'my dir/run.sqlite' --out 'my dir/report.html'",
+                           "rcme solve 'my dir/study.yaml' --estimators ours", "--out 'my dir/solve'"})
+    EXPECT_NE(text.find(part), std::string::npos) << part << " is missing in\n" << text;
+}
+
 TEST(Ask, ReadsTheTextsAndRefusesWhatIsNone) {
   Question question;
   ReadTexts(Corridor(), &question);

@@ -184,6 +184,17 @@ TEST(CameraPlausibility, KeyPointsStandForASizeThatIsNotKnown) {
   EXPECT_EQ(SayOfPoints(sized, few, true), "");
 }
 
+TEST(CameraPlausibility, ASizeThatContradictsKAndKeyPointsIsTheOneFinding) {
+  const Camera camera{600, 600, 319.5, 239.5, 330, 250};
+  const std::vector<CameraDoubt> doubts = FindPairDoubts(camera, camera, PointsOnAGrid(), {"1", "2"});
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_EQ(doubts[0].place, "1");
+  EXPECT_NE(doubts[0].what.find("outside of an image of 330 x 250 px, its size, but fit K"),
+            std::string::npos)
+      << doubts[0].what;
+  EXPECT_NE(doubts[0].what.find("640 x 480 px; correct the size"), std::string::npos) << doubts[0].what;
+}
+
 // All the real pairs beside the project, with their sizes and as if they had none; then with half, and with
 // twice, of K. A wrong warning on any of them fails, and so does a half K that is not seen.
 TEST(CameraPlausibility, RealPairsPassAndHalfOfTheirKDoesNot) {

@@ -251,7 +251,11 @@ TEST_F(MatchFileTest, TheTimeBetweenTheImagesMayBeStated) {
 TEST_F(MatchFileTest, TheTruthMayStateItsOwnErrorAndTheImagesTheirNames) {
   EXPECT_FALSE(Read(FullText()).truth_sd.has_value());
   EXPECT_TRUE(std::isnan(Read(FullText()).baseline));
-  EXPECT_TRUE(std::isnan(Read("# baseline: -1\n" + FullText()).baseline));
+  for (const char* wrong : {"", "-1 m", "0", "nan", "short"}) {
+    std::string text = "# baseline: ";
+    text.append(wrong).append("\n");
+    EXPECT_TRUE(Refuses(text + FullText(), {":1: baseline: ", "give a length > 0"})) << wrong;
+  }
   const std::string more =
       "# baseline: 1.25 (m)\n# truth_sd: 0.9 1.8 0 0.01 0.02 0.03\n# image1: a/0001.png\n# image2: "
       "a/0002.png\n";
@@ -318,7 +322,7 @@ TEST_F(MatchFileTest, PriorsThatCannotBe) {
   EXPECT_TRUE(
       Refuses("# prior_rotation_sd_deg: 1\n" + FullText(), {"prior_rotation_rowmajor", "is missing"}));
   EXPECT_TRUE(Refuses("# prior_rotation_sd_deg: 1 2\n" + rotation + FullText(),
-                      {":1: prior_rotation_sd_deg", "3 are needed"}));
+                      {":1: prior_rotation_sd_deg", "has 2 numbers; give one or three"}));
   EXPECT_TRUE(Refuses("# prior_rotation_sd_deg: 0\n" + rotation + FullText(),
                       {":1: prior_rotation_sd_deg", "[0.0001, 180]"}));
   EXPECT_TRUE(Refuses("# prior_rotation_sd_deg: nan\n" + rotation + FullText(),
@@ -355,7 +359,18 @@ TEST_F(MatchFileTest, MissingHeaderKeys) {
   }
   EXPECT_TRUE(Refuses(Edited("# t_unit", "# t"), {"t_unit", "is missing"}));
   EXPECT_TRUE(Refuses(Edited("# R_rowmajor", "# R"), {"R_rowmajor", "is missing"}));
-  EXPECT_TRUE(Refuses("", {"size1", "is missing"}));
+  EXPECT_TRUE(Refuses("\n", {"size1", "is missing", "--K"}));
+  EXPECT_TRUE(Refuses("", {"is empty"}));
+}
+
+// The hint about --K helps where the intrinsics are missing, and only there.
+TEST_F(MatchFileTest, AMissingKeyOfAPriorIsNotOneOfTheCamera) {
+  try {
+    Read("# prior_rotation_rowmajor: 0 -1 0 1 0 0 0 0 1\n" + FullText());
+    FAIL() << "a prior without its standard deviation was read";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).find("--K"), std::string::npos) << error.what();
+  }
 }
 
 TEST_F(MatchFileTest, RepeatedHeaderKey) {
@@ -432,7 +447,7 @@ TEST_F(MatchFileTest, ALensIsUndone) {
                 0.4 * UndistortMatch(radtan, fisheye, distorted)->noise_ratio, 1e-9);
   }
   // The same by --camera, with the size of the header and without one.
-  const GivenCameras given = std::array<Lens, 2>{radtan, fisheye};
+  const GivenCameras given = CamerasOfOption{{radtan, fisheye}};
   for (const char* sizes : {"", "# size1: 640 480\n# size2: 800 600\n"}) {
     const MatchFile bare = ReadMatchFile(folder_.Write("bare.csv", sizes + rows), given);
     EXPECT_EQ(bare.matches[1].x2_px, file.matches[1].x2_px);
@@ -483,9 +498,9 @@ TEST_F(MatchFileTest, BadLenses) {
                       {":3: no ray of camera 1 reaches (1, 2) px", "leave the match out"}));
   const std::string named = folder_.Write("named.csv", with("PINHOLE 640 480 600 600 319.5 239.5"));
   const GivenCameras given =
-      std::array<Lens, 2>{Lens{{600, 600, 319.5, 239.5}}, Lens{{600, 600, 319.5, 239.5}}};
-  EXPECT_TRUE(ThrowsInputError([&] { ReadMatchFile(named, given); },
-                               {":1: camera1: ", "leave out --K and --camera"}));
+      CamerasOfOption{{Lens{{600, 600, 319.5, 239.5}}, Lens{{600, 600, 319.5, 239.5}}}, "--camera"};
+  EXPECT_TRUE(
+      ThrowsInputError([&] { ReadMatchFile(named, given); }, {":1: camera1: ", "leave out --camera"}));
 }
 
 TEST_F(MatchFileTest, WriteRoundTrip) {

@@ -130,7 +130,7 @@ TEST_F(MatchFolderTest, AStudyMayGiveTheTruthAnError) {
       DescribeTruthQuality("# condition 0: 2 files, digest 00ff, truth_sd in 1, truth_sd assumed in 1\n"),
       testing::HasSubstr("the study's assumption for 1 of 2 pairs"));
 
-  folder_.Write("a_001.csv", "# scene: a\n" + known + "# baseline: short\n" + MatchRows(12, 2));
+  folder_.Write("a_001.csv", "# scene: a\n" + known + MatchRows(12, 2));
   EXPECT_TRUE(ThrowsInputError([&] { MakePlan(study); }, {"a_001.csv", "baseline", "truth_position_sd"}));
 }
 

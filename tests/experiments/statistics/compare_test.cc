@@ -380,5 +380,16 @@ TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {
   }
 }
 
+TEST_F(CompareTest, TableSaysThatATargetIsNotReached) {
+  Write("run", {{"fs", 1}, {"ss", 11}});
+  const auto text = [&] { return MakeComparisonResult(CompareRun("run")).text; };
+  ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_)).NoteStoppingRule(kUntilRule);
+  EXPECT_NE(text().find("against standard: 12 trials done\nThe target of `rcme run --until` is not reached"),
+            std::string::npos)
+      << text();
+  ResultStore::OpenForRun(folder_.Path("run"), MakePlan(study_)).NoteUntilOptions("--until ci=0.1", 12);
+  EXPECT_NE(text().find("12 of 12 trials done\n"), std::string::npos) << text();
+}
+
 }  // namespace
 }  // namespace rcme

@@ -308,8 +308,7 @@ TEST_F(SummarizeTest, CoverageHasAVerdictAndWhatWouldDecide) {
   EXPECT_NE(SummaryAsTable(SummarizeRun("covers")).find(": covers"), std::string::npos);
   EXPECT_NE(SummaryAsTable(SummarizeRun("too few")).find(": too narrow"), std::string::npos);
   EXPECT_NE(SummaryAsTable(SummarizeRun("too many")).find(": too wide"), std::string::npos);
-  EXPECT_NE(SummaryAsTable(SummarizeRun("undecided")).find(": undecided, about 6200 trials would do"),
-            std::string::npos)
+  EXPECT_NE(SummaryAsTable(SummarizeRun("undecided")).find(": undecided, about 6200"), std::string::npos)
       << SummaryAsTable(SummarizeRun("undecided"));
   EXPECT_NE(SummaryAsCsv(SummarizeRun("too few")).find(",200,exact,too narrow,\n"), std::string::npos);
   EXPECT_FALSE(Row("success").coverage_verdict) << "a rate that nothing is claimed of";

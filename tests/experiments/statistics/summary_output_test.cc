@@ -132,6 +132,15 @@ TEST_F(SummaryOutputTest, TableShowsIntervalsAndCounts) {
   EXPECT_NE(table.find("Clopper-Pearson"), std::string::npos) << table;
 }
 
+TEST_F(SummaryOutputTest, TableSaysThatATargetIsNotReached) {
+  Summary summary = SummarizeRun("run");
+  summary.is_target_open = true;
+  const std::string table = SummaryAsTable(summary);
+  EXPECT_NE(table.find("Study small: 10 trials done\nThe target of `rcme run --until` is not reached"),
+            std::string::npos)
+      << table;
+}
+
 TEST_F(SummaryOutputTest, TableOfChosenQuantities) {
   const std::string table = QuantitiesAsTable(SummarizeRun("run"), {"kappa_flag", "failure"});
   EXPECT_NE(table.find("kappa_flag"), std::string::npos) << table;

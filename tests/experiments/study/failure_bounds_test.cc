@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/study/study_file.h"
+#include "tests/test_support/expect_input_error.h"
 
 namespace rcme {
 namespace {
@@ -32,6 +33,14 @@ TEST(FailureBoundsOfEstimators, AreTheirOwnWhereGiven) {
       ParseStudy(StudyWith("{name: rcme_calibrated, options: {max_rotation_error_deg: 3}}"), "bounds.yaml");
   EXPECT_EQ(Option(study, "max_rotation_error_deg"), "3");
   EXPECT_EQ(Option(study, "max_direction_error_deg"), "10");
+}
+
+TEST(FailureBoundsOfEstimators, ThatAnEstimatorCannotTakeNameTheirLineAndTheEstimator) {
+  std::string yaml = StudyWith("{name: rcme_calibrated, label: ours}");
+  yaml.replace(yaml.find("error_deg: 5"), 12, "error_deg: 0");
+  EXPECT_TRUE(ThrowsInputError([&] { ParseStudy(yaml, "bounds.yaml"); },
+                               {"bounds.yaml:5: failure: the estimator 'ours' takes this bound",
+                                "max_rotation_error_deg: '0' is not allowed"}));
 }
 
 TEST(FailureBoundsOfEstimators, AreNoneOfAnEstimatorThatStatesNoProbability) {

@@ -29,6 +29,7 @@ namespace rcme {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 
 Study DrawnStudy(const std::string& conditions, const std::string& more = "data: {num_matches: 60}\n") {
   return ParseStudy(more + "conditions:\n" + conditions + "estimators: [{name: standard}]\n", "study.yaml");
@@ -276,11 +277,30 @@ TEST(Population, MessagesNameLineAndKey) {
               HasSubstr("given: 'sigma_px = 2'"));
   EXPECT_THAT(
       CatchMessage("  ranges: {scene: plane}\n  given: [sigma_px < 2, paralax_deg > 1]\n"),
-      HasSubstr("given: paralax_deg > 1: no draw has the key 'paralax_deg' (did you mean 'parallax_deg'?)"));
+      HasSubstr("given: paralax_deg > 1: there is no key 'paralax_deg' (did you mean 'parallax_deg'?)"));
   EXPECT_THAT(CatchMessage("  number: 0\n  ranges: {scene: plane}\n"),
               HasSubstr("number: '0' is not allowed"));
   EXPECT_THAT(CatchMessage("  number: 5\n"), HasSubstr("key 'ranges' or 'population' is missing"));
   EXPECT_THAT(CatchMessage("  population: documented_range\n"), HasSubstr("documented_ranges"));
+}
+
+TEST(Population, MessagesNameTheLineOfTheKey) {
+  const auto message = [](const std::string& key) {
+    try {
+      ParseStudy("data: {scene: plane}\nconditions:\n  ranges:\n    sigma_px: [0.1, 1]\n    " + key +
+                     "\nestimators: [{name: standard}]\n",
+                 "study.yaml");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(message("outlier_ratio: [0, 1.5]"), StartsWith("study.yaml:5: outlier_ratio: '1.5'"));
+  EXPECT_THAT(message("num_boxes: [1, 2]"), StartsWith("study.yaml:5: ranges: num_boxes: no draw"));
+  EXPECT_THAT(message("noise: [gaussian, foo]"), StartsWith("study.yaml:5: noise: 'foo' is not allowed"));
+  EXPECT_THAT(message("noise: foo"), StartsWith("study.yaml:5: noise: 'foo' is not allowed"));
+  EXPECT_THAT(message("outlier_ratio: log [3, 1]"), StartsWith("study.yaml:5: outlier_ratio: two numbers"));
+  EXPECT_THAT(message("noise: any of []"), StartsWith("study.yaml:5: noise: a list"));
 }
 
 TEST(EstimatorOptions, AreCheckedAsFactors) {

@@ -108,7 +108,7 @@ TEST(ToYaml, RoundTripOfAwkwardText) {
   study.name = "a: b, \"c\" #d \xC3\xA4 - e";
   study.description = "1.0\n- e";
   study.estimators[0].label = "~";
-  study.estimators[1].label = " x,\"y\" ";
+  study.estimators[1].label = " x;\"y\" ";
   const std::string text = ToYaml(study);
   const Study again = ParseStudy(text, "again.yaml");
   EXPECT_EQ(again.name, study.name);
@@ -204,6 +204,8 @@ TEST(ParseStudyErrors, NamesOfMoreThanOneLine) {
         << text;
   }
   EXPECT_EQ(ParseStudy(Edited("label: ours", "label: =_1+1"), "small.yaml").estimators[1].label, "=_1+1");
+  EXPECT_TRUE(Refuses(Edited("label: ours", "label: \"a b,c\""),
+                      {"bad.yaml:9: label: 'a b,c' is not allowed", "without a comma"}));
 }
 
 TEST(ParseStudyErrors, OptionsThatContradictEachOther) {

@@ -54,6 +54,21 @@ TEST(RenderText, PutsWhatDoesNotFitBelowWithItsKeys) {
       << text;
 }
 
+TEST(RenderText, BreaksTheNoteOfAnEstimateAndNotItsNumber) {
+  const Table table{{{.name = "estimator", .is_key = true},
+                     {.name = "coverage", .type = ColumnType::kEstimate, .format = kPercent}},
+                    {{std::string("ours"), Estimate{.value = 0.95,
+                                                    .interval = {0.8872, 0.9836},
+                                                    .note = "undecided, about 6200 trials would do"}}}};
+  EXPECT_EQ(RenderText(table, 60),
+            "estimator  coverage\n"
+            "---------  ---------------------------------------------\n"
+            "ours       95.00 % [88.72, 98.36]: undecided, about 6200\n"
+            "           trials would do\n");
+  EXPECT_NE(RenderText(table, 20).find("95.00 % [88.72, 98.36]:\n"), std::string::npos)
+      << RenderText(table, 20);
+}
+
 TEST(RenderText, KeepsALabelThatIsTooLong) {
   const std::string label(100, 'x');
   const Table table{{{.name = "estimator", .is_key = true}, {.name = "n", .type = ColumnType::kCount}},
