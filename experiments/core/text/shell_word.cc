@@ -7,9 +7,9 @@ namespace rcme {
 namespace {
 
 bool IsPlain(char c) {
-  constexpr std::string_view kPlainSigns = "_-+./,:=@%";
+  constexpr std::string_view kUnquotedSigns = "_-+./,:=@%";
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-         kPlainSigns.find(c) != std::string_view::npos;
+         kUnquotedSigns.find(c) != std::string_view::npos;
 }
 
 }  // namespace
