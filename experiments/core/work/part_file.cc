@@ -291,18 +291,10 @@ Part ReadPart(const std::string& path) {
       .Read();
 }
 
-Part ParsePart(std::string_view text, const std::string& name) {
-  return PartReader(name, ReadFrom(text)).Read();
-}
-
 SalvagedPart SalvagePart(const std::string& path) {
   RegularFile file(path, {"part", "a part that --shard writes"});
   return PartReader(path, [&](char* buffer, size_t size) { return file.Read(size).copy(buffer, size); })
       .Salvage();
-}
-
-SalvagedPart ParseSalvagedPart(std::string_view text, const std::string& name) {
-  return PartReader(name, ReadFrom(text)).Salvage();
 }
 
 bool IsPart(const std::string& path) {

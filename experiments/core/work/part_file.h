@@ -73,8 +73,6 @@ void WritePart(const std::string& path, const Part& part, const ItemResults& res
 // Throws InputError with the path, the line and the error if the file is not a part of this format, is
 // damaged, or is too long. Needs memory for the results and one line.
 Part ReadPart(const std::string& path);
-// The same for the text of a part; messages call it `name`.
-Part ParsePart(std::string_view text, const std::string& name);
 
 // A part some lines of which may be damaged, for callers that can compute the lost items again. Every line
 // has its own checksum, so the other lines are as reliable as those of an undamaged part.
@@ -85,7 +83,6 @@ struct SalvagedPart {
 };
 // Throws InputError as ReadPart does if the first line is damaged: the work is then unknown.
 SalvagedPart SalvagePart(const std::string& path);
-SalvagedPart ParseSalvagedPart(std::string_view text, const std::string& name);
 
 // Whether the file begins like a part of any format version; false if it cannot be read.
 bool IsPart(const std::string& path);
