@@ -79,8 +79,8 @@ std::vector<Target> CoverageTargets(int degrees_of_freedom, const ScaleTolerance
   return targets;
 }
 
-Target IdentityTarget(const std::string& quantity, double tolerance, size_t statistic) {
-  return {quantity, Target::Kind::kCoverage, 1.0, AllowedRate(1.0, kIdentity.margin), tolerance, statistic};
+Target IdentityTarget(const std::string& quantity, double tolerance) {
+  return {quantity, Target::Kind::kCoverage, 1.0, AllowedRate(1.0, kIdentity.margin), tolerance};
 }
 
 }  // namespace rcme
