@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-constexpr int kNumHistogramBins = 20;
+constexpr int kNumHistogramBins = 20, kNumCalibrationSamples = 399;
 // For outcomes drawn here; the streams of trials have other purposes (data_source.h).
 constexpr std::uint32_t kPurposeOfDrawnOutcomes = 200, kPurposeOfDrawnConditions = 201;
 

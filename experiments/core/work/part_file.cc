@@ -23,9 +23,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormatStart = "{\"format\": \"rcme part ", kChecksumKey = "\"checksum\": \"";
-constexpr int kMaxPieceDepth = 8;        // of lists within lists; the deepest piece has three
-constexpr size_t kMaxRestOfPiece = 256;  // bytes of an item's line besides its result
-constexpr size_t kMaxFirstValues = 64;   // of the first line, which has ten
+constexpr size_t kMaxPartBytes = size_t{1} << 30;  // the outcomes of a whole audit have 100 MB
+constexpr int kMaxPieceDepth = 8;                  // of lists within lists; the deepest piece has three
+constexpr size_t kMaxRestOfPiece = 256;            // bytes of an item's line besides its result
+constexpr size_t kMaxFirstValues = 64;             // of the first line, which has ten
 constexpr const char* kAgain = "run the command that wrote it again: it keeps what is sound";
 constexpr const char* kAllAgain = "remove the file and run the command again";
 

@@ -34,9 +34,8 @@ struct Part {
   ItemResults results;  // of the finished items
 };
 
-// Limits of a file. For comparison: the first line of the largest study (100,000 conditions) has about 60 MB,
-// the largest piece (a tuning of 20,000 settings) 300 kB, and the outcomes of a whole audit 100 MB.
-inline constexpr size_t kMaxPartBytes = size_t{1} << 30;
+// Limits of a file's lines. For comparison: the first line of the largest study (100,000 conditions) has
+// about 60 MB, the largest piece (a tuning of 20,000 settings) 300 kB.
 inline constexpr size_t kMaxPartLineBytes = size_t{64} << 20;
 inline constexpr size_t kMaxPieceBytes = size_t{8} << 20;
 
