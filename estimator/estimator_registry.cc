@@ -46,8 +46,7 @@ std::vector<EstimatorEntry>& Table() {
       {"rcme_calibrated",
        "RCME that estimates the noise, keeps several explanations and states the probability that it is "
        "wrong",
-       RcmeCalibratedModel, /*is_peer=*/false, /*is_audited=*/true, /*uses_noise_scale=*/true,
-       /*takes_common_options=*/true, /*uses_motion_prior=*/true},
+       RcmeCalibratedModel, /*is_peer=*/false, /*is_audited=*/true, /*uses_noise_scale=*/true},
       {"msac", "RANSAC by truncated squared distances (MSAC), then refinement", MsacModel, false, false},
       {"mlesac", "RANSAC by the likelihood of a mixture of right and wrong matches (MLESAC), then refinement",
        MlesacModel, false, false},

@@ -22,8 +22,6 @@ struct EstimatorEntry {
   bool uses_noise_scale = false;
   // Whether it also takes the options of the robust covariance and of the gate of model choice.
   bool takes_common_options = true;
-  // Whether it uses MotionProblem::prior.
-  bool uses_motion_prior = false;
 };
 const std::vector<EstimatorEntry>& EstimatorRegistry();
 

@@ -17,7 +17,7 @@ struct MotionProblem {
   // Standard deviation of each match's noise over sigma_px; the median is 1. Empty: all matches have noise
   // sigma_px.
   std::vector<double> noise_scale = {};
-  // Prior knowledge of the motion; only some estimators use it (EstimatorEntry::uses_motion_prior).
+  // Prior knowledge of the motion; only rcme_calibrated uses it.
   std::optional<MotionPrior> prior = {};
 };
 

@@ -30,7 +30,6 @@ class TextLines {
   bool Next(std::string_view* line);
   // Throws InputError that names the text and the last line returned by Next.
   [[noreturn]] void Fail(const std::string& what) const;
-  int line_number() const { return line_number_; }  // from 1
 
  private:
   bool Fill();  // fills the buffer if it is empty; false at the end

@@ -11,20 +11,6 @@
 
 namespace rcme {
 
-Measured Accuracy::bias() const { return {errors_.mean(), errors_.standard_error()}; }
-
-Measured Accuracy::empirical_standard_error() const {
-  const double s = std::sqrt(errors_.variance());
-  return {s, s / std::sqrt(2.0 * static_cast<double>(n() - 1))};
-}
-
-Measured Accuracy::mean_squared_error() const { return {squares_.mean(), squares_.standard_error()}; }
-
-Measured Accuracy::root_mean_squared_error() const {
-  const double root = std::sqrt(squares_.mean());
-  return {root, root == 0.0 ? 0.0 : squares_.standard_error() / (2.0 * root)};
-}
-
 namespace {
 
 RankInterval ComputeQuantileRanks(std::int64_t n, double p, double confidence) {

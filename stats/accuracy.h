@@ -1,41 +1,12 @@
-// Performance measures of an estimator from its errors (estimate minus truth) over independent trials, each
-// with its Monte-Carlo standard error (Morris, White & Crowther 2019, table 6).
+// A quantile of independent values with a distribution-free interval.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "stats/intervals.h"
-#include "stats/moments.h"
 
 namespace rcme {
-
-struct Measured {
-  double value = 0.0, standard_error = 0.0;
-};
-
-// A stream of errors in constant memory. NaN if there are not enough of them (one for a value, two for a
-// standard error). A NaN or infinite error makes every measure NaN or infinite, on purpose: do not add
-// refusals here, count them separately.
-class Accuracy {
- public:
-  void Add(double error) { errors_.Add(error), squares_.Add(error * error); }
-  void Merge(const Accuracy& other) { errors_.Merge(other.errors_), squares_.Merge(other.squares_); }
-
-  std::int64_t n() const { return errors_.n(); }
-  // Mean error; s / sqrt(n).
-  Measured bias() const;
-  // Standard deviation s of the errors; s / sqrt(2 (n - 1)), which holds for normal errors.
-  Measured empirical_standard_error() const;
-  // Mean squared error; standard deviation of the squares / sqrt(n).
-  Measured mean_squared_error() const;
-  // The root of the mean squared error. It is not in the table; by the delta method its standard error is
-  // that of the MSE / (2 RMSE). 0 of 0 is 0.
-  Measured root_mean_squared_error() const;
-
- private:
-  Moments errors_, squares_;
-};
 
 // The ranks, counted from 1, of two of n ascending values that enclose the p-quantile of their law with at
 // least `confidence`. Each end is missed with at most half of the remaining probability, whatever the law.

@@ -62,11 +62,11 @@ std::optional<Line> MostLikelyLine(const std::vector<double>& log_odds, std::spa
 
 }  // namespace
 
-CalibrationLine FitCalibrationLine(std::span<const Forecast> forecasts, double confidence, double clip) {
+CalibrationLine FitCalibrationLine(std::span<const Forecast> forecasts) {
   CheckForecasts(forecasts);
   std::vector<double> log_odds;
   for (const Forecast& forecast : forecasts) {
-    const double p = ClippedProbability(forecast.probability, clip);
+    const double p = ClippedProbability(forecast.probability);
     log_odds.push_back(std::log(p) - std::log1p(-p));
   }
   const std::vector<std::int64_t> clusters = ListClusters(forecasts);
@@ -86,9 +86,8 @@ CalibrationLine FitCalibrationLine(std::span<const Forecast> forecasts, double c
     of_intercept.push_back(influence.intercept);
     of_slope.push_back(influence.slope);
   }
-  result.intercept = EstimateFromInfluences(line->intercept, of_intercept, clusters, confidence);
-  result.slope = EstimateFromInfluences(line->slope, of_slope, clusters, confidence);
-  result.has_optimum = true;
+  result.intercept = EstimateFromInfluences(line->intercept, of_intercept, clusters);
+  result.slope = EstimateFromInfluences(line->slope, of_slope, clusters);
   return result;
 }
 

@@ -11,14 +11,12 @@
 namespace rcme {
 
 // Maximum likelihood; probabilities are clipped (kProbabilityClip), so a forecast of 0 has log odds -9.2.
-// Standard errors are clustered, from the influences H^-1 (y - mu) (1, logit p). All NaN (intervals
-// unbounded) if there is no finite optimum: only one kind of outcome, all probabilities equal, or perfect
-// separation.
+// Standard errors and 95 % intervals are clustered, from the influences H^-1 (y - mu) (1, logit p). All NaN
+// (intervals unbounded) if there is no finite optimum: only one kind of outcome, all probabilities equal, or
+// perfect separation.
 struct CalibrationLine {
   ClusteredEstimate intercept, slope;
-  bool has_optimum = false;
 };
-CalibrationLine FitCalibrationLine(std::span<const Forecast> forecasts, double confidence = 0.95,
-                                   double clip = kProbabilityClip);
+CalibrationLine FitCalibrationLine(std::span<const Forecast> forecasts);
 
 }  // namespace rcme

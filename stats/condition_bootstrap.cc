@@ -26,17 +26,13 @@ BootstrapEstimate BootstrapOverConditions(std::size_t num_conditions, const Cond
   if (num_conditions == 0 || options.num_samples < 2)
     throw std::invalid_argument("bootstrap: at least one condition and two samples are needed");
   std::vector<int> times(num_conditions, 1);
-  BootstrapEstimate estimate{statistic(times), kNaN, kNaN, options.range, options.num_samples, 0};
+  BootstrapEstimate estimate{statistic(times), kNaN, kNaN, options.range};
   if (num_conditions < 2) return estimate;
   Moments samples;
   for (int sample = 0; sample < options.num_samples; ++sample) {
     DrawTimes(rng, &times);
     const double value = statistic(times);
-    if (std::isnan(value)) {
-      ++estimate.num_undefined;
-    } else {
-      samples.Add(value);
-    }
+    if (!std::isnan(value)) samples.Add(value);
   }
   const double m = static_cast<double>(num_conditions);
   estimate.bias = samples.mean() - estimate.value;

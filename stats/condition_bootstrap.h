@@ -18,7 +18,7 @@
 
 namespace rcme {
 
-// The statistic if condition i counts times[i] times; NaN if undefined.
+// The statistic if condition i counts times[i] times; NaN if undefined: such samples are left out.
 using ConditionStatistic = std::function<double(std::span<const int> times)>;
 
 enum class ChanceBias {
@@ -31,11 +31,10 @@ enum class ChanceBias {
 };
 
 struct BootstrapEstimate {
-  double value = 0.0;                      // with each condition once
-  double bias = 0.0;                       // mean of the samples minus the value
-  double standard_error = 0.0;             // NaN below two conditions
-  Interval interval;                       // clipped to the range; the whole range below two conditions
-  int num_samples = 0, num_undefined = 0;  // undefined samples are left out
+  double value = 0.0;           // with each condition once
+  double bias = 0.0;            // mean of the samples minus the value
+  double standard_error = 0.0;  // NaN below two conditions
+  Interval interval;            // clipped to the range; the whole range below two conditions
 };
 
 struct BootstrapOptions {

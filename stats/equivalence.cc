@@ -29,7 +29,8 @@ Verdict DecideEquivalence(const Interval& interval, const Interval& allowed) {
   return Verdict::kUndecided;
 }
 
-double TrialsToDecide(double rate, const Interval& allowed, double confidence, double power) {
+double TrialsToDecide(double rate, const Interval& allowed, double confidence) {
+  constexpr double kPower = 0.9;
   double gap = std::numeric_limits<double>::infinity();
   int num_borders = 0;
   for (const double border : {allowed.lower, allowed.upper}) {
@@ -38,7 +39,7 @@ double TrialsToDecide(double rate, const Interval& allowed, double confidence, d
     ++num_borders;
   }
   const bool must_clear_both = num_borders == 2 && rate > allowed.lower && rate < allowed.upper;
-  const double miss = (1.0 - power) / (must_clear_both ? 2.0 : 1.0);
+  const double miss = (1.0 - kPower) / (must_clear_both ? 2.0 : 1.0);
   const double tail = 0.5 * (1.0 - confidence);
   const double z = NormalQuantile(1.0 - tail) + NormalQuantile(1.0 - miss);
   return std::max(z * z * rate * (1.0 - rate) / (gap * gap), -std::log(tail) / gap);

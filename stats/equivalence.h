@@ -20,13 +20,13 @@ Interval Around(double nominal, double margin);
 // looks after every trial and stops at the first verdict.
 Verdict DecideEquivalence(const Interval& interval, const Interval& allowed);
 
-// The approximate number of trials that decide a binomial rate with probability `power` if `rate` is the
-// truth. Let g be the distance to the nearest border of `allowed` within (0, 1). The half width of the
+// The approximate number of trials that decide a binomial rate with probability .9, the power, if `rate` is
+// the truth. Let g be the distance to the nearest border of `allowed` within (0, 1). The half width of the
 // interval plus the scatter of the estimate must fit into it,
 //   n = max((z_(1 - alpha / 2) + z_power)^2 rate (1 - rate) / g^2, -ln(alpha / 2) / g),
 // the second term for rates near 0 or 1. A rate between two borders must clear both, so z_power becomes z_(1
 // - (1 - power) / 2) (as in planning two one-sided tests). Infinite on a border. A verdict by a confidence
 // sequence takes two to three times as many trials.
-double TrialsToDecide(double rate, const Interval& allowed, double confidence = 0.95, double power = 0.9);
+double TrialsToDecide(double rate, const Interval& allowed, double confidence = 0.95);
 
 }  // namespace rcme

@@ -23,7 +23,7 @@ ExchangeabilityTest::ExchangeabilityTest(std::span<const double> reference, size
     : seen_(num_features), log_capital_(kNumBets * num_features, 0.0), rng_(rng) {
   if (num_features == 0 || reference.size() % num_features != 0)
     throw std::invalid_argument("observations need features, each as many");
-  capital_ = greatest_ = 1.0 / static_cast<double>(num_features);
+  greatest_ = 1.0 / static_cast<double>(num_features);
   for (size_t i = 0; i < reference.size(); ++i) seen_[i % num_features].push_back(Ordered(reference[i]));
   for (std::vector<double>& values : seen_) std::ranges::sort(values);
 }
@@ -53,8 +53,7 @@ void ExchangeabilityTest::Add(std::span<const double> features) {
     for (size_t i = first; i < first + kNumBets; ++i) sum += std::exp(std::min(log_capital_[i], 700.0));
     greatest_sum = std::max(greatest_sum, sum);
   }
-  capital_ = std::min(greatest_sum / static_cast<double>(log_capital_.size()), 1e300);
-  greatest_ = std::max(greatest_, capital_);
+  greatest_ = std::max(greatest_, std::min(greatest_sum / static_cast<double>(log_capital_.size()), 1e300));
 }
 
 size_t ExchangeabilityTest::StrongestFeature() const {

@@ -30,10 +30,6 @@ class ExchangeabilityTest {
   // Throws std::invalid_argument for a different number of features.
   void Add(std::span<const double> features);
 
-  // The greatest mean capital of a feature, divided by the number of features: now, and its greatest so far,
-  // which reaches 1 / a with probability at most a.
-  double capital() const { return capital_; }
-  double greatest_capital() const { return greatest_; }
   // Anytime-valid p-value.
   double PValue() const { return greatest_ > 1.0 ? 1.0 / greatest_ : 1.0; }
   // The feature whose gamblers have won most.
@@ -46,7 +42,9 @@ class ExchangeabilityTest {
   std::vector<std::vector<double>> seen_;  // per feature, ascending
   std::vector<double> log_capital_;        // per feature and bet
   RandomStream rng_;
-  double capital_, greatest_;
+  // The greatest mean capital of a feature so far, divided by the number of features. It reaches 1 / a with
+  // probability at most a.
+  double greatest_;
   size_t n_ = 0;
 };
 

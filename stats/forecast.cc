@@ -9,12 +9,12 @@ namespace rcme {
 namespace {
 
 ClusteredEstimate MeasureMeanScore(std::span<const Forecast> forecasts, double greatest,
-                                   double (*score)(const Forecast&), double confidence) {
+                                   double (*score)(const Forecast&)) {
   CheckForecasts(forecasts);
   std::vector<double> scores;
   scores.reserve(forecasts.size());
   for (const Forecast& forecast : forecasts) scores.push_back(score(forecast));
-  return MeasureBoundedClusteredMean(scores, {0.0, greatest}, ListClusters(forecasts), confidence);
+  return MeasureBoundedClusteredMean(scores, {0.0, greatest}, ListClusters(forecasts));
 }
 
 }  // namespace
@@ -48,25 +48,24 @@ double LogScore(double probability, bool happened, double clip) {
   return happened ? -std::log(p) : -std::log1p(-p);
 }
 
-ClusteredEstimate MeasureShareHappened(std::span<const Forecast> forecasts, double confidence) {
-  const ClusteredEstimate share = MeasureMeanScore(
-      forecasts, 1.0, [](const Forecast& f) { return f.happened ? 1.0 : 0.0; }, confidence);
+ClusteredEstimate MeasureShareHappened(std::span<const Forecast> forecasts) {
+  const ClusteredEstimate share =
+      MeasureMeanScore(forecasts, 1.0, [](const Forecast& f) { return f.happened ? 1.0 : 0.0; });
   if (share.num_clusters < share.n) return share;
   ClusteredEstimate of_single = share;
   of_single.interval =
-      ExactBinomialInterval(std::llround(share.value * static_cast<double>(share.n)), share.n, confidence);
+      ExactBinomialInterval(std::llround(share.value * static_cast<double>(share.n)), share.n);
   return of_single;
 }
 
-ClusteredEstimate MeasureBrierScore(std::span<const Forecast> forecasts, double confidence) {
-  return MeasureMeanScore(
-      forecasts, 1.0, [](const Forecast& f) { return BrierScore(f.probability, f.happened); }, confidence);
+ClusteredEstimate MeasureBrierScore(std::span<const Forecast> forecasts) {
+  return MeasureMeanScore(forecasts, 1.0,
+                          [](const Forecast& f) { return BrierScore(f.probability, f.happened); });
 }
 
-ClusteredEstimate MeasureLogScore(std::span<const Forecast> forecasts, double confidence) {
-  return MeasureMeanScore(
-      forecasts, std::max(LogScore(0.0, true), LogScore(1.0, false)),
-      [](const Forecast& f) { return LogScore(f.probability, f.happened); }, confidence);
+ClusteredEstimate MeasureLogScore(std::span<const Forecast> forecasts) {
+  return MeasureMeanScore(forecasts, std::max(LogScore(0.0, true), LogScore(1.0, false)),
+                          [](const Forecast& f) { return LogScore(f.probability, f.happened); });
 }
 
 std::vector<std::int64_t> NumberedClusters(std::span<const Forecast> forecasts) {

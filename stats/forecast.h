@@ -32,12 +32,12 @@ std::vector<std::int64_t> ListClusters(std::span<const Forecast> forecasts);
 double BrierScore(double probability, bool happened);
 double LogScore(double probability, bool happened, double clip = kProbabilityClip);
 
-// The share of events that happened, and the mean scores, of forecasts that pass CheckForecasts. Intervals
-// are clustered and valid for any law (by betting, MeasureBoundedClusteredMean); that of the share is exact
-// if each forecast is a cluster of its own.
-ClusteredEstimate MeasureShareHappened(std::span<const Forecast> forecasts, double confidence = 0.95);
-ClusteredEstimate MeasureBrierScore(std::span<const Forecast> forecasts, double confidence = 0.95);
-ClusteredEstimate MeasureLogScore(std::span<const Forecast> forecasts, double confidence = 0.95);
+// The share of events that happened, and the mean scores, of forecasts that pass CheckForecasts. The 95 %
+// intervals are clustered and valid for any law (by betting, MeasureBoundedClusteredMean); that of the share
+// is exact if each forecast is a cluster of its own.
+ClusteredEstimate MeasureShareHappened(std::span<const Forecast> forecasts);
+ClusteredEstimate MeasureBrierScore(std::span<const Forecast> forecasts);
+ClusteredEstimate MeasureLogScore(std::span<const Forecast> forecasts);
 
 // Random outcomes under correct probabilities: an event happens if the uniform number of its cluster is below
 // its probability. A forecast alone in its cluster is thus independent of the others. Forecasts of one

@@ -61,13 +61,6 @@ double NormTail(const Eigen::Vector3d& l, double r) {
 
 }  // namespace
 
-double GaussianNormTail(const Eigen::Vector3d& eigenvalues, double r) {
-  const Eigen::Vector3d l = SortEigenvalues(eigenvalues);
-  if (!(r >= 0.0)) throw std::invalid_argument("a length is NaN or negative");
-  if (l(0) == 0.0) return r > 0.0 ? 0.0 : 1.0;
-  return NormTail(l / l(0), r / std::sqrt(l(0)));
-}
-
 double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, double tail) {
   const Eigen::Vector3d sorted = SortEigenvalues(eigenvalues);
   if (!(tail >= kLeastTail && tail < 1.0))

@@ -12,8 +12,8 @@
 // their digits. The integrand is smooth and periodic, so the trapezoidal rule converges faster than any power
 // (Trefethen & Weideman 2014). The number of points is doubled until two sums agree to 1e-13, relative.
 //
-// Relative accuracy: 1e-11 of the probability and 1e-12 of the quantile, for probabilities from 1e-12 to .999
-// and any ratio of the eigenvalues. Tested against closed forms (normal, Rayleigh, Maxwell), against Imhof's
+// Relative accuracy of the quantile: 1e-12, for probabilities from 1e-12 to .999 and any ratio of the
+// eigenvalues. Tested against closed forms (normal, Rayleigh, Maxwell), against Imhof's
 // (1961) integral and by simulation.
 #pragma once
 
@@ -21,12 +21,8 @@
 
 namespace rcme {
 
-// P(|e| > r). Throws std::invalid_argument with the reason if an eigenvalue is not finite or negative, or r
-// is NaN or negative.
-double GaussianNormTail(const Eigen::Vector3d& eigenvalues, double r);
-
-// The r with P(|e| > r) = tail; 0 if e is 0. Throws std::invalid_argument as above, and for a tail outside of
-// [1e-300, 1).
+// The r with P(|e| > r) = tail; 0 if e is 0. Throws std::invalid_argument with the reason if an eigenvalue is
+// not finite or negative, or tail is outside of [1e-300, 1).
 double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, double tail);
 
 }  // namespace rcme

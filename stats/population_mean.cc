@@ -66,7 +66,6 @@ PopulationMean MeasurePopulationMean(std::span<const Moments> given, ConditionWe
                                      double confidence) {
   const std::vector<WeightedCondition> conditions = WithWeights(given, weights);
   PopulationMean mean;
-  mean.num_conditions = std::ssize(conditions);
   mean.value = mean.standard_error = mean.effective_n = kNaN;
   mean.interval = mean.of_these_conditions = {-kInfinity, kInfinity};
   if (conditions.empty()) return mean;

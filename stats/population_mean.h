@@ -30,7 +30,7 @@ struct PopulationMean {
   // The number of independent trials with the same information: with s^2 = sum a_i ((x_i - value)^2 + s_i^2),
   // s^2 / V, at most n. NaN if V = 0 or a condition has one number.
   double effective_n = 0.0;
-  std::int64_t n = 0, num_conditions = 0;
+  std::int64_t n = 0;
 };
 
 // From the numbers of each condition; conditions without numbers do not count.

@@ -72,10 +72,11 @@ Groups GroupsWithOutcomes(std::span<const Forecast> forecasts) {
 }
 
 // The central range of the samples (in any order): each end leaves out less than the tail.
-ConsistencyPoint ComputeConsistencyPoint(double probability, std::vector<double> samples, double confidence) {
+ConsistencyPoint ComputeConsistencyPoint(double probability, std::vector<double> samples) {
+  constexpr double kConfidence = 0.95;
   std::sort(samples.begin(), samples.end());
   const auto num_outside =
-      static_cast<size_t>(0.5 * (1.0 - confidence) * static_cast<double>(samples.size() + 1));
+      static_cast<size_t>(0.5 * (1.0 - kConfidence) * static_cast<double>(samples.size() + 1));
   const size_t skipped = num_outside > 0 ? num_outside - 1 : 0;
   return {probability, samples[skipped], samples[samples.size() - 1 - skipped]};
 }
@@ -101,7 +102,7 @@ BrierDecomposition DecomposeBrierScore(std::span<const Forecast> forecasts) {
 }
 
 CalibrationCheck CheckCalibration(std::span<const Forecast> forecasts, std::span<const double> probabilities,
-                                  int num_samples, RandomStream& rng, double confidence) {
+                                  int num_samples, RandomStream& rng) {
   if (num_samples < 1) throw std::invalid_argument("calibration: at least one sample is needed");
   Groups groups = GroupsWithOutcomes(forecasts);
   const double miscalibration = groups.Decompose().miscalibration;
@@ -123,8 +124,7 @@ CalibrationCheck CheckCalibration(std::span<const Forecast> forecasts, std::span
     for (size_t k = 0; k < at.size(); ++k) curves[k].push_back(curve.At(at[k]));
   }
   check.p_value = (1.0 + num_as_great) / (1.0 + num_samples);
-  for (size_t k = 0; k < at.size(); ++k)
-    check.band.push_back(ComputeConsistencyPoint(at[k], curves[k], confidence));
+  for (size_t k = 0; k < at.size(); ++k) check.band.push_back(ComputeConsistencyPoint(at[k], curves[k]));
   return check;
 }
 

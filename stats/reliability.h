@@ -37,7 +37,7 @@ struct ConsistencyPoint {
 };
 struct CalibrationCheck {
   // At the requested probabilities that lie between the least and the greatest forecast. At a single point
-  // the curve of correct probabilities is outside in 1 - confidence of the samples; at some point, more
+  // the curve of correct probabilities is outside in 5 % of the samples; at some point, more
   // often.
   std::vector<ConsistencyPoint> band;
   // The mean miscalibration of correct probabilities, which is above 0. The p-value is the share of their
@@ -49,6 +49,6 @@ struct CalibrationCheck {
 // By `num_samples` samples of outcomes drawn from the probabilities themselves. (The paper also redraws the
 // forecasts; here they are fixed, so the test is exact.)
 CalibrationCheck CheckCalibration(std::span<const Forecast> forecasts, std::span<const double> probabilities,
-                                  int num_samples, RandomStream& rng, double confidence = 0.95);
+                                  int num_samples, RandomStream& rng);
 
 }  // namespace rcme

@@ -122,23 +122,24 @@ SharedMemberMean MeasureSharedMemberMean(std::span<const PairValue> pairs, doubl
   return mean;
 }
 
-SharedGroupMean MeasureSharedGroupMean(std::span<const GroupValue> groups, double confidence) {
+SharedGroupMean MeasureSharedGroupMean(std::span<const GroupValue> groups) {
   SharedGroupMean mean = AverageGroups(groups);
   mean.interval = {-kInfinity, kInfinity};
   if (mean.num_apart < 2) return mean;
   double squares = 0.0;
   for (const GroupValue& group : groups) squares += (group.value - mean.value) * (group.value - mean.value);
   const double n = static_cast<double>(mean.n), apart = static_cast<double>(mean.num_apart);
-  const double half = StudentQuantile(static_cast<int>(mean.num_apart) - 1, 0.5 * (1.0 + confidence)) *
-                      std::sqrt(squares / n / (apart - 1.0));
+  const double half =
+      StudentQuantile(static_cast<int>(mean.num_apart) - 1, 0.975) * std::sqrt(squares / n / (apart - 1.0));
   mean.interval = {mean.value - half, mean.value + half};
   return mean;
 }
 
-SharedGroupMean MeasureSharedGroupRate(std::span<const GroupValue> groups, double confidence) {
+SharedGroupMean MeasureSharedGroupRate(std::span<const GroupValue> groups) {
+  constexpr double kConfidence = 0.95;
   SharedGroupMean rate = AverageGroups(groups);
   const double apart = static_cast<double>(rate.num_apart);
-  rate.interval = groups.empty() ? Interval{0.0, 1.0} : BetaInterval(rate.value * apart, apart, confidence);
+  rate.interval = groups.empty() ? Interval{0.0, 1.0} : BetaInterval(rate.value * apart, apart, kConfidence);
   return rate;
 }
 

@@ -68,15 +68,15 @@ struct SharedGroupMean {
   Interval interval;
 };
 
-// The mean over groups that share members, with its interval. Groups that are runs of L consecutive members
-// fall into L classes whose groups have no common member, and the mean over all groups is the mean of the
-// class means. Its variance is therefore at most that of one class, sigma^2 / a with a = num_apart, whatever
-// the correlation of groups that share a member. Both intervals assume this bound.
+// The mean over groups that share members, with its 95 % interval. Groups that are runs of L consecutive
+// members fall into L classes whose groups have no common member, and the mean over all groups is the mean of
+// the class means. Its variance is therefore at most that of one class, sigma^2 / a with a = num_apart,
+// whatever the correlation of groups that share a member. Both intervals assume this bound.
 //   a mean   value +- t_(a-1) s / sqrt(a); s^2 = a / (a - 1) sum u_i^2 / n, since the deviations u_i from
 //            the mean lack the variance of the mean itself, at most sigma^2 / a. Unbounded if num_apart < 2.
 //   a rate   of values 0 and 1: the exact binomial interval of a trials at the same rate (Korn & Graubard
 //            1998)
-SharedGroupMean MeasureSharedGroupMean(std::span<const GroupValue> groups, double confidence = 0.95);
-SharedGroupMean MeasureSharedGroupRate(std::span<const GroupValue> groups, double confidence = 0.95);
+SharedGroupMean MeasureSharedGroupMean(std::span<const GroupValue> groups);
+SharedGroupMean MeasureSharedGroupRate(std::span<const GroupValue> groups);
 
 }  // namespace rcme

@@ -12,15 +12,15 @@ namespace rcme {
 namespace {
 
 ClusteredEstimate EstimateNotNegative(double value, const std::vector<double>& influences,
-                                      const std::vector<std::int64_t>& clusters, double confidence) {
-  ClusteredEstimate estimate = EstimateFromInfluences(value, influences, clusters, confidence);
+                                      const std::vector<std::int64_t>& clusters) {
+  ClusteredEstimate estimate = EstimateFromInfluences(value, influences, clusters);
   estimate.interval.lower = std::max(estimate.interval.lower, 0.0);
   return estimate;
 }
 
 }  // namespace
 
-Sparsification MeasureSparsification(std::span<const StatedError> errors, double confidence) {
+Sparsification MeasureSparsification(std::span<const StatedError> errors) {
   std::vector<double> by_stated, by_error, losses;
   std::vector<std::int64_t> clusters;
   for (const StatedError& error : errors) {
@@ -44,8 +44,8 @@ Sparsification MeasureSparsification(std::span<const StatedError> errors, double
     influences.push_back((stated.influences[i] - oracle.influences[i] - ause * of_mean) / mean);
     random_influences.push_back((of_mean - oracle.influences[i] - ause_random * of_mean) / mean);
   }
-  return {EstimateNotNegative(ause, influences, clusters, confidence),
-          EstimateNotNegative(ause_random, random_influences, clusters, confidence)};
+  return {EstimateNotNegative(ause, influences, clusters),
+          EstimateNotNegative(ause_random, random_influences, clusters)};
 }
 
 }  // namespace rcme

@@ -28,8 +28,8 @@ struct Sparsification {
 // uncertainty) and A_o (by error) and the mean m of ranked_loss.h, an error changes D = (A_s - A_o) / m by
 //   (dA_s - dA_o - D dm) / m.
 // The standard error is that of the cluster sums of these influences, to first order that of a bootstrap over
-// clusters. Intervals are Student's, with no end below 0. Throws std::invalid_argument without errors, and
-// for one that is negative or not finite.
-Sparsification MeasureSparsification(std::span<const StatedError> errors, double confidence = 0.95);
+// clusters. The 95 % intervals are Student's, with no end below 0. Throws std::invalid_argument without
+// errors, and for one that is negative or not finite.
+Sparsification MeasureSparsification(std::span<const StatedError> errors);
 
 }  // namespace rcme

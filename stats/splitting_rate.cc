@@ -22,13 +22,6 @@ double LeastAcceptance(const std::vector<SplittingReplicate>& replicates) {
   return least;
 }
 
-double MedianAncestors(const std::vector<SplittingReplicate>& replicates) {
-  std::vector<int> numbers;
-  for (const SplittingReplicate& replicate : replicates) numbers.push_back(replicate.num_ancestors);
-  std::ranges::nth_element(numbers, numbers.begin() + std::ssize(numbers) / 2);
-  return numbers[numbers.size() / 2];
-}
-
 }  // namespace
 
 std::string Name(SplittingDoubt doubt) {
@@ -48,7 +41,7 @@ std::string Name(SplittingDoubt doubt) {
 }
 
 SplittingRate EstimateSplittingRate(const SplittingPilot& pilot,
-                                    const std::vector<SplittingReplicate>& replicates, double confidence) {
+                                    const std::vector<SplittingReplicate>& replicates) {
   SplittingRate rate;
   rate.num_values = pilot.num_values;
   if (pilot.end != PilotEnd::kReached) {
@@ -70,10 +63,9 @@ SplittingRate EstimateSplittingRate(const SplittingPilot& pilot,
   rate.standard_error = estimates.standard_error();
   rate.relative_spread = rate.estimate > 0.0 ? std::sqrt(estimates.variance()) / rate.estimate : 0.0;
   rate.least_acceptance = LeastAcceptance(replicates);
-  rate.num_ancestors = MedianAncestors(replicates);
-  rate.unseen_up_to = ExactBinomialInterval(num_drawn_events, num_drawn, confidence).upper;
+  rate.unseen_up_to = ExactBinomialInterval(num_drawn_events, num_drawn).upper;
   const bool is_lost = logarithms.n() < estimates.n();
-  rate.interval = is_lost ? Interval{0.0, 1.0} : LognormalMeanInterval(logarithms, confidence);
+  rate.interval = is_lost ? Interval{0.0, 1.0} : LognormalMeanInterval(logarithms);
   rate.interval.upper = std::min(1.0, rate.interval.upper);
   const Interval drawn = ExactBinomialInterval(num_drawn_events, num_drawn, 1.0 - kDrawsSignificanceLevel);
   if (is_lost) rate.doubts.push_back(SplittingDoubt::kReplicateLost);

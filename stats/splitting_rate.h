@@ -32,13 +32,12 @@ struct SplittingRate {
   double estimate = 0.0;  // mean of the replicates: unbiased; NaN without levels
   double standard_error = 0.0;
   double relative_spread = 0.0;  // standard deviation of the replicates over their mean
-  Interval interval;             // stats/lognormal_mean.h; [0, 1] if undefined
-  // The upper end of the exact interval from the initial particles alone. Failures of a kind to which no
+  Interval interval;             // 95 % (stats/lognormal_mean.h); [0, 1] if undefined
+  // The upper end of the exact 95 % interval from the initial particles alone. Failures of a kind to which no
   // level leads may have any rate up to this and be missed.
   double unseen_up_to = 1.0;
   std::int64_t num_values = 0;  // values computed, including the pilot's
   double least_acceptance = 1.0;
-  double num_ancestors = 0.0;  // median over the replicates
   std::vector<SplittingDoubt> doubts;
 
   bool IsTrusted() const { return doubts.empty(); }
@@ -46,7 +45,6 @@ struct SplittingRate {
 
 // Takes at least two replicates; none if the pilot found no levels.
 SplittingRate EstimateSplittingRate(const SplittingPilot& pilot,
-                                    const std::vector<SplittingReplicate>& replicates,
-                                    double confidence = 0.95);
+                                    const std::vector<SplittingReplicate>& replicates);
 
 }  // namespace rcme

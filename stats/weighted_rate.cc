@@ -42,7 +42,7 @@ void WeightedEvents::Merge(const WeightedEvents& other) {
   max_event_weight = std::max(max_event_weight, other.max_event_weight);
 }
 
-WeightedRate EstimateWeightedRate(const WeightedEvents& events, double confidence) {
+WeightedRate EstimateWeightedRate(const WeightedEvents& events) {
   WeightedRate rate;
   if (events.num_trials == 0) return {0.0, kInfinity, 0.0, {0.0, kInfinity}, kInfinity};
   const double n = static_cast<double>(events.num_trials);
@@ -53,10 +53,10 @@ WeightedRate EstimateWeightedRate(const WeightedEvents& events, double confidenc
   if (events.sum_squared_weights > 0.0) {
     rate.num_effective_events = events.sum_weights * events.sum_weights / events.sum_squared_weights;
   }
-  const double tail = 0.5 * (1.0 - confidence);
+  constexpr double kTail = 0.025;
   const double m = events.sum_weights > 0.0 ? events.max_event_weight : 1.0;
-  rate.interval = {LowerEnd(events, tail) / n, UpperEnd(events, m, tail) / n};
-  rate.cautious_upper = UpperEnd(events, std::max(m, events.max_weight), tail) / n;
+  rate.interval = {LowerEnd(events, kTail) / n, UpperEnd(events, m, kTail) / n};
+  rate.cautious_upper = UpperEnd(events, std::max(m, events.max_weight), kTail) / n;
   return rate;
 }
 

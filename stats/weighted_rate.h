@@ -27,8 +27,8 @@ struct WeightedRate {
   double cautious_upper = 0.0;  // upper end without this assumption
 };
 
-// The interval is the gamma interval of Fay & Feuer (1997) for a weighted sum of Poisson counts. With y = sum
-// w, v = sum w^2 over the events and G(shape, scale) a gamma law,
+// The 95 % interval is the gamma interval of Fay & Feuer (1997) for a weighted sum of Poisson counts. With y
+// = sum w, v = sum w^2 over the events and G(shape, scale) a gamma law,
 //   lower: tail of G(y^2 / v, v / y),  upper: tail of G((y + m)^2 / (v + m^2), (v + m^2) / (y + m)),
 // both divided by n. These laws have the mean and the variance of the sum, for the upper end after one more
 // event of weight m. At equal weights this is the exact interval of a Poisson count (Garwood 1936).
@@ -47,6 +47,6 @@ struct WeightedRate {
 //   1e-2 in 96 %, 1e-4 in 88 %, 1e-6 in 66 % at s = 1,
 //   1e-2 in 95 %, 1e-4 in 56 %, 1e-6 in 13 % at s = 0.5:
 // use it if the event is known to depend strongly on the tilted quantity. [0, infinity] without trials.
-WeightedRate EstimateWeightedRate(const WeightedEvents& events, double confidence = 0.95);
+WeightedRate EstimateWeightedRate(const WeightedEvents& events);
 
 }  // namespace rcme

@@ -138,6 +138,15 @@ double Likeness(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   return 0.5 * std::abs(a.cwiseProduct(b).sum());
 }
 
+// Whether one of the poses of E agrees with the prior. The motion of a minimal sample is taken to be off by 3
+// deg in each coordinate.
+bool IsNearPrior(const MotionPrior& prior, const Eigen::Matrix3d& E) {
+  const Matrix5d spread = kSampleSdRad * kSampleSdRad * Matrix5d::Identity();
+  return std::ranges::any_of(PosesFromEssential(ProjectToEssential(E)), [&](const RelativePose& pose) {
+    return ComputePriorTail(prior, pose, spread) > kLeastTail;
+  });
+}
+
 // Selects half of `count` as the best distinct ones, then fills up with those far from all selected, then
 // adds those near the prior.
 std::vector<ScoredEssential> SelectDistinct(SearchLists* lists, const RayScale& scale, size_t count,
@@ -168,13 +177,6 @@ std::vector<ScoredEssential> SelectDistinct(SearchLists* lists, const RayScale& 
 }
 
 }  // namespace
-
-bool IsNearPrior(const MotionPrior& prior, const Eigen::Matrix3d& E) {
-  const Matrix5d spread = kSampleSdRad * kSampleSdRad * Matrix5d::Identity();
-  return std::ranges::any_of(PosesFromEssential(ProjectToEssential(E)), [&](const RelativePose& pose) {
-    return ComputePriorTail(prior, pose, spread) > kLeastTail;
-  });
-}
 
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
                                   const CalibratedOptions& options, RandomStream& rng, double soft_scale,

@@ -32,15 +32,11 @@ struct HypothesisSearch {
 // is scored on the first 64 matches, whose order must be random; the best of a round are scored on all.
 //
 // Returns the best `options.num_candidates` distinct hypotheses; the second half of them also lie far from
-// all others. With a prior, returns half as many more: the best that are near it (IsNearPrior), because the
-// camera's motion may explain fewer matches than another one. The samples are the same with and without a
-// prior.
+// all others. With a prior, returns half as many more: the best that agree with it, because the camera's
+// motion may explain fewer matches than another one. For this a sample's motion is taken to be off by 3 deg
+// in each coordinate. The samples are the same with and without a prior.
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
                                   const CalibratedOptions& options, RandomStream& rng,
                                   double soft_scale = kSoftScale, const MotionPrior* prior = nullptr);
-
-// Whether one of the poses of E agrees with the prior. The motion of a minimal sample is taken to be off by 3
-// deg in each coordinate.
-bool IsNearPrior(const MotionPrior& prior, const Eigen::Matrix3d& E);
 
 }  // namespace rcme

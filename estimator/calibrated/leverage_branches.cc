@@ -6,6 +6,7 @@ namespace rcme {
 namespace {
 
 constexpr int kBranchSteps = 12;
+constexpr size_t kMostBranches = 3;
 
 std::vector<int> InfluentialMatches(const Explanation& explanation) {
   std::vector<int> found;

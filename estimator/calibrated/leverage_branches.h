@@ -10,10 +10,9 @@
 namespace rcme {
 
 inline constexpr double kLargeLeverage = 0.25;
-inline constexpr size_t kMostBranches = 3;
 
 // The converged fits without matches of leverage above kLargeLeverage: one fit without each of the
-// kMostBranches largest, then one without all of these.
+// three largest, then one without all of these.
 std::vector<Mode> LeverageBranches(const MatchBlocks& matches, const MixturePrior& prior, const Mode& mode,
                                    const Explanation& explanation);
 

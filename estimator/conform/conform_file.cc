@@ -22,6 +22,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kConformFormat = "rcme conform 2";
+
 // JSON has only finite numbers.
 Json FactorAsJson(double factor) { return std::isfinite(factor) ? Json(factor) : Json("all motions"); }
 

@@ -9,7 +9,6 @@
 
 namespace rcme {
 
-inline constexpr const char* kConformFormat = "rcme conform 2";
 inline constexpr size_t kMaxConformBytes = size_t{4} << 20;
 
 struct ConformFile {

@@ -88,7 +88,6 @@ struct ConformVerdict {
 class ConformJudge {
  public:
   explicit ConformJudge(ConformRule rule);
-  const ConformRule& rule() const { return rule_; }
 
   ConformVerdict Judge(const VisibleFeatures& features) const;
   // Whether there are enough answers to call one strange.

@@ -77,13 +77,6 @@ double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-Eigen::Matrix<double, 7, 1> QuaternionAndTranslation(const RelativePose& pose) {
-  const Eigen::Quaterniond q(pose.R);
-  Eigen::Matrix<double, 7, 1> p;
-  p << q.w(), q.x(), q.y(), q.z(), pose.t;
-  return p;
-}
-
 Eigen::Matrix<double, 7, 5> QuaternionAndTranslationJacobian(const RelativePose& pose) {
   // Exp(w) R has the quaternion [1, w/2] * q to first order.
   const Eigen::Quaterniond q(pose.R);

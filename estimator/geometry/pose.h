@@ -44,9 +44,8 @@ Matrix5d TransportTangent(const RelativePose& from, const RelativePose& to);
 double RotationAngleBetween(const Eigen::Matrix3d& R_a, const Eigen::Matrix3d& R_b);
 double AngleBetween(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 
-// The paper's p = [q (w, x, y, z); t] and its 7x5 Jacobian with respect to the tangent: Sigma_p of the paper
+// The 7x5 Jacobian of the paper's p = [q (w, x, y, z); t] with respect to the tangent: Sigma_p of the paper
 // (7x7, rank 5) is J Sigma_5 J'. Never invert it.
-Eigen::Matrix<double, 7, 1> QuaternionAndTranslation(const RelativePose& pose);
 Eigen::Matrix<double, 7, 5> QuaternionAndTranslationJacobian(const RelativePose& pose);
 
 }  // namespace rcme

@@ -19,6 +19,7 @@
 namespace rcme {
 namespace {
 
+constexpr double kShiftLevel = 0.05;
 constexpr size_t kMostRefusals = 2000;  // a longer reference is thinned to about so many
 
 // Shuffled: the test would take the order by conditions for a shift.
@@ -91,6 +92,16 @@ std::vector<std::uint64_t> NamesOfProblems(const StudyPlan& plan, const Conditio
   return {hash.value()};
 }
 
+// Names the problems of a plan: a simulated condition by its random streams, a real pair by its matches.
+// Ascending. Trials begin at 0, so that plans with a name in common have problems in common.
+std::vector<std::string> ConformProblems(const StudyPlan& plan) {
+  std::set<std::string> names;
+  for (const Condition& condition : plan.conditions)
+    for (const std::uint64_t name : NamesOfProblems(plan, condition))
+      names.insert(fmt::format("{:016x}", name));
+  return {names.begin(), names.end()};
+}
+
 }  // namespace
 
 ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers) {
@@ -104,14 +115,6 @@ ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers) {
   if (!answers.rows.empty())
     finding.strange_share = static_cast<double>(num_strange) / static_cast<double>(answers.rows.size());
   return finding;
-}
-
-std::vector<std::string> ConformProblems(const StudyPlan& plan) {
-  std::set<std::string> names;
-  for (const Condition& condition : plan.conditions)
-    for (const std::uint64_t name : NamesOfProblems(plan, condition))
-      names.insert(fmt::format("{:016x}", name));
-  return {names.begin(), names.end()};
 }
 
 ConformRule LoadToCheck(const StudyPlan& plan, const std::string& path) {

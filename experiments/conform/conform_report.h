@@ -17,11 +17,10 @@ struct ShiftFinding {
   std::int64_t num_looked_at = 0;             // answers tested, in random order, one of each group
   bool could_notice = false;                  // enough answers to notice the greatest possible shift
   double p_value = 1.0;                       // valid at every look
-  std::optional<std::int64_t> noticed_after;  // answers (for refusals: problems), at level kShiftLevel
+  std::optional<std::int64_t> noticed_after;  // answers (for refusals: problems), at level .05
   std::string feature;                        // the one that differs most, or "refusals"
   double strange_share = 0.0;  // share of the answers called strange; about kStrangeLevel without a shift
 };
-inline constexpr double kShiftLevel = 0.05;
 
 struct ConformReport {
   ConformRule rule;
@@ -39,10 +38,6 @@ struct ConformReport {
 // Runs two tests, each at half the level: one of the visible features (each at an equal part of that half),
 // one of the refusal rate.
 ShiftFinding LookForShift(const ConformRule& rule, const AnswerRows& answers);
-
-// Names the problems of a plan: a simulated condition by its random streams, a real pair by its matches.
-// Ascending. Trials begin at 0, so that plans with a name in common have problems in common.
-std::vector<std::string> ConformProblems(const StudyPlan& plan);
 
 // LoadToCheck reads a rule to check; LoadModels reads a rule whose models are to be used again (nothing for
 // an empty path). Both throw InputError as ReadConformFile does, and if the rule was calibrated with any of

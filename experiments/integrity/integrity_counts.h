@@ -65,9 +65,8 @@ double IntegrityEdgeDeg(int k);
 int FindIntegrityBin(double angle_deg);
 
 // How the counts depend on the error of an inexact truth (Truth::sd). The tally takes the truth as exact.
-// Here each truth is moved by kTruthReachSds of its standard deviations towards the answer (`least`) or away
-// from it (`most`). An exact truth is not moved.
-inline constexpr double kTruthReachSds = 2.0;
+// Here each truth is moved by kTruthErrorSds (trial/truth_error.h) of its standard deviations towards the
+// answer (`least`) or away from it (`most`). An exact truth is not moved.
 struct TruthSensitivity {
   struct Range {
     std::int64_t least = 0, most = 0;

@@ -11,6 +11,8 @@
 namespace rcme {
 namespace {
 
+constexpr double kTimeTolerance = 0.03;
+
 // One point of the search.
 struct Timed {
   double effort, ms;

@@ -27,13 +27,12 @@ std::vector<TimedProblem> TimedProblems(const StudyPlan& plan, std::uint32_t fir
 Moments TimeCalls(const EstimatorSpec& spec, const std::vector<TimedProblem>& problems);
 
 enum class EffortEnd {
-  kReached,     // within kTimeTolerance of the time, or no other effort lies between the two nearest
+  kReached,     // within 3 % of the time, or no other effort lies between the two nearest
   kNoEffort,    // no option sets how much work a call does
   kTooSlow,     // even the least effort takes longer
   kOwnRule,     // more effort does not take longer, because the estimator stops by its own rule
   kAtTheLimit,  // the greatest effort that the option allows takes less time
 };
-inline constexpr double kTimeTolerance = 0.03;
 
 struct FoundEffort {
   EffortEnd end = EffortEnd::kNoEffort;
@@ -41,7 +40,7 @@ struct FoundEffort {
   std::int64_t effort = 0;
 };
 
-// Searches the effort whose mean time over the problems is `time_ms`, within kTimeTolerance, by the secant
+// Searches the effort whose mean time over the problems is `time_ms`, within 3 %, by the secant
 // method in logarithms within a bracket. Times vary from run to run, so the last digits of the effort may
 // vary too.
 FoundEffort FindEffort(const EstimatorSpec& spec, const std::vector<TimedProblem>& problems, double time_ms);

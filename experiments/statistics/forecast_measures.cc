@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-constexpr int kNumHistogramBins = 20;
+constexpr int kNumHistogramBins = 20, kNumCalibrationSamples = 399;
 // For outcomes drawn here; the streams of trials have other purposes (data_source.h).
 constexpr std::uint32_t kPurposeOfDrawnOutcomes = 200, kPurposeOfDrawnConditions = 201;
 
@@ -63,7 +63,6 @@ class ClusterCounts {
     ++n_;
     num_events_ += has_happened;
   }
-  std::int64_t n() const { return n_; }
   std::int64_t num_events() const { return num_events_; }
   // Exact if each trial is a cluster of its own and not the draw of a population.
   Interval FindInterval(bool is_of_population) const {

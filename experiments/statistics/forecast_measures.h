@@ -17,7 +17,6 @@
 namespace rcme {
 
 inline constexpr int kNumCalibrationBins = 10;
-inline constexpr int kNumCalibrationSamples = 399;
 
 // The measures of one estimator in one group, over its answers. Intervals are by scenes; if the conditions
 // are draws of a population, they are by draws and for the population. If no answer has a probability, only

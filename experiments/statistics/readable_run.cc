@@ -91,12 +91,7 @@ RunDescription JoinDescriptions(const RunDescription& first, const std::vector<s
   return joined;
 }
 
-}  // namespace
-
-ReadableRun ReadRun(const ResultStore& store) {
-  return {store.Description(), [&store](const VisitTrial& visit) { store.ForEachTrial(visit); }};
-}
-
+// The part of a run's identity on which its problems depend: all except its name and estimators.
 std::string IdentityOfProblems(const std::string& identity) {
   std::string kept;
   bool is_left_out = false;
@@ -106,6 +101,12 @@ std::string IdentityOfProblems(const std::string& identity) {
     if (!is_left_out) kept += line + "\n";
   }
   return kept;
+}
+
+}  // namespace
+
+ReadableRun ReadRun(const ResultStore& store) {
+  return {store.Description(), [&store](const VisitTrial& visit) { store.ForEachTrial(visit); }};
 }
 
 void TellApart(std::string* old_label, std::string* new_label) {

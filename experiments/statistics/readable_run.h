@@ -30,9 +30,6 @@ ReadableRun ReadRun(const ResultStore& store);
 ReadableRun JoinRuns(const ResultStore& first, const std::vector<size_t>& of_first, const ResultStore& second,
                      const std::vector<size_t>& of_second);
 
-// Returns the part of a run's identity on which its problems depend: all except its name and estimators.
-std::string IdentityOfProblems(const std::string& identity);
-
 // Makes two labels different by appending "_old" and "_new" if they are equal.
 void TellApart(std::string* old_label, std::string* new_label);
 

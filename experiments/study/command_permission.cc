@@ -15,6 +15,8 @@ namespace {
 constexpr const char *kProcess = "process", *kCommand = "command", *kNoCommand = "none",
                      *kConformFile = "file";
 
+constexpr size_t kMaxCommandBytes = 2000;  // short enough for a message to show all of it
+
 // The whole command; characters that a terminal would not show as they are become escapes.
 std::string ShownCommand(const std::string& command) {
   return fmt::format("'{}'", Printable(command, kMaxCommandBytes));

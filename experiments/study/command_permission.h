@@ -11,8 +11,6 @@
 
 namespace rcme {
 
-inline constexpr size_t kMaxCommandBytes = 2000;  // short enough for a message to show all of it
-
 // Returns the command that the estimator runs, or that the estimator which it conforms runs; empty if none.
 std::string FindCommand(const EstimatorSpec& spec);
 
@@ -20,7 +18,7 @@ std::string FindCommand(const EstimatorSpec& spec);
 bool IsCommand(const EstimatorSpec& spec, const std::string& option);
 
 // Records that the estimator was read from a file, at `place` ("study.yaml:7"). Throws InputError if its
-// command is longer than kMaxCommandBytes.
+// command is longer than 2,000 bytes.
 void NoteCommandPlace(const std::string& place, EstimatorSpec* spec);
 
 // SetOptions for options that the caller gives directly: a command among them needs no permission. A command

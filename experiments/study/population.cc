@@ -135,6 +135,10 @@ class Drawer {
   std::map<std::string, std::map<std::string, bool>> keys_with_;
 };
 
+int CountDraws(const Population& population) {
+  return population.draws.empty() ? population.number : static_cast<int>(population.draws.size());
+}
+
 }  // namespace
 
 std::vector<std::string> ListDrawnKeys(const Population& population) {
@@ -158,10 +162,6 @@ std::optional<int> FindDraw(const std::vector<std::string>& factors, const std::
   for (size_t f = 0; f < factors.size(); ++f)
     if (factors[f] == kDrawFactor) return std::stoi(levels[f]);
   return std::nullopt;
-}
-
-int CountDraws(const Population& population) {
-  return population.draws.empty() ? population.number : static_cast<int>(population.draws.size());
 }
 
 std::string DescribePopulationIdentity(const Population& population,

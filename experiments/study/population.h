@@ -62,10 +62,6 @@ struct Population {
 // Returns the keys in the order of their axes, each once.
 std::vector<std::string> ListDrawnKeys(const Population& population);
 
-// Returns the number of draws. The numbers of chosen draws of sobol or random may be beyond
-// Population::number.
-int CountDraws(const Population& population);
-
 // Returns the number of the draw that a condition comes from; nothing if there is no factor kDrawFactor.
 std::optional<int> FindDraw(const std::vector<std::string>& factors, const std::vector<std::string>& levels);
 

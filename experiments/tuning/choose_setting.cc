@@ -31,6 +31,11 @@ double Objective(const Tuning& tuning, const SettingCount& count) {
   return RateOrOne(tuning.target == TuneTarget::kFalseRefusal ? count.Failure() : count.Refusal());
 }
 
+// Whether the target limits refusals as well.
+bool HasRefusalLimit(const Tuning& tuning) {
+  return LimitsFailures(tuning.target) && tuning.max_refusal < 1.0;
+}
+
 // The p-value of "the setting violates the target".
 double PValue(const Tuning& tuning, const SettingCount& count) {
   const double p = ExcessPValue(TargetedCount(tuning, count), tuning.at_most);
@@ -155,10 +160,6 @@ Verdict DecideSetting(const ErrorCount& count, double at_most) {
 ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count) {
   if (tuning.target == TuneTarget::kFalseRefusal) return count.FalseRefusal();
   return tuning.target == TuneTarget::kAcceptedFailure ? count.AcceptedFailure() : count.Failure();
-}
-
-bool HasRefusalLimit(const Tuning& tuning) {
-  return LimitsFailures(tuning.target) && tuning.max_refusal < 1.0;
 }
 
 Verdict DecideSetting(const Tuning& tuning, const SettingCount& count) {

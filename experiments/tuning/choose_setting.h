@@ -32,9 +32,6 @@ struct Choice {
 // The count that the target limits: false refusals, failures, or failures among answers that are not refused.
 ErrorCount TargetedCount(const Tuning& tuning, const SettingCount& count);
 
-// Whether the target limits refusals as well.
-bool HasRefusalLimit(const Tuning& tuning);
-
 // Whether a setting meets the target on the trials of a count. It holds if the whole 95 % interval of every
 // limited rate lies below its limit; it does not hold if one lies above.
 Verdict DecideSetting(const Tuning& tuning, const SettingCount& count);

@@ -5,6 +5,7 @@ import re
 import subprocess
 
 NUMBER = re.compile(r"a (whole )?number(?: in \[([^,\]]+), ([^\]]+)\]| >= (\S+))?")
+WIDTH = 110
 CHOICES = ["scene", "cameras", "motion", "noise", "outliers"]
 LISTS_OF_CHOICES = dict(zip(CHOICES, ["scenes", "cameras", "motions", "noise", "outliers"]))
 
@@ -118,5 +119,18 @@ def study_schema(program):
             "$defs": {"data": closed(data), "estimator": estimator_schema(lists, blocks)}}
 
 
+def json_text(value, depth=0, key=""):
+    """JSON with one space a level; a value stands on one line with its key if it fits in WIDTH columns."""
+    begin = " " * depth + key
+    line = begin + json.dumps(value, ensure_ascii=False)
+    if not isinstance(value, (dict, list)) or len(line) < WIDTH:  # a column for the comma
+        return line
+    if isinstance(value, dict):
+        ends, members = "{}", [json_text(each, depth + 1, f"{json.dumps(name, ensure_ascii=False)}: ") for name, each in value.items()]
+    else:
+        ends, members = "[]", [json_text(each, depth + 1) for each in value]
+    return begin + ends[0] + "\n" + ",\n".join(members) + "\n" + " " * depth + ends[1]
+
+
 def study_schema_text(program):
-    return json.dumps(study_schema(program), indent=1, ensure_ascii=False) + "\n"
+    return json_text(study_schema(program)) + "\n"

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "stats/distributions.h"
+#include "stats/moments.h"
 #include "stats/order_statistic.h"
 #include "stats/random.h"
 #include "stats/student_scales.h"
@@ -18,60 +19,6 @@
 
 namespace rcme {
 namespace {
-
-TEST(Accuracy, KnownAnswers) {
-  // python3 tests/known_answers/samples.py
-  Accuracy accuracy, rest;
-  for (const double error : {3.0, -1.0, 4.0}) accuracy.Add(error);
-  for (const double error : {1.0, -5.0, 9.0, 2.0, -6.0}) rest.Add(error);
-  accuracy.Merge(rest);
-  EXPECT_EQ(accuracy.n(), 8);
-  EXPECT_NEAR(accuracy.bias().value, 0.875, 1e-12);
-  EXPECT_NEAR(accuracy.bias().standard_error, 1.726241789057, 1e-11);
-  EXPECT_NEAR(accuracy.empirical_standard_error().value, 4.882549100038, 1e-11);
-  EXPECT_NEAR(accuracy.empirical_standard_error().standard_error, 1.304916136175, 1e-11);
-  EXPECT_NEAR(accuracy.mean_squared_error().value, 21.625, 1e-12);
-  EXPECT_NEAR(accuracy.mean_squared_error().standard_error, 9.539275017376, 1e-11);
-  EXPECT_NEAR(accuracy.root_mean_squared_error().value, 4.650268809435, 1e-11);
-  EXPECT_NEAR(accuracy.root_mean_squared_error().standard_error, 1.025669204114, 1e-11);
-}
-
-TEST(Accuracy, StandardErrorsAreTheSpreadOverRepetitions) {
-  // Normal errors of bias 0.5 and sigma 2, n = 500, 5000 repetitions: value +- 1.96 standard errors holds the
-  // truth in 95 % of them. A standard error 10 % too small would give 0.922, which the count excludes.
-  const double kTruth[] = {0.5, 2.0, 4.25, std::sqrt(4.25)};
-  CoverageCount counts[4], too_small[4];
-  RandomStream rng({.seed = 1, .purpose = 110});
-  for (int repetition = 0; repetition < 5000; ++repetition) {
-    Accuracy accuracy;
-    for (int i = 0; i < 500; ++i) accuracy.Add(0.5 + 2.0 * rng.Normal());
-    const Measured kMeasures[] = {accuracy.bias(), accuracy.empirical_standard_error(),
-                                  accuracy.mean_squared_error(), accuracy.root_mean_squared_error()};
-    for (size_t k = 0; k < 4; ++k) {
-      const double z = std::abs(kMeasures[k].value - kTruth[k]) / kMeasures[k].standard_error;
-      counts[k].Add(z <= 1.959964);
-      too_small[k].Add(z <= 0.9 * 1.959964);
-    }
-  }
-  for (size_t k = 0; k < 4; ++k) {
-    EXPECT_TRUE(counts[k].Admits(0.95)) << "measure " << k << ": " << counts[k];
-    EXPECT_FALSE(too_small[k].Admits(0.95)) << "no power, measure " << k;
-    RecordProperty("coverage_" + std::to_string(k), std::to_string(counts[k].rate()));
-  }
-}
-
-TEST(Accuracy, TooFewOrBadErrors) {
-  EXPECT_TRUE(std::isnan(Accuracy().bias().value));
-  Accuracy one;
-  one.Add(3.0);
-  EXPECT_EQ(one.bias().value, 3.0);
-  EXPECT_EQ(one.root_mean_squared_error().value, 3.0);
-  EXPECT_TRUE(std::isnan(one.bias().standard_error));
-  EXPECT_TRUE(std::isnan(one.empirical_standard_error().value));
-  one.Add(std::nan(""));
-  EXPECT_TRUE(std::isnan(one.bias().value));
-  EXPECT_TRUE(std::isnan(one.mean_squared_error().value));
-}
 
 // With the values 1..n the ends of the interval are the ranks themselves.
 Interval RanksOfQuantile(int n, double p, double confidence) {

@@ -15,7 +15,6 @@ namespace {
 
 TEST(CalibrationLine, KnownAnswers) {
   const CalibrationLine line = FitCalibrationLine(ExampleForecasts());
-  ASSERT_TRUE(line.has_optimum);
   EXPECT_NEAR(line.intercept.value, 0.0697630782, 1e-9);
   EXPECT_NEAR(line.intercept.standard_error, 0.4135455967, 1e-9);
   EXPECT_NEAR(line.slope.value, 0.6582243396, 1e-9);
@@ -32,7 +31,7 @@ TEST(CalibrationLine, CoversTheTrueLine) {
   const auto happens = [](double p) { return 1.0 / (1.0 + std::exp(0.3 - 0.7 * std::log(p / (1.0 - p)))); };
   for (int repetition = 0; repetition < 2000; ++repetition) {
     const CalibrationLine line = FitCalibrationLine(UniformForecasts(400, happens, rng));
-    ASSERT_TRUE(line.has_optimum);
+    ASSERT_TRUE(std::isfinite(line.slope.value));
     intercept.Add(line.intercept.interval.Contains(-0.3));
     slope.Add(line.slope.interval.Contains(0.7));
     slope_of_one.Add(line.slope.interval.Contains(1.0));
@@ -68,7 +67,6 @@ TEST(CalibrationLine, WithoutAnOptimumNothingIsClaimed) {
   }
   for (const std::vector<Forecast>& forecasts : {apart, one_kind, one_number}) {
     const CalibrationLine line = FitCalibrationLine(forecasts);
-    EXPECT_FALSE(line.has_optimum);
     EXPECT_TRUE(std::isnan(line.slope.value) && std::isnan(line.intercept.standard_error));
     EXPECT_TRUE(line.slope.interval.Contains(1e9));
   }
@@ -77,7 +75,7 @@ TEST(CalibrationLine, WithoutAnOptimumNothingIsClaimed) {
     for (const int n : {7, 30, 111}) {
       std::vector<Forecast> equal;
       for (int i = 0; i < n; ++i) equal.push_back({percent / 100.0, i % 3 == 0, i});
-      EXPECT_FALSE(FitCalibrationLine(equal).has_optimum) << percent << " % of " << n;
+      EXPECT_TRUE(std::isnan(FitCalibrationLine(equal).slope.value)) << percent << " % of " << n;
     }
   }
   EXPECT_THROW(FitCalibrationLine({}), std::invalid_argument);
@@ -91,7 +89,7 @@ TEST(CalibrationLine, ConvergesFromAfar) {
       return 1.0 / (1.0 + std::exp(2.0 - slope * std::log(p / (1.0 - p))));
     };
     const CalibrationLine line = FitCalibrationLine(UniformForecasts(2000, happens, rng));
-    ASSERT_TRUE(line.has_optimum) << slope;
+    ASSERT_TRUE(std::isfinite(line.slope.value)) << slope;
     EXPECT_NEAR(line.slope.value, slope, 4.5 * line.slope.standard_error);
     EXPECT_NEAR(line.intercept.value, -2.0, 4.5 * line.intercept.standard_error);
     EXPECT_LT(line.slope.standard_error, 0.3);

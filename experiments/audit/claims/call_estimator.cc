@@ -21,7 +21,10 @@ double CountedNees(const TrialRecord& record, const FailureBounds& bounds) {
   return std::isfinite(record.nees) ? record.nees : kInfinity;
 }
 
-}  // namespace
+struct ScoredAnswer {
+  MotionEstimate answer;  // as it was given
+  TrialRecord record;
+};
 
 ScoredAnswer AskEstimator(const MotionEstimator& estimator, const Case& made) {
   RandomStream sampling_rng = StreamFor(made.name, StreamPurpose::kSampling);
@@ -29,6 +32,8 @@ ScoredAnswer AskEstimator(const MotionEstimator& estimator, const Case& made) {
   scored.record = Score(scored.answer, made.data, 0.0);
   return scored;
 }
+
+}  // namespace
 
 TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made) {
   return AskEstimator(estimator, made).record;

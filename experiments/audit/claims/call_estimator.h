@@ -6,14 +6,7 @@
 
 namespace rcme {
 
-// The answer of one call of an estimator on a case, and its score against the truth. Every estimator gets the
-// same stream of samples.
-struct ScoredAnswer {
-  MotionEstimate answer;  // as it was given
-  TrialRecord record;
-};
-ScoredAnswer AskEstimator(const MotionEstimator& estimator, const Case& made);
-// The score alone.
+// The score of an estimator's answer on a case. Every estimator gets the same stream of samples.
 TrialRecord CallEstimator(const MotionEstimator& estimator, const Case& made);
 
 // Statistics of an answer's covariance:

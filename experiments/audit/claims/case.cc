@@ -6,7 +6,6 @@
 
 #include "experiments/data/make_data.h"
 #include "parameters/find_setting.h"
-#include "stats/coverage.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -64,7 +63,7 @@ std::vector<Check> ChecksAtNoiseLevels(const std::vector<double>& sigmas_px, con
 std::vector<Target> CoverageTargets(int degrees_of_freedom, const ScaleTolerance& tolerance) {
   constexpr double kFirstAlpha = 0.05;
   std::vector<Target> targets;
-  for (const double alpha : Coverage::kSignificanceLevels) {
+  for (const double alpha : {0.5, 0.2, 0.1, 0.05, 0.01}) {
     Target target{fmt::format("coverage at alpha {}", alpha),
                   Target::Kind::kCoverage,
                   1.0 - alpha,
@@ -80,8 +79,8 @@ std::vector<Target> CoverageTargets(int degrees_of_freedom, const ScaleTolerance
   return targets;
 }
 
-Target IdentityTarget(const std::string& quantity, double tolerance, size_t statistic) {
-  return {quantity, Target::Kind::kCoverage, 1.0, AllowedRate(1.0, kIdentity.margin), tolerance, statistic};
+Target IdentityTarget(const std::string& quantity, double tolerance) {
+  return {quantity, Target::Kind::kCoverage, 1.0, AllowedRate(1.0, kIdentity.margin), tolerance};
 }
 
 }  // namespace rcme

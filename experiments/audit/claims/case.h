@@ -57,6 +57,6 @@ std::vector<Target> CoverageTargets(int degrees_of_freedom,
 
 // A target for an identity: the statistic, a relative deviation, is within `tolerance` in at least 999 of
 // 1,000 trials.
-Target IdentityTarget(const std::string& quantity, double tolerance, size_t statistic = 0);
+Target IdentityTarget(const std::string& quantity, double tolerance);
 
 }  // namespace rcme

@@ -75,8 +75,7 @@ std::optional<Verdict> VerdictFrom(const Json& json) {
   return static_cast<Verdict>(CountFrom(json, static_cast<std::int64_t>(Verdict::kUndecided)));
 }
 
-}  // namespace
-
+// The statistics that are stored.
 std::vector<size_t> ListStatistics(const Check& check) {
   std::vector<size_t> statistics;
   for (const Target& target : check.targets) statistics.push_back(target.statistic);
@@ -85,6 +84,8 @@ std::vector<size_t> ListStatistics(const Check& check) {
   statistics.erase(std::unique(statistics.begin(), statistics.end()), statistics.end());
   return statistics;
 }
+
+}  // namespace
 
 std::string OutcomesAsJson(const Check& check, const std::vector<Outcome>& outcomes) {
   Json columns = Json::array();

@@ -8,12 +8,9 @@
 
 namespace rcme {
 
-// The indices of the statistics that the check's targets and its difficulty use, ascending. Only these are
-// stored.
-std::vector<size_t> ListStatistics(const Check& check);
-
-// A JSON list with one entry per stored statistic. For a rate it is a text with one character per trial, 1, 0
-// or n (NaN); for others it is a list of numbers.
+// A JSON list with one entry per stored statistic, ascending: those that the check's targets and its
+// difficulty use. For a rate it is a text with one character per trial, 1, 0 or n (NaN); for others it is a
+// list of numbers.
 std::string OutcomesAsJson(const Check& check, const std::vector<Outcome>& outcomes);
 
 // The outcomes of `num_trials` trials; statistics that are not stored are NaN. Throws std::exception if the

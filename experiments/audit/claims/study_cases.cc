@@ -11,6 +11,8 @@
 namespace rcme {
 namespace {
 
+// Most conditions for an audit or a map; each costs seconds to minutes.
+constexpr size_t kMaxCaseConditions = 1'000;
 constexpr const char* kNoMatchFiles =
     "scene: match_files cannot be audited or mapped; of real pairs nobody knows which matches are true, nor "
     "the noise, nor can they be drawn again. `rcme run` and `rcme summarize` say what they can give: "

@@ -8,11 +8,8 @@
 
 namespace rcme {
 
-// Most conditions for an audit or a map; each costs seconds to minutes.
-inline constexpr size_t kMaxCaseConditions = 1'000;
-
 // Throws InputError for a study that cannot give cases: one with pairs from match files, whose true matches
-// are unknown, or one with more conditions than that.
+// are unknown, or one with more than 1,000 conditions.
 void RequireCases(const Study& study);
 
 // All settings of a condition's simulation, for a study that can give cases.

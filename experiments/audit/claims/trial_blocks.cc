@@ -7,6 +7,9 @@
 namespace rcme {
 namespace {
 
+// Most blocks of a round: up to this many machines get equal shares.
+constexpr std::int64_t kBlocksOfRound = 64;
+
 // The first look with at least this many trials.
 std::int64_t LookWith(const Check& check, Budget budget, double num_trials) {
   std::int64_t look = 0;

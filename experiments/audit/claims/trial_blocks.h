@@ -19,8 +19,6 @@
 namespace rcme {
 
 inline constexpr double kRoundGrowth = 1.5;
-// Most blocks of a round: up to this many machines get equal shares.
-inline constexpr std::int64_t kBlocksOfRound = 64;
 
 class TrialBlocks {
  public:

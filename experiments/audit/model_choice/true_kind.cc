@@ -15,6 +15,8 @@
 namespace rcme {
 namespace {
 
+constexpr int kLeastRightMatches = 8;
+
 double ExpectedParallaxShare(const MotionProblem& exact, const Eigen::Matrix3d& R_true,
                              double significance_level) {
   const ReferenceMatches matches(exact, RefinementError::kSampson);

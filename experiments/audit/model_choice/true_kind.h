@@ -48,7 +48,6 @@ KindMeasures MeasureKind(const Scene& scene, std::span<const Eigen::Vector3d> po
 // A plane holds at least 95 % of the points; a general scene has at most 75 % on any plane. Fewer than eight
 // right matches are borderline.
 inline constexpr double kPlaneOfAll = 0.95, kPlaneOfGeneral = 0.75;
-inline constexpr int kLeastRightMatches = 8;
 TrueKind ClassifyKind(const KindMeasures& measures, double least_parallax_share);
 
 }  // namespace rcme

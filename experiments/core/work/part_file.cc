@@ -23,9 +23,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kFormatStart = "{\"format\": \"rcme part ", kChecksumKey = "\"checksum\": \"";
-constexpr int kMaxPieceDepth = 8;        // of lists within lists; the deepest piece has three
-constexpr size_t kMaxRestOfPiece = 256;  // bytes of an item's line besides its result
-constexpr size_t kMaxFirstValues = 64;   // of the first line, which has ten
+constexpr size_t kMaxPartBytes = size_t{1} << 30;  // the outcomes of a whole audit have 100 MB
+constexpr int kMaxPieceDepth = 8;                  // of lists within lists; the deepest piece has three
+constexpr size_t kMaxRestOfPiece = 256;            // bytes of an item's line besides its result
+constexpr size_t kMaxFirstValues = 64;             // of the first line, which has ten
 constexpr const char* kAgain = "run the command that wrote it again: it keeps what is sound";
 constexpr const char* kAllAgain = "remove the file and run the command again";
 
@@ -291,18 +292,10 @@ Part ReadPart(const std::string& path) {
       .Read();
 }
 
-Part ParsePart(std::string_view text, const std::string& name) {
-  return PartReader(name, ReadFrom(text)).Read();
-}
-
 SalvagedPart SalvagePart(const std::string& path) {
   RegularFile file(path, {"part", "a part that --shard writes"});
   return PartReader(path, [&](char* buffer, size_t size) { return file.Read(size).copy(buffer, size); })
       .Salvage();
-}
-
-SalvagedPart ParseSalvagedPart(std::string_view text, const std::string& name) {
-  return PartReader(name, ReadFrom(text)).Salvage();
 }
 
 bool IsPart(const std::string& path) {

@@ -34,9 +34,8 @@ struct Part {
   ItemResults results;  // of the finished items
 };
 
-// Limits of a file. For comparison: the first line of the largest study (100,000 conditions) has about 60 MB,
-// the largest piece (a tuning of 20,000 settings) 300 kB, and the outcomes of a whole audit 100 MB.
-inline constexpr size_t kMaxPartBytes = size_t{1} << 30;
+// Limits of a file's lines. For comparison: the first line of the largest study (100,000 conditions) has
+// about 60 MB, the largest piece (a tuning of 20,000 settings) 300 kB.
 inline constexpr size_t kMaxPartLineBytes = size_t{64} << 20;
 inline constexpr size_t kMaxPieceBytes = size_t{8} << 20;
 
@@ -73,8 +72,6 @@ void WritePart(const std::string& path, const Part& part, const ItemResults& res
 // Throws InputError with the path, the line and the error if the file is not a part of this format, is
 // damaged, or is too long. Needs memory for the results and one line.
 Part ReadPart(const std::string& path);
-// The same for the text of a part; messages call it `name`.
-Part ParsePart(std::string_view text, const std::string& name);
 
 // A part some lines of which may be damaged, for callers that can compute the lost items again. Every line
 // has its own checksum, so the other lines are as reliable as those of an undamaged part.
@@ -85,7 +82,6 @@ struct SalvagedPart {
 };
 // Throws InputError as ReadPart does if the first line is damaged: the work is then unknown.
 SalvagedPart SalvagePart(const std::string& path);
-SalvagedPart ParseSalvagedPart(std::string_view text, const std::string& name);
 
 // Whether the file begins like a part of any format version; false if it cannot be read.
 bool IsPart(const std::string& path);

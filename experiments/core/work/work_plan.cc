@@ -8,12 +8,6 @@ bool WorkPlan::Has(const ItemPlace& place) const {
   return is_open || (place.group < groups.size() && place.item < groups[place.group].num_items);
 }
 
-size_t WorkPlan::NumItems() const {
-  size_t sum = 0;
-  for (const ItemGroup& group : groups) sum += group.num_items;
-  return sum;
-}
-
 std::string DescribeIdentity(const WorkPlan& plan) {
   std::string identity = plan.identity;
   for (const ItemGroup& group : plan.groups) {

@@ -31,7 +31,6 @@ struct WorkPlan {
   bool is_open = false;  // the number of items is not known in advance; groups is empty
 
   bool Has(const ItemPlace& place) const;
-  size_t NumItems() const;
 };
 
 // The plan's identity followed by its groups; equal for the parts of one work.

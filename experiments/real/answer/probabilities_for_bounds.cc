@@ -17,8 +17,6 @@ bool AreCovered(const FailureBounds& bounds) {
          bounds.max_direction_error_deg >= 5.0 && bounds.max_direction_error_deg <= 40.0;
 }
 
-}  // namespace
-
 EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const MotionProblem& problem,
                                      const std::vector<FailureBounds>& bounds, RandomStream& rng) {
   if (bounds.empty()) return {estimator.Estimate(problem, rng), {}};
@@ -37,6 +35,8 @@ EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const Mot
   }
   return answer;
 }
+
+}  // namespace
 
 EstimateForBounds AnswerProblem(const MotionEstimator& estimator, const MotionProblem& problem,
                                 const std::vector<FailureBounds>& bounds, std::uint64_t seed) {

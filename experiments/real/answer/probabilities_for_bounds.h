@@ -22,12 +22,9 @@ struct EstimateForBounds {
   std::vector<ProbabilityForBounds> probabilities;  // one for each of the bounds; empty without a motion
 };
 
-// Throws InputError if bounds are given but the estimator has no posterior (calibrated/motion_posterior.h).
-EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const MotionProblem& problem,
-                                     const std::vector<FailureBounds>& bounds, RandomStream& rng);
-
-// The same with the stream of samples for `seed`, and a checked answer (trial/answer_check.h). `rcme
-// estimate` and Python answer with this function.
+// Answers with the stream of samples for `seed` and checks the answer (trial/answer_check.h). `rcme estimate`
+// and Python use this function. Throws InputError if bounds are given but the estimator has no posterior
+// (calibrated/motion_posterior.h).
 EstimateForBounds AnswerProblem(const MotionEstimator& estimator, const MotionProblem& problem,
                                 const std::vector<FailureBounds>& bounds, std::uint64_t seed);
 

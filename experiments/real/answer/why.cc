@@ -269,6 +269,17 @@ std::vector<int> RightMatches(const TrialData& data) {
   return right;
 }
 
+// The evidence for the true motion: from the right matches if they are known, else from those that agree with
+// it at 95 %. Nothing if the truth is not known.
+std::optional<MotionEvidence> EvidenceOfTruth(const TrialData& data) {
+  if (!data.truth.cam2_from_cam1_true) return std::nullopt;
+  MotionEstimate truth;
+  truth.status = MotionStatus::kOk;
+  truth.cam2_from_cam1 = *data.truth.cam2_from_cam1_true;
+  truth.inliers = RightMatches(data);
+  return ComputeEvidence(data.problem, truth);
+}
+
 }  // namespace
 
 const char* Name(WhyVerdict verdict) {
@@ -299,15 +310,6 @@ Why ExplainOutcome(const EstimatorSpec& spec, const TrialData& data, const Motio
   }
   why.runner_up = RunnerUpWords(estimate, data, bounds);
   return why;
-}
-
-std::optional<MotionEvidence> EvidenceOfTruth(const TrialData& data) {
-  if (!data.truth.cam2_from_cam1_true) return std::nullopt;
-  MotionEstimate truth;
-  truth.status = MotionStatus::kOk;
-  truth.cam2_from_cam1 = *data.truth.cam2_from_cam1_true;
-  truth.inliers = RightMatches(data);
-  return ComputeEvidence(data.problem, truth);
 }
 
 std::string WhyAsText(const StudyPlan& plan, const TrialResult& result) {

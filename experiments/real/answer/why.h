@@ -36,11 +36,7 @@ struct Why {
 Why ExplainOutcome(const EstimatorSpec& spec, const TrialData& data, const MotionEstimate& estimate,
                    const TrialRecord& record, const FailureBounds& bounds);
 
-// Returns the evidence for the true motion: from the right matches if they are known, else from those that
-// agree with it at 95 %. Nothing if the truth is not known.
-std::optional<MotionEvidence> EvidenceOfTruth(const TrialData& data);
-
-// Formats this for all estimators of a trial.
+// Formats the explanations for all estimators of a trial.
 std::string WhyAsText(const StudyPlan& plan, const TrialResult& result);
 
 }  // namespace rcme

@@ -21,6 +21,7 @@ namespace rcme {
 namespace {
 
 constexpr size_t kLeastPairsOfCamera = 5;
+constexpr double kSystematicLevel = 0.05;
 // Of the intervals of PoolFaults, each.
 constexpr double kIntervalConfidence = 1.0 - (1.0 - kFaultConfidence) / kNumNamedFaults;
 constexpr double kSizeEdges[] = {0.0, 0.7, 1.0, 1.4, 2.0, 4.0, kInfinity};

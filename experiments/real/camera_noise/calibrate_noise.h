@@ -28,7 +28,7 @@ struct NoiseCalibration {
   std::vector<SigmaOfSize> sizes;
   SharedVariance shared;
   CalibrationReport faults;
-  DisplacementCells systematic;  // as tested; also in `noise` if p < kSystematicLevel
+  DisplacementCells systematic;  // as tested; also in `noise` if p < .05
 };
 
 // Estimates, each on pairs corrected for the previous ones: first the faults of the camera
@@ -38,7 +38,5 @@ struct NoiseCalibration {
 // seed and the pair's name.
 NoiseCalibration CalibrateNoise(const PairSet& set, const MotionEstimator& estimator,
                                 const std::string& estimator_name, std::uint64_t seed);
-
-inline constexpr double kSystematicLevel = 0.05;
 
 }  // namespace rcme

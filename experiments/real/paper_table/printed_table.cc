@@ -8,6 +8,13 @@
 namespace rcme {
 namespace {
 
+struct PrintedDataset {
+  const char* name;
+  bool is_indoor;
+  int num_pairs;
+  int rcme_detect_fail, rcme_failure, prcme_detect_fail, prcme_failure, standard_failure;
+};
+
 constexpr std::array<PrintedDataset, 23> kDatasets = {{
     {"KITTI/00", false, 2412, 0, 0, 0, 0, 0},   {"KITTI/01", false, 56, 0, 0, 0, 0, 1},
     {"KITTI/02", false, 2031, 0, 0, 0, 1, 1},   {"KITTI/03", false, 358, 0, 0, 0, 0, 0},
@@ -50,8 +57,6 @@ double ComputeMcNemar(int first_only, int second_only) {
 }
 
 }  // namespace
-
-std::span<const PrintedDataset> PrintedDatasets() { return kDatasets; }
 
 std::vector<PrintedRate> PrintedRates() {
   std::vector<PrintedRate> rates;

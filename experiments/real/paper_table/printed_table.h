@@ -1,23 +1,13 @@
-// The table of the paper (table::real-data-test), as counts.
+// The table of the paper (table::real-data-test), as counts. The paper prints percentages with two decimals;
+// each of them corresponds to exactly one number of pairs.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
 #include "stats/intervals.h"
 
 namespace rcme {
-
-struct PrintedDataset {
-  const char* name;
-  bool is_indoor;
-  int num_pairs;
-  int rcme_detect_fail, rcme_failure, prcme_detect_fail, prcme_failure, standard_failure;
-};
-
-// The paper prints percentages with two decimals; each of them corresponds to exactly one number of pairs.
-std::span<const PrintedDataset> PrintedDatasets();
 
 // The rate of one method on one dataset, or on all indoor or outdoor datasets.
 struct PrintedRate {

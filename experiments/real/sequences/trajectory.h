@@ -28,7 +28,6 @@ class Trajectory {
  public:
   // Adds a pose; returns false if it is not later than all before.
   bool Add(double time_s, const CameraPose& pose);
-  bool empty() const { return poses_.empty(); }
 
   // Interpolates between the two poses around the time, linearly in position and along the shortest
   // rotation. Nothing before the first pose, after the last, or in gaps longer than max_gap_s.

@@ -50,7 +50,13 @@ void RequireSamePair(const MatchFile& first, const MatchFile& other) {
   if (difference.norm() > kSameMotionRad) refuse("another true motion");
 }
 
-}  // namespace
+// The match files of one pair, from the folders that have one.
+struct PairFiles {
+  std::string pair_id;
+  std::vector<std::string> front_ends;  // names of the folders
+  std::vector<std::string> paths;
+  bool is_direction_weak = false;  // according to an INDEX.csv (match_folder.h)
+};
 
 std::vector<PairFiles> ListPairFiles(const std::vector<std::string>& folders) {
   const std::vector<std::string> names = NameFrontEnds(folders);
@@ -98,6 +104,8 @@ CheckedPair CheckPair(const PairFiles& files, const MotionEstimator& estimator,
   pair.verdict = JudgeTruth(pair.front_ends);
   return pair;
 }
+
+}  // namespace
 
 std::vector<CheckedPair> CheckTruths(const std::vector<std::string>& folders,
                                      const MotionEstimator& estimator, const TruthCheckOptions& options) {

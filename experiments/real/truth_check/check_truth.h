@@ -12,17 +12,6 @@
 
 namespace rcme {
 
-// The match files of one pair, from the folders that have one: their file names are equal up to .csv.
-struct PairFiles {
-  std::string pair_id;
-  std::vector<std::string> front_ends;  // names of the folders
-  std::vector<std::string> paths;
-  bool is_direction_weak = false;  // according to an INDEX.csv (match_folder.h)
-};
-// Lists every pair of the folders, ordered by pair_id. A folder is called by its own name, or by its given
-// path if two have the same name. Throws InputError (match_folder.h), also for a folder that is given twice.
-std::vector<PairFiles> ListPairFiles(const std::vector<std::string>& folders);
-
 struct TruthCheckOptions {
   FailureBounds bounds;
   std::optional<double> sigma_px = {};  // the assumed noise level, in place of that of the files
@@ -37,9 +26,10 @@ struct CheckedPair {
   std::vector<FrontEndEvidence> front_ends;  // empty without a truth
   std::vector<CameraDoubt> camera_doubts;
 };
-// Throws InputError if files cannot be read, or if the files of a pair state different scenes or motions.
-CheckedPair CheckPair(const PairFiles& files, const MotionEstimator& estimator,
-                      const TruthCheckOptions& options);
+// Checks every pair of the folders, ordered by pair_id. The match files of a pair have file names that are
+// equal up to .csv. A folder is called by its own name, or by its given path if two have the same name.
+// Throws InputError if files cannot be read (match_folder.h), if a folder is given twice, or if the files of
+// a pair state different scenes or motions.
 std::vector<CheckedPair> CheckTruths(const std::vector<std::string>& folders,
                                      const MotionEstimator& estimator, const TruthCheckOptions& options);
 

@@ -171,7 +171,7 @@ void TruthContest::AddCounts(const TruthContest& other) {
 TruthContest CompareWithTruth(const MotionProblem& given, const GivenTruth& truth,
                               const FailureBounds& bounds, const RelativePose& motion) {
   const MotionProblem problem = OneOfEachKeyPoint(given);
-  TruthContest none{.moved_truth = truth.cam2_from_cam1, .num_matches = std::ssize(problem.matches)};
+  TruthContest none{.num_matches = std::ssize(problem.matches)};
   if (problem.matches.empty()) return none;
   const MatchBlocks matches(problem);
   MixtureParameters mixture;
@@ -184,7 +184,6 @@ TruthContest CompareWithTruth(const MotionProblem& given, const GivenTruth& trut
   double p_above_chance = 1.0, p_least_block = 1.0, p_of_truth = 1.0;
   for (const RelativePose& pose : truths) {
     TruthContest& contest = contests.emplace_back(none);
-    contest.moved_truth = pose;
     CountMatches(FindExplained(matches, pose, mixture), by_motion, block_of, &contest);
     const double share = ShareOfRandom(problem, pose, mixture);
     const std::int64_t num_left = contest.num_matches - contest.by_motion;

@@ -54,7 +54,6 @@ inline constexpr int kLeastExplainedByHalf = 10;
 
 // The comparison of the truth with another motion on the same matches.
 struct TruthContest {
-  RelativePose moved_truth;
   std::int64_t num_matches = 0;  // that count: one of each key point
   std::int64_t by_truth = 0, by_motion = 0, by_truth_only = 0, by_motion_only = 0;
   int blocks_of_truth = 0, blocks_of_motion = 0;

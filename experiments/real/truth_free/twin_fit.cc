@@ -54,7 +54,6 @@ class LayoutFit {
     const ViewPair view{problem.camera1, problem.camera2, pose, 1.0};
     homographies_.push_back(HomographyShare(view, points_in_cam1, std::sqrt(2.0) * noise_px, rng));
     clark_evans_.push_back(ClarkEvansIndex(key_points, problem.camera1.width, problem.camera1.height));
-    twice_.push_back(TwiceShare(key_points));
   }
 
   void Give(TwinFit* fit) {
@@ -71,7 +70,6 @@ class LayoutFit {
     fit->farthest = ComputeQuantile(depths_, 0.95);
     fit->homography_share = ComputeMedian(homographies_);
     fit->clark_evans = ComputeMedian(clark_evans_);
-    fit->twice_share = ComputeMedian(twice_);
   }
 
  private:
@@ -90,20 +88,8 @@ class LayoutFit {
     return static_cast<double>(num_agreeing) / static_cast<double>(wrong.size());
   }
 
-  static double TwiceShare(const std::vector<Eigen::Vector2d>& points) {
-    int num_twice = 0;
-    for (size_t i = 0; i < points.size(); ++i) {
-      for (size_t k = 0; k < points.size(); ++k) {
-        if (k == i || (points[k] - points[i]).squaredNorm() >= 1.0) continue;
-        ++num_twice;
-        break;
-      }
-    }
-    return static_cast<double>(num_twice) / static_cast<double>(points.size());
-  }
-
   std::vector<double> num_matches_, wrong_shares_, agreeing_, rotations_, parallaxes_, forwardness_, depths_,
-      homographies_, clark_evans_, twice_;
+      homographies_, clark_evans_;
 };
 
 }  // namespace

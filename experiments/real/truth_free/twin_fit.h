@@ -20,7 +20,6 @@ struct TwinFit {
   double nearest = 0.0, farthest = 0.0;  // 5 % and 95 % points of all depths, in baselines
   double homography_share = 0.0;         // of right matches that one homography explains
   double clark_evans = 0.0;  // index of the right key points in image 1; 1: random, less: clustered
-  double twice_share = 0.0;  // of right matches with another within 1 px in image 1
 };
 // The noise is fitted in steps (noise_fit.h). Throws InputError if no pair of the scene has a template.
 TwinFit FitTwin(const TwinSource& source, const MotionEstimator& estimator, std::uint64_t seed,

@@ -23,6 +23,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// An assumed sigma is nominal if the ratio of the estimated one to it lies in this range.
+constexpr Interval kNominalSigma = {0.8, 1.25};
 constexpr double kConfidence = 0.95;
 constexpr int kResamples = 1000;          // of pairs
 constexpr double kLeastProducts = 100.0;  // of residuals, for a correlation

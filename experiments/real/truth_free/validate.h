@@ -21,8 +21,6 @@ namespace rcme {
 
 // A smaller correlation of residuals is nominal.
 inline constexpr double kNominalCorrelation = 0.05;
-// An assumed sigma is nominal if the ratio of the estimated one to it lies in this range.
-inline constexpr Interval kNominalSigma = {0.8, 1.25};
 
 // Correlation of residuals at a distance, and its difference from that in the twins.
 struct DistanceCorrelation {

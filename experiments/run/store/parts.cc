@@ -34,6 +34,16 @@ std::string JoinedNames(const std::string& a, const std::string& b) {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+// The number of shards: 64 for "3/64", 1 for a whole run.
+std::uint32_t ReadNumShards(const RunDescription& run) {
+  const size_t slash = run.shard.find('/');
+  if (slash == std::string::npos) return 1;
+  long long count = 0;
+  const bool is_number = ParseInteger(run.shard.substr(slash + 1), &count);
+  if (!is_number || count < 1 || count > kMaxShards) throw Damage("'shard' of table run is not possible");
+  return static_cast<std::uint32_t>(count);
+}
+
 }  // namespace
 
 std::string ShardsOfMerged(const MergeReport& report) {
@@ -43,15 +53,6 @@ std::string ShardsOfMerged(const MergeReport& report) {
     if (!std::ranges::binary_search(report.missing_shards, s)) whole.push_back(s);
   }
   return fmt::format("{}/{}", whole.empty() ? "none" : ArrayText(whole), report.num_shards);
-}
-
-std::uint32_t ReadNumShards(const RunDescription& run) {
-  const size_t slash = run.shard.find('/');
-  if (slash == std::string::npos) return 1;
-  long long count = 0;
-  const bool is_number = ParseInteger(run.shard.substr(slash + 1), &count);
-  if (!is_number || count < 1 || count > kMaxShards) throw Damage("'shard' of table run is not possible");
-  return static_cast<std::uint32_t>(count);
 }
 
 std::unique_ptr<ResultFile> OpenPart(const std::string& path) {

@@ -34,9 +34,6 @@ struct MergeReport {
 // or the shards are not known.
 std::string ShardsOfMerged(const MergeReport& report);
 
-// Returns the number of shards: 64 for "3/64", 1 for a whole run. Throws Damage.
-std::uint32_t ReadNumShards(const RunDescription& run);
-
 // Opens a part for reading, without locks. Its description is checked, its trials are not yet. Throws
 // InputError.
 std::unique_ptr<ResultFile> OpenPart(const std::string& path);

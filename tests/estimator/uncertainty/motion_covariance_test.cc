@@ -156,10 +156,10 @@ TEST(CovarianceOfQuaternionAndTranslation, HasRankFive) {
     EXPECT_LT(std::abs(eigenvalues(1)), 1e-14 * eigenvalues(6));
     EXPECT_GT(eigenvalues(2), 1e-4 * eigenvalues(6));
     // The null directions are q and t themselves, whose lengths are fixed.
-    const Eigen::VectorXd p = QuaternionAndTranslation(pose);
+    const Eigen::Quaterniond q(pose.R);
     Eigen::MatrixXd lengths = Eigen::MatrixXd::Zero(7, 2);
-    lengths.col(0).head(4) = p.head(4);
-    lengths.col(1).tail(3) = p.tail(3);
+    lengths.col(0).head(4) << q.w(), q.vec();
+    lengths.col(1).tail(3) = pose.t;
     EXPECT_LT(Multiply(cov, lengths).norm(), 1e-14 * cov.norm());
   }
 }

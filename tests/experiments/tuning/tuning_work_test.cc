@@ -71,7 +71,7 @@ TEST_F(TuneParts, OfAnyNumberInAnyOrderGiveTheBytesOfOneMachine) {
   ASSERT_FALSE(rocs.empty());
   const std::string whole = Bytes(plan_, one, rocs);
   const TuningWork work = PlanTuningWork(plan_);
-  EXPECT_EQ(work.items.NumItems(), 2 * (3 + 5 + 4 + 4 + 4));
+  EXPECT_EQ(ListItems(work.items, {}).size(), 2 * (3 + 5 + 4 + 4 + 4));
   for (const std::uint32_t count : {1, 7, 64}) {
     Paths paths = ListParts(work, count);
     for (int order = 0; order < 2; ++order) {

@@ -187,7 +187,7 @@ TEST_F(AuditParts, EveryBlockIsInOneShardAndThoseOfACheckAreDividedEvenly) {
       EXPECT_GE(num_of_first, 64 / count);
       EXPECT_LE(num_of_first, (64 + count - 1) / count);
     }
-    EXPECT_EQ(seen.size(), pieces.NumItems());
+    EXPECT_EQ(seen.size(), ListItems(pieces, {}).size());
   }
 }
 

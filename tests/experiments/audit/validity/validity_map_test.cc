@@ -182,7 +182,7 @@ TEST(MapParts, GiveTheBytesOfOneMachine) {
   const std::string map = MapCsvInMemory(work.map), reference = ReferenceCsvInMemory(*work.reference);
   EXPECT_NE(map.find(",87,"), std::string::npos) << "n: two thirds of 130";
   const WorkPlan pieces = PlanMapWork(work);
-  EXPECT_EQ(pieces.NumItems(), 4u * 2u + 6u * 4u);
+  EXPECT_EQ(ListItems(pieces, {}).size(), 4u * 2u + 6u * 4u);
   const TempFolder folder;
   for (const std::uint32_t count : {7, 64}) {
     std::vector<std::string> paths;
