@@ -8,7 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "stats/accuracy.h"
+#include "stats/measured_quantile.h"
 #include "stats/constants.h"
 
 namespace rcme {

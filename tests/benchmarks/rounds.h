@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "stats/accuracy.h"
+#include "stats/measured_quantile.h"
 
 namespace rcme {
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stats/accuracy.h"
+#include "stats/measured_quantile.h"
 #include "stats/constants.h"
 #include "stats/random.h"
 #include "tests/test_support/coverage_count.h"

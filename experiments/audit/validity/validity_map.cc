@@ -15,7 +15,7 @@
 #include "experiments/audit/validity/coverage_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/trial/covariance_score.h"
-#include "stats/accuracy.h"
+#include "stats/measured_quantile.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
 

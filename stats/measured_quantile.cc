@@ -1,4 +1,4 @@
-#include "stats/accuracy.h"
+#include "stats/measured_quantile.h"
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
