@@ -8,8 +8,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "stats/measured_quantile.h"
 #include "stats/constants.h"
+#include "stats/measured_quantile.h"
 
 namespace rcme {
 namespace {

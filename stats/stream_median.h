@@ -8,9 +8,9 @@
 
 namespace rcme {
 
-// The median of a stream of numbers with its distribution-free interval (stats/measured_quantile.h). Memory depends on
-// the range of the numbers, not on their count: numbers of one sign that agree in their exponent and their
-// first eight binary digits share a cell, which stores its count, minimum and maximum.
+// The median of a stream of numbers with its distribution-free interval (stats/measured_quantile.h). Memory
+// depends on the range of the numbers, not on their count: numbers of one sign that agree in their exponent
+// and their first eight binary digits share a cell, which stores its count, minimum and maximum.
 class StreamMedian {
  public:
   // May be infinite. Throws std::invalid_argument on NaN.

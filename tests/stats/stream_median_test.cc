@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "stats/measured_quantile.h"
 #include "stats/constants.h"
+#include "stats/measured_quantile.h"
 #include "stats/random.h"
 #include "tests/test_support/coverage_count.h"
 

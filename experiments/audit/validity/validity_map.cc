@@ -15,9 +15,9 @@
 #include "experiments/audit/validity/coverage_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/trial/covariance_score.h"
-#include "stats/measured_quantile.h"
 #include "stats/distributions.h"
 #include "stats/intervals.h"
+#include "stats/measured_quantile.h"
 
 namespace rcme {
 namespace {
