@@ -5,6 +5,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "stats/population_rate.h"
+
 namespace rcme {
 namespace {
 
@@ -109,6 +111,29 @@ MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forec
   return error;
 }
 
+namespace {
+
+constexpr std::int64_t kFewClusters = 5;
+
+// See the header; nothing changes where enough clusters had an event and a non-event.
+void WidenForUnseenEvents(std::span<const Forecast> forecasts, const std::vector<ConditionCount>& counts,
+                          BootstrapEstimate* error) {
+  const auto num_with = std::ranges::count_if(counts, [](const auto&c) { return c.num_events > 0; }),
+             num_without =
+                 std::ranges::count_if(counts, [](const auto&c) { return c.num_events < c.num_trials; });
+  if (std::min(num_with, num_without) >= kFewClusters) return;
+  const PopulationRate rate = MeasurePopulationRate(counts, ConditionWeights::kByTrials);
+  double stated = 0.0;
+  for (const Forecast& forecast : forecasts)
+    stated += forecast.probability / static_cast<double>(forecasts.size());
+  const double beyond = std::max({0.0, rate.interval.lower - stated, stated - rate.interval.upper});
+  const double unseen = std::max(rate.interval.upper - rate.value, rate.value - rate.interval.lower);
+  error->interval.lower = std::min(error->interval.lower, beyond);
+  error->interval.upper = std::max(error->interval.upper, std::min(1.0, error->value + unseen));
+}
+
+}  // namespace
+
 BootstrapEstimate MeasurePopulationCalibrationError(std::span<const Forecast> forecasts, Binning binning,
                                                     int num_bins, const BootstrapOptions& given,
                                                     RandomStream& rng) {
@@ -118,10 +143,13 @@ BootstrapEstimate MeasurePopulationCalibrationError(std::span<const Forecast> fo
   const size_t K = static_cast<size_t>(num_bins);
   std::vector<double> excess(num_clusters * K),
       sizes(num_clusters);  // sum of probability - outcome; forecasts
+  std::vector<ConditionCount> counts(num_clusters);
   for (size_t i = 0; i < forecasts.size(); ++i) {
     const size_t cluster = static_cast<size_t>(clusters[i]);
     excess[cluster * K + bin_numbers[i]] += forecasts[i].probability - (forecasts[i].happened ? 1.0 : 0.0);
     sizes[cluster] += 1.0;
+    counts[cluster].num_events += forecasts[i].happened;
+    ++counts[cluster].num_trials;
   }
   const ConditionStatistic error = [&](std::span<const int> times) {
     std::vector<double> sums(K);
@@ -135,7 +163,9 @@ BootstrapEstimate MeasurePopulationCalibrationError(std::span<const Forecast> fo
   };
   BootstrapOptions options = given;
   options.chance_bias = ChanceBias::kUpwards;
-  return BootstrapOverConditions(num_clusters, error, options, rng);
+  BootstrapEstimate estimate = BootstrapOverConditions(num_clusters, error, options, rng);
+  WidenForUnseenEvents(forecasts, counts, &estimate);
+  return estimate;
 }
 
 }  // namespace rcme

@@ -41,8 +41,11 @@ MeasuredCalibrationError MeasureCalibrationError(std::span<const Forecast> forec
                                                  int num_bins, int num_samples, RandomStream& rng);
 
 // The error in the population of which the forecasts' clusters (conditions) are a random sample, with its
-// interval by a bootstrap over clusters. The bins are those of all forecasts. Measured coverage:
-// results/population/README.md.
+// interval by a bootstrap over clusters. The bins are those of all forecasts. Where fewer than five clusters
+// had an event, or fewer a non-event, the spread of the samples does not show how many may have been missed:
+// with [l, u] the interval of the event's rate r (population_rate.h) and s the mean probability, the interval
+// then begins at the distance of s from [l, u] at the most (the error is at least |s - rate|) and ends at
+// value + max(u - r, r - l) at the least. Measured coverage: results/population/README.md.
 BootstrapEstimate MeasurePopulationCalibrationError(std::span<const Forecast> forecasts, Binning binning,
                                                     int num_bins, const BootstrapOptions& options,
                                                     RandomStream& rng);

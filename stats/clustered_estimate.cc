@@ -52,21 +52,24 @@ ClusteredEstimate MeasureClusteredMean(std::span<const double> numbers,
   return EstimateFromInfluences(mean, influences, clusters, confidence);
 }
 
-ClusteredEstimate MeasureBoundedClusteredMean(std::span<const double> numbers, double greatest,
+ClusteredEstimate MeasureBoundedClusteredMean(std::span<const double> numbers, const Interval& range,
                                               std::span<const std::int64_t> clusters, double confidence) {
   ClusteredEstimate mean = MeasureClusteredMean(numbers, clusters, confidence);
-  const std::vector<double> ones(numbers.size(), 1.0);
-  const std::vector<double> sums = SumsByCluster(numbers, clusters), sizes = SumsByCluster(ones, clusters);
-  if (!std::ranges::all_of(numbers, [&](double x) { return x >= 0.0 && x <= greatest; }))
+  if (!std::ranges::all_of(numbers, [&](double x) { return x >= range.lower && x <= range.upper; }))
     throw std::invalid_argument("clustered estimate: a number is outside of its range");
-  mean.interval = {0.0, greatest};
-  if (sums.empty()) return mean;
-  const double largest = greatest * *std::ranges::max_element(sizes);
+  mean.interval = range;
+  if (numbers.empty()) return mean;
+  std::vector<double> above(numbers.begin(), numbers.end());
+  for (double& x : above) x -= range.lower;
+  const std::vector<double> ones(numbers.size(), 1.0);
+  const std::vector<double> sums = SumsByCluster(above, clusters), sizes = SumsByCluster(ones, clusters);
+  const double largest = (range.upper - range.lower) * *std::ranges::max_element(sizes);
   ScoreMean shares;  // sums over the greatest possible sum
   for (const double sum : sums) shares.Add(std::min(1.0, sum / largest));
   const Interval interval = shares.Sequence(confidence);
   const double scale = largest * static_cast<double>(sums.size()) / static_cast<double>(numbers.size());
-  mean.interval = {scale * interval.lower, std::min(greatest, scale * interval.upper)};
+  mean.interval = {range.lower + scale * interval.lower,
+                   std::min(range.upper, range.lower + scale * interval.upper)};
   return mean;
 }
 

@@ -30,11 +30,11 @@ ClusteredEstimate EstimateFromInfluences(double value, std::span<const double> i
 ClusteredEstimate MeasureClusteredMean(std::span<const double> numbers,
                                        std::span<const std::int64_t> clusters, double confidence = 0.95);
 
-// The mean of numbers in [0, greatest] with an interval by betting on the sums of the clusters
+// The mean of numbers in a range with an interval by betting on the sums of the clusters
 // (score_mean.h), a confidence sequence. It is valid for any law, even if the few large numbers that dominate
 // the mean were not drawn; Student's interval is then a point. The sizes of the clusters are taken as fixed.
 // Throws std::invalid_argument for a number out of range.
-ClusteredEstimate MeasureBoundedClusteredMean(std::span<const double> numbers, double greatest,
+ClusteredEstimate MeasureBoundedClusteredMean(std::span<const double> numbers, const Interval& range,
                                               std::span<const std::int64_t> clusters,
                                               double confidence = 0.95);
 

@@ -14,7 +14,7 @@ ClusteredEstimate MeasureMeanScore(std::span<const Forecast> forecasts, double g
   std::vector<double> scores;
   scores.reserve(forecasts.size());
   for (const Forecast& forecast : forecasts) scores.push_back(score(forecast));
-  return MeasureBoundedClusteredMean(scores, greatest, ListClusters(forecasts), confidence);
+  return MeasureBoundedClusteredMean(scores, {0.0, greatest}, ListClusters(forecasts), confidence);
 }
 
 }  // namespace

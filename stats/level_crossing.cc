@@ -87,8 +87,8 @@ double PlaceOfLevel(size_t level) { return (static_cast<double>(level) + 0.5) / 
 
 // The levels of the second part, ascending: evenly spaced over the central 99 % of the posterior, widened on
 // both sides by its width.
-std::vector<size_t> ChooseFreshLevels(const CrossingSearch& search) {
-  const double low = search.Quantile(0.005), high = search.Quantile(0.995), margin = high - low + 1.0;
+std::vector<size_t> ChooseFreshLevels(const CrossingSearch& search, double margin) {
+  const double low = search.Quantile(0.005), high = search.Quantile(0.995);
   std::vector<size_t> levels;
   for (std::int64_t i = 0; i < kNumFreshLevels; ++i) {
     const double place =
@@ -97,6 +97,20 @@ std::vector<size_t> ChooseFreshLevels(const CrossingSearch& search) {
   }
   levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
   return levels;
+}
+
+// Levels that are run at the same place are one; there are at least four places, if the range has so many.
+std::vector<size_t> ChooseFreshLevels(const CrossingSearch& search, const PlaceOfRun& place_of_run) {
+  const double width = search.Quantile(0.995) - search.Quantile(0.005) + 1.0;
+  if (!place_of_run) return ChooseFreshLevels(search, width);
+  for (double margin = width;; margin *= 2.0) {
+    std::vector<size_t> levels = ChooseFreshLevels(search, margin);
+    const auto place = [&](size_t level) { return place_of_run(PlaceOfLevel(level)); };
+    levels.erase(
+        std::unique(levels.begin(), levels.end(), [&](size_t a, size_t b) { return place(a) == place(b); }),
+        levels.end());
+    if (levels.size() >= 4 || margin > kNumLevels) return levels;
+  }
 }
 
 }  // namespace
@@ -183,11 +197,13 @@ Interval FindLogisticInterval(std::span<const EventsAtLevel> events, double rate
   return {find_end(0.0, -kInfinity), find_end(1.0, kInfinity)};
 }
 
-Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials, double confidence) {
+Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials, double confidence,
+                      const PlaceOfRun& place_of_run) {
   CrossingSearch search(kNumLevels, rate);
   Crossing crossing;
   const auto ask_at = [&](size_t level, std::int64_t number, std::vector<EventsAtLevel>* asked) {
-    asked->push_back(ask(PlaceOfLevel(level), number));
+    const double place = PlaceOfLevel(level);
+    asked->push_back(ask(place_of_run ? place_of_run(place) : place, number));
     search.Add(level, asked->back().num_events, asked->back().num_trials);
   };
   const std::int64_t num_searched = num_trials / 3, num_steps = std::min(kNumSearchSteps, num_searched);
@@ -195,7 +211,7 @@ Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials,
     const size_t level = search.NextLevel(static_cast<size_t>(step));
     ask_at(level, EvenPart(num_searched, step, num_steps), &crossing.searched);
   }
-  const std::vector<size_t> levels = ChooseFreshLevels(search);
+  const std::vector<size_t> levels = ChooseFreshLevels(search, place_of_run);
   for (std::int64_t i = 0; i < std::ssize(levels); ++i) {
     const std::int64_t number = EvenPart(num_trials - num_searched, i, std::ssize(levels));
     ask_at(levels[static_cast<size_t>(i)], number, &crossing.fresh);
@@ -205,6 +221,7 @@ Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials,
   crossing.estimate = is_known ? search.Quantile(0.5) / kNumLevels : kNaN;
   crossing.interval = FindCrossingInterval(crossing.fresh, rate, confidence);
   crossing.logistic_interval = FindLogisticInterval(crossing.fresh, rate, confidence);
+  crossing.estimate = std::clamp(crossing.estimate, crossing.interval.lower, crossing.interval.upper);
   return crossing;
 }
 

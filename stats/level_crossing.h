@@ -62,7 +62,7 @@ Interval FindCrossingInterval(std::span<const EventsAtLevel> events, double rate
 Interval FindLogisticInterval(std::span<const EventsAtLevel> events, double rate, double confidence = 0.95);
 
 struct Crossing {
-  double estimate = 0.0;                       // posterior median from all trials
+  double estimate = 0.0;                       // posterior median from all trials, kept to `interval`
   Interval interval;                           // FindCrossingInterval of the fresh trials
   Interval logistic_interval;                  // FindLogisticInterval of the fresh trials
   std::vector<EventsAtLevel> searched, fresh;  // by step, and by level
@@ -73,7 +73,10 @@ struct Crossing {
 using AskLevel = std::function<EventsAtLevel(double level, std::int64_t num_trials)>;
 
 // The crossing in [0, 1] from `num_trials` trials, at least 100, a third of them for the search. The estimate
-// is NaN if no trial is informative.
-Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials, double confidence = 0.95);
+// is NaN if no trial is informative. `place_of_run` gives the place at which the trials of a level are run,
+// if the setting has few values, as whole numbers have: a non-decreasing function from [0, 1] to [0, 1].
+using PlaceOfRun = std::function<double(double level)>;
+Crossing FindCrossing(const AskLevel& ask, double rate, std::int64_t num_trials, double confidence = 0.95,
+                      const PlaceOfRun& place_of_run = nullptr);
 
 }  // namespace rcme

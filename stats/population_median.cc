@@ -15,8 +15,8 @@ PopulationMedian MeasurePopulationMedian(std::span<const StreamMedian* const> dr
   for (const StreamMedian* draw : draws) up_to.push_back({draw->CountUpTo(all.median()), draw->n()});
   const PopulationRate share = MeasurePopulationRate(up_to, ConditionWeights::kByTrials);
   return {all.median(),
-          all.IntervalOfQuantiles(0.5 - (share.value - share.interval.lower),
-                                  0.5 + (share.interval.upper - share.value)),
+          all.IntervalOfQuantiles(0.5 - (share.interval.upper - share.value),
+                                  0.5 + (share.value - share.interval.lower)),
           all.interval(), share.effective_n};
 }
 

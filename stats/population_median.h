@@ -1,8 +1,9 @@
 // The median of all numbers of the draws of a population, with the interval for the population.
 //
-// By Woodruff (1952): let p be the share of all numbers up to the median, and [l, u] the interval of the
-// population's share (stats/population_rate.h, weights by trials). The interval of the median is from the
-// quantile 1/2 - (p - l) to the quantile 1/2 + (u - p) of the numbers.
+// By Woodruff (1952): let p be the share of all numbers up to the sample's median, and [l, u] the interval of
+// the population's share F up to it (stats/population_rate.h, weights by trials). At the population's median
+// the sample's share is about 1/2 + p - F. The interval is therefore from the quantile 1/2 - (u - p) to the
+// quantile 1/2 + (p - l) of the numbers.
 #pragma once
 
 #include <span>

@@ -29,7 +29,8 @@ Doubt DoubtOfOrigin(const ExplainedMode& mode, bool is_second_motion) {
 
 }  // namespace
 
-Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weights, const Verdict& verdict) {
+Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
+                const ModesVerdict& verdict) {
   Doubt doubt = Doubt::kNone;
   double greatest = 0.01;
   const auto consider = [&](double part, Doubt reason) {

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "estimator/calibrated/model_check.h"
-#include "estimator/calibrated/verdict.h"
+#include "estimator/calibrated/modes_verdict.h"
 #include "estimator/motion_estimate.h"
 
 namespace rcme {
 
 // The cause of the largest part of the probability of failure, or kNone if no part exceeds 0.01.
-Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weights, const Verdict& verdict);
+Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
+                const ModesVerdict& verdict);
 
 // One sentence. `estimate` needs all fields but its message.
 std::string DescribeAnswer(const MotionEstimate& estimate, const ModelCheck& check);

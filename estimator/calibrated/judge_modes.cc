@@ -45,13 +45,13 @@ MotionBounds MakeMotionBounds(const CalibratedOptions& options) {
   return {kRadPerDeg * options.max_rotation_error_deg, kRadPerDeg * options.max_direction_error_deg};
 }
 
-Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads) {
+ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads) {
   const auto& [problem, matches, prior, modes, weights, weak_direction, check, options] = judged;
   const MotionBounds bounds = MakeMotionBounds(options);
   const Mode& answer = modes[weights.answer].mode;
   double within = 0.0, success = 0.0;
   Matrix5d of_weak = Matrix5d::Zero();
-  Verdict verdict;
+  ModesVerdict verdict;
   if (spreads != nullptr) spreads->assign(modes.size(), Matrix5d::Zero());
   for (size_t i = 0; i < modes.size(); ++i) {
     const double weight = weights.of_modes[i];

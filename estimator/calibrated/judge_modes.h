@@ -7,8 +7,8 @@
 
 #include "estimator/calibrated/mode_covariance.h"
 #include "estimator/calibrated/model_check.h"
+#include "estimator/calibrated/modes_verdict.h"
 #include "estimator/calibrated/settle_direction.h"
-#include "estimator/calibrated/verdict.h"
 
 namespace rcme {
 
@@ -32,7 +32,7 @@ MotionBounds MakeMotionBounds(const CalibratedOptions& options);
 // answer, of the modes within the bounds or, if the direction is weak, of the directions within 90 deg of the
 // answer's. `spreads`, if not null, receives one matrix per mode: its covariance within the bounds, the reach
 // of its likelihood beyond them, zero if the weight is negligible.
-Verdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads);
+ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads);
 
 // The covariance of a mode by the option `covariance`, widened by the check and by uncertain intrinsics.
 // `curvature`: InverseOfObserved. `of_intrinsics`: IntrinsicsCovariance.

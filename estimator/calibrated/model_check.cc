@@ -306,7 +306,7 @@ ModelCheck CheckModel(const MotionProblem& problem, const std::vector<ExplainedM
   CheckRivals(weights, &check);
   check.low_depth = LowDepth(split, answer);
   check.usual_depth = UsualDepthInNoise(answer.explanation);
-  check.calibration = CheckCalibration(problem, answer.mode, answer.explanation);
+  check.calibration = CheckIntrinsics(problem, answer.mode, answer.explanation);
   check.partner_dependence = FindPartnerDependence(problem, answer.mode.pose, split.right);
   return check;
 }

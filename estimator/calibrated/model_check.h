@@ -3,7 +3,7 @@
 // deep.
 #pragma once
 
-#include "estimator/calibrated/calibration_check.h"
+#include "estimator/calibrated/intrinsics_check.h"
 #include "estimator/calibrated/partner_dependence.h"
 #include "estimator/calibrated/weigh_modes.h"
 
@@ -48,11 +48,11 @@ struct ModelCheck {
   // Over the right matches: the mean probability of being right, the mean of ln(density of the residual / q)
   // (mixture_parameters.h), and the greatest leverage (explanation.h).
   double mean_probability = 1.0, mean_gain = 0.0, greatest_leverage = 0.0;
-  double log_rotation_sd = 0.0;       // ln of the rotation's standard deviation by the likelihood, rad
-  double greatest_rival = 0.0;        // greatest weight of a mode beyond the bounds around the answer
-  double low_depth = 0.0;             // 0.05 quantile of z / s of the right matches, within [-3, 3]
-  double usual_depth = 0.0;           // 0.8 quantile of their z (direction_posterior.h)
-  CalibrationCheck calibration = {};  // whether errors of the calibration could move the answer
+  double log_rotation_sd = 0.0;      // ln of the rotation's standard deviation by the likelihood, rad
+  double greatest_rival = 0.0;       // greatest weight of a mode beyond the bounds around the answer
+  double low_depth = 0.0;            // 0.05 quantile of z / s of the right matches, within [-3, 3]
+  double usual_depth = 0.0;          // 0.8 quantile of their z (direction_posterior.h)
+  IntrinsicsCheck calibration = {};  // whether errors of the calibration could move the answer
   PartnerDependence partner_dependence = {};  // of the right matches
 };
 

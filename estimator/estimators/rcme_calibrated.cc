@@ -15,11 +15,11 @@
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/calibrated/judge_modes.h"
 #include "estimator/calibrated/mode_covariance.h"
+#include "estimator/calibrated/modes_verdict.h"
 #include "estimator/calibrated/noise_choice.h"
 #include "estimator/calibrated/prior_check.h"
 #include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
-#include "estimator/calibrated/verdict.h"
 #include "estimator/calibrated/weigh_modes.h"
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
@@ -83,7 +83,7 @@ Matrix5d OwnCovarianceOfMatches(const MatchBlocks& matches, const MixturePrior& 
   return SandwichCovariance(mode, Explain(matches, mode), InverseOfObserved(matches, mode));
 }
 
-void FillMotion(const ExplainedMode& answer, const Verdict& verdict, double assumed_sigma_px,
+void FillMotion(const ExplainedMode& answer, const ModesVerdict& verdict, double assumed_sigma_px,
                 MotionEstimate* estimate) {
   const MixtureParameters& mixture = answer.mode.mixture;
   estimate->status = MotionStatus::kOk;
@@ -261,8 +261,9 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
     const ModelCheck check = CheckModel(shuffled, modes, weights);
     std::vector<Matrix5d> spreads;
-    Verdict verdict = JudgeModes({shuffled, matches, prior, modes, weights, weak_direction, check, options_},
-                                 rng, posterior != nullptr ? &spreads : nullptr);
+    ModesVerdict verdict =
+        JudgeModes({shuffled, matches, prior, modes, weights, weak_direction, check, options_}, rng,
+                   posterior != nullptr ? &spreads : nullptr);
     if (workings != nullptr) workings->checked = {check, verdict.by_modes};
     if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
     verdict.failure_probability += (1.0 - verdict.left_by_intrinsics) * (1.0 - verdict.failure_probability);

@@ -159,6 +159,8 @@ class Answerer {
     answer.has_prior = data.problem.prior.has_value();
     if (answer.estimate.status != MotionStatus::kOk) return answer;
     answer.evidence = ComputeEvidence(data.problem, answer.estimate);
+    if (!noise_ && !StatesCalibrationErrors(spec_))
+      answer.calibration_effects = ComputeCalibrationEffects(data.problem, answer.estimate);
     if (const std::optional<double> risk = arguments_.integrity_risk)
       answer.protection = {*risk, ComputeProtectionLevels(answer.estimate, *risk)};
     return answer;

@@ -69,6 +69,7 @@ void Solve(SolveArguments arguments, const CLI::Option& from, const CLI::Option&
   question.is_logarithmic = arguments.scale == "log";
   question.event = *std::ranges::find(TrialEvents(), arguments.quantity, &TrialEvent::name);
   SetRange(study, from, to, &question);
+  study = KeepEstimatorsWithSetting(study, question);
   CheckProcessEstimators(study.estimators);
   std::optional<Runner> runner;
   std::optional<KeptSteps> steps;
@@ -111,9 +112,9 @@ Examples:
   auto arguments = std::make_shared<SolveArguments>();
   AddStudyArgument(command, &arguments->study);
   command
-      ->add_option(
-          "--over", arguments->question.setting,
-          "the setting to vary, a number: any key that --set takes (data, failure bound or estimator option)")
+      ->add_option("--over", arguments->question.setting,
+                   "the setting to vary, a number: any key that --set takes (data, failure bound, or an "
+                   "option: then only of the estimators that have it)")
       ->required();
   CLI::Option* from =
       command

@@ -44,7 +44,7 @@ void WriteEvidence(const CameraNoise& noise, YAML::Emitter* out) {
 }
 
 void WriteSigma(const CameraNoise& noise, YAML::Emitter* out) {
-  const auto write = [&](const char* name, const Measured& measured) {
+  const auto write = [&](const char* name, const ValueWithError& measured) {
     WriteNoiseMap(name, {{"value", measured.value}, {"standard_error", measured.standard_error}}, out);
   };
   write("sigma_px", noise.sigma_px);

@@ -13,8 +13,9 @@
 
 namespace rcme {
 
-struct Measured {
-  double value = std::numeric_limits<double>::quiet_NaN();  // NaN: not known
+// A figure of a camera with its standard error; NaN: not known.
+struct ValueWithError {
+  double value = std::numeric_limits<double>::quiet_NaN();
   double standard_error = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -26,7 +27,7 @@ inline constexpr std::array kCorrectableFaults = {"focal_length",  "principal_po
 
 struct CameraCorrection {
   size_t fault = 0;          // index in kCorrectableFaults
-  Measured estimate;         // estimated together with the other faults
+  ValueWithError estimate;   // estimated together with the other faults
   double removed = 0.0;      // the correction to apply
   double uncertainty = 0.0;  // rms of what may be left of the fault, corrected or not
 };
@@ -46,13 +47,13 @@ struct CameraNoise {
   double effective_pairs = 0.0;  // equally weighted pairs that determine sigma as well
   std::string estimator;
 
-  Camera camera;           // as stated by the pairs
-  Measured sigma_px;       // per coordinate, for a key point of median size, including shared parts
-  Measured size_exponent;  // sigma grows with this power of the stated size; NaN: no sizes
+  Camera camera;                 // as stated by the pairs
+  ValueWithError sigma_px;       // per coordinate, for a key point of median size, including shared parts
+  ValueWithError size_exponent;  // sigma grows with this power of the stated size; NaN: no sizes
   // Standard deviations of the error that all matches of one key point share, and of an error field over
   // each image with correlation exp(-d / reach). Both are parts of sigma_px. 0: not significant.
   double key_point_px = 0.0;
-  Measured displacement_px{0.0, 0.0};
+  ValueWithError displacement_px{0.0, 0.0};
   double reach_px = 0.0, reach_factor = 1.0;  // reach_factor: one standard error upwards or downwards
   // If no field was found: the standard deviation to expect of a field that reaches as far as the image,
   // which pairs show least and motions are most sensitive to. Part of sigma_px. 0: a field was found.

@@ -171,19 +171,19 @@ bool IsChoice(const std::string& key) {
   return std::ranges::any_of(ChoiceKeys(), [&](const auto& choice) { return choice.first == key; });
 }
 
-DataSources MakeDataSources(const Settings& settings, BaselineSearch search) {
+DataSources MakeDataSources(const Settings& settings, BaselineTiming search) {
   const Configured configured(settings);
   if (configured.simulated) {
-    if (search == BaselineSearch::kNow) configured.simulated->FixBaseline();
+    if (search == BaselineTiming::kNow) configured.simulated->FixBaseline();
     return {"", {{"", configured.simulated}}};
   }
   return {"pair_scene", LoadMatchFolder(configured.folder)};
 }
 
-std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings, BaselineSearch search) {
+std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings, BaselineTiming search) {
   const Configured configured(settings);
   if (!configured.simulated) throw InputError(fmt::format("scene: {} is not simulated", kMatchFilesScene));
-  if (search == BaselineSearch::kNow) configured.simulated->FixBaseline();
+  if (search == BaselineTiming::kNow) configured.simulated->FixBaseline();
   return configured.simulated;
 }
 

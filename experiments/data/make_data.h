@@ -20,11 +20,11 @@ struct DataSources {
 };
 
 // When to search the baseline for a given parallax, which takes some hundred scenes.
-enum class BaselineSearch { kNow, kWithFirstScene };
+enum class BaselineTiming { kNow, kWithFirstScene };
 
 // Makes the sources for the settings of a condition, which include `scene`. Throws InputError that names key
 // and value.
-DataSources MakeDataSources(const Settings& settings, BaselineSearch search = BaselineSearch::kNow);
+DataSources MakeDataSources(const Settings& settings, BaselineTiming search = BaselineTiming::kNow);
 
 // Returns the choices, `scene` first, and every parameter with its value. Throws InputError that names key
 // and value.
@@ -58,6 +58,6 @@ inline constexpr const char* kMatchFilesScene = "match_files";
 
 // Makes simulated data for the settings, which include `scene`. Throws InputError that names key and value.
 std::shared_ptr<const SimulatedData> MakeSimulatedData(const Settings& settings,
-                                                       BaselineSearch search = BaselineSearch::kNow);
+                                                       BaselineTiming search = BaselineTiming::kNow);
 
 }  // namespace rcme

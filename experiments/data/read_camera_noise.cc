@@ -77,9 +77,9 @@ std::function<void(const YAML::Node&)> RealReader(const Place& place, const std:
   return [=, &place](const YAML::Node& node) { *value = ReadNoiseReal(place, node, key, allowed); };
 }
 
-Measured ReadMeasured(const Place& place, const YAML::Node& node, const std::string& key,
-                      NoiseRange allowed) {
-  Measured measured;
+ValueWithError ReadValueWithError(const Place& place, const YAML::Node& node, const std::string& key,
+                                  NoiseRange allowed) {
+  ValueWithError measured;
   ReadNoiseMap(place, node, key,
                {{"value", RealReader(place, key, allowed, &measured.value)},
                 {"standard_error", RealReader(place, key, kAnySize, &measured.standard_error)}});
@@ -196,8 +196,9 @@ void ReadNoiseVersion(const Place& place, const YAML::Node& node) {
 void ReadNoiseKeys(const Place& place, const YAML::Node& root, CameraNoise* noise) {
   using Node = const YAML::Node&;
   const auto later = [](Node) {};  // ReadCorrelations
-  const auto measured = [&](const char* key, NoiseRange allowed, Measured* value) {
-    return [&place, key, allowed, value](Node node) { *value = ReadMeasured(place, node, key, allowed); };
+  const auto measured = [&](const char* key, NoiseRange allowed, ValueWithError* value) {
+    return
+        [&place, key, allowed, value](Node node) { *value = ReadValueWithError(place, node, key, allowed); };
   };
   ReadNoiseMap(
       place, root, "noise file",

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/field_text.h"
@@ -112,6 +113,13 @@ std::string DescribeChanged(const GateReport& report) {
                      report.changed.size(), num_worse);
 }
 
+// Ratios are cut off at e, so a change near e - 1 may be any greater one.
+std::string DescribeChange(const GateRow& row) {
+  const bool is_cut_off =
+      row.test.quantity.scale == GateScale::kRatio && row.interval.upper > 0.97 * (std::numbers::e - 1.0);
+  return FormatChange(row) + (is_cut_off ? " or more (each ratio is cut off at e)" : "");
+}
+
 std::string ListRows(const GateReport& report, GateVerdict verdict) {
   std::vector<std::string> parts;
   for (const GateRow& row : report.look.rows) {
@@ -122,8 +130,8 @@ std::string ListRows(const GateReport& report, GateVerdict verdict) {
     }
     parts.push_back(
         row.test.is_limit
-            ? fmt::format("{} {}, {}", row.test.quantity.name, FormatChange(row), FormatMargin(row.test))
-            : fmt::format("{} {}, margin {}", row.test.Name(), FormatChange(row), FormatMargin(row.test)));
+            ? fmt::format("{} {}, {}", row.test.quantity.name, DescribeChange(row), FormatMargin(row.test))
+            : fmt::format("{} {}, margin {}", row.test.Name(), DescribeChange(row), FormatMargin(row.test)));
   }
   return fmt::format("{}", fmt::join(parts, "; "));
 }
@@ -215,10 +223,11 @@ std::string GateSentence(const GateReport& report) {
     case GateVerdict::kNotMeasured:
       break;
   }
+  const std::string undecided = ListRows(report, GateVerdict::kUndecided);
   return fmt::format("Undecided whether {} is worse{} after {}, {}{}{}{}.", report.new_label,
                      against.empty() ? " than allowed" : against, trials,
-                     report.is_out_of_time ? "when the time was over" : "when no trials were left", ": ",
-                     ListRows(report, GateVerdict::kUndecided), ListNotJudged(report));
+                     report.is_out_of_time ? "when the time was over" : "when no trials were left",
+                     undecided.empty() ? "" : ": ", undecided, ListNotJudged(report));
 }
 
 std::string ShowCommand(const GateReport& report, const ChangedTrial& trial, bool of_old) {

@@ -34,7 +34,7 @@ Interval FindClusteredInterval(const std::vector<IntegrityTally>& clusters, cons
       places.push_back(static_cast<std::int64_t>(c));
     }
   }
-  return MeasureBoundedClusteredMean(numbers, 1.0, places).interval;
+  return MeasureBoundedClusteredMean(numbers, {0.0, 1.0}, places).interval;
 }
 
 Estimate MeasureTallies(const std::vector<IntegrityTally>& clusters, bool by_trial,

@@ -38,7 +38,7 @@ FailingMotion::FailingMotion(const StudyPlan& plan, const Condition& condition, 
       event_(event),
       stream_key_(condition.stream_key) {
   RequireDrawnScenes(plan.study);
-  data_ = MakeSimulatedData(CombineSettings(plan.study, condition.levels), BaselineSearch::kWithFirstScene);
+  data_ = MakeSimulatedData(CombineSettings(plan.study, condition.levels), BaselineTiming::kWithFirstScene);
   if (!data_->HasNormalNoise()) {
     throw InputError("rare: noise: splitting needs gaussian noise; for other noise give --method stratified");
   }

@@ -208,7 +208,9 @@ RareRow MakeRareRow(const StratifiedCell& cell) {
               cell.rate.cautious_upper,
               std::numeric_limits<double>::quiet_NaN(),
               {}};
-  if (cell.rate.num_effective_events < kLeastFailures) row.doubts = {"few_failures"};
+  if (cell.rate.num_effective_events < kLeastFailures) row.doubts.push_back("few_failures");
+  if (cell.rate.cautious_upper > kMostUnseen * cell.rate.interval.upper)
+    row.doubts.push_back("few_easy_trials");
   const auto has_trials = [](const StratumCount& count) { return count.num_trials > 0; };
   if (std::ranges::none_of(cell.strata, has_trials)) {
     row.estimate = std::nan("");
@@ -264,8 +266,10 @@ std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<Stratifie
          FormatParagraph(kBruteForceLegend) + DescribeMissingCellTrials(cells, NumDrawn(cells)) +
          FormatParagraph(
              "unseen up to: the upper end if the next failure came from the easiest stratum that was run.") +
-         FormatParagraph(fmt::format("trusted: the failures weigh as much as {:g} of equal weight or more.",
-                                     kLeastFailures)) +
+         FormatParagraph(
+             fmt::format("trusted: the failures weigh as much as {:g} of equal weight or more, and the rate "
+                         "unseen is at most {:g} times the interval's end.",
+                         kLeastFailures, kMostUnseen)) +
          FormatParagraph("1 in k: of the trials of a stratum one in k is run: failed/run/drawn.");
 }
 

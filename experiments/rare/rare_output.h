@@ -27,6 +27,10 @@ RareRow MakeRareRow(const RareCell& cell);
 RareRow MakeRareRow(const StratifiedCell& cell);
 // effective number: as many of equal weight have the same relative error
 inline constexpr double kLeastFailures = 3.0;
+// Doubted ("few_easy_trials") if the upper end as if the next failure were in the easiest stratum is more
+// than kMostUnseen times that of the interval: so few easy trials were run that their failures may have been
+// missed. An interval that none of them is in says nothing of them.
+inline constexpr double kMostUnseen = 2.0;
 
 // A table with one row per condition and estimator, and the reasons why a rate is not to be trusted.
 std::string RareAsTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareCell>& cells);

@@ -13,7 +13,8 @@
 // Whether a trial is run is drawn from a stream of its own and never depends on its outcome. So the estimate
 // is unbiased for any estimator, noise and outliers, whether or not p is related to failures. The gain
 // depends on this relation: if hard scenes cause the failures, it is up to the ratio of the costs. If they do
-// not (wrong modes in easy scenes), there is no gain or a loss, and the interval shows it.
+// not (wrong modes in easy scenes), there is no gain or a loss, and an interval from the failures that were
+// seen is too short: it knows nothing of the easy strata without one. `cautious_upper` does.
 #pragma once
 
 #include <array>

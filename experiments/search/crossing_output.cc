@@ -21,7 +21,13 @@ std::vector<ColumnOf<RateCrossing>> CrossingColumns(const CrossingQuestion& ques
   columns.push_back({Column::Key("estimator"), [](const RateCrossing& one) { return one.estimator; }});
   Column estimate = Column::Estimated("estimate");
   estimate.heading = question.setting;
-  columns.push_back({estimate, [](const RateCrossing& one) { return Estimate{one.estimate, one.interval}; }});
+  columns.push_back({estimate, [](const RateCrossing& one) {
+                       Estimate crossing{one.estimate, one.interval};
+                       const bool is_anywhere =
+                           std::isinf(one.interval.lower) && std::isinf(one.interval.upper);
+                       if (is_anywhere) crossing.note = "or anywhere";
+                       return crossing;
+                     }});
   const auto add_interval = [&](const std::string& name, const std::string& json_name,
                                 const std::string& heading, Interval RateCrossing::*member) {
     columns.push_back(
@@ -58,7 +64,7 @@ std::string CrossingsAsTable(const Study& study, const CrossingQuestion& questio
          FormatParagraph(fmt::format(
              "Intervals are of 95 % each. The first supposes only that the rate does not {} with {}; the "
              "second also that its log-odds "
-             "are linear where the fresh trials were run. inf: the crossing may lie beyond the range.",
+             "are linear where the fresh trials were run. inf: the crossing may lie beyond the range; 'or anywhere', or nothing: the trials exclude no place.",
              question.is_falling ? "rise" : "fall", question.setting)) +
          FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials));
 }

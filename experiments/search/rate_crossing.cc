@@ -37,12 +37,25 @@ class Scale {
     const double setting = SettingAt(place);
     return is_whole_ ? fmt::format("{:.0f}", setting) : fmt::format("{:.10g}", setting);
   }
+  bool is_whole() const { return is_whole_; }
+  // The place of the whole number that TextAt(place) names.
+  double PlaceOfWhole(double place) const {
+    const double setting = std::round(SettingAt(place));
+    const double along = question_.is_logarithmic
+                             ? std::log(setting / question_.from) / std::log(question_.to / question_.from)
+                             : (setting - question_.from) / (question_.to - question_.from);
+    return question_.is_falling ? 1.0 - along : along;
+  }
+  // The setting of a place, to the whole number that is run there.
+  double RoundedSettingAt(double place) const {
+    return is_whole_ ? std::round(SettingAt(place)) : SettingAt(place);
+  }
   Interval SettingsIn(const Interval& places) const {
-    const double a = SettingAt(places.lower), b = SettingAt(places.upper);
+    const double a = RoundedSettingAt(places.lower), b = RoundedSettingAt(places.upper);
     return {std::min(a, b), std::max(a, b)};
   }
   std::vector<EventsAtLevel> SettingsOfEvents(std::vector<EventsAtLevel> events) const {
-    for (EventsAtLevel& one : events) one.level = SettingAt(one.level);
+    for (EventsAtLevel& one : events) one.level = RoundedSettingAt(one.level);
     return events;
   }
 
@@ -219,6 +232,27 @@ std::int64_t RateCrossing::num_trials() const {
   return sum;
 }
 
+Study KeepEstimatorsWithSetting(Study study, const CrossingQuestion& question) {
+  std::vector<EstimatorSpec> kept;
+  std::string why_not;
+  for (const EstimatorSpec& spec : study.estimators) {
+    Study alone = study;
+    alone.estimators = {spec};
+    try {
+      Override(&alone, question.setting, fmt::format("{}", question.from));
+      kept.push_back(spec);
+    } catch (const InputError& error) {
+      why_not = error.what();
+    }
+  }
+  if (kept.empty()) {
+    const size_t end = why_not.starts_with("--set: ") ? std::string_view("--set: ").size() : 0;
+    throw InputError("--over: " + why_not.substr(end));
+  }
+  study.estimators = kept;
+  return study;
+}
+
 WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question) {
   const std::string identity =
       fmt::format("{}\ncrossing: {} of {} in [{}, {}], logarithmic {}, falling {}, at {}, {} trials\n",
@@ -242,11 +276,13 @@ CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& questio
     for (size_t e = 0; e < study.estimators.size(); ++e) {
       Asker asker(study, question, scale, condition.levels, is_drawn_by_level, e, num_threads, steps,
                   &progress, total, &num_done);
+      PlaceOfRun place_of_run;
+      if (scale.is_whole()) place_of_run = [&](double place) { return scale.PlaceOfWhole(place); };
       Crossing found =
           FindCrossing([&](double place, std::int64_t number) { return asker.Ask(place, number); },
-                       question.rate, question.num_trials);
+                       question.rate, question.num_trials, 0.95, place_of_run);
       answer.crossings.push_back({condition.levels, study.estimators[e].label,
-                                  scale.SettingAt(found.estimate), scale.SettingsIn(found.interval),
+                                  scale.RoundedSettingAt(found.estimate), scale.SettingsIn(found.interval),
                                   scale.SettingsIn(found.logistic_interval),
                                   scale.SettingsOfEvents(std::move(found.searched)),
                                   scale.SettingsOfEvents(std::move(found.fresh))});

@@ -37,6 +37,10 @@ struct CrossingAnswer {
   std::vector<RateCrossing> crossings;
 };
 
+// Returns the study with only those of its estimators that the setting applies to: for an option, the ones
+// that have it. Throws InputError if there is none.
+Study KeepEstimatorsWithSetting(Study study, const CrossingQuestion& question);
+
 // The work; its steps are batches of trials at one level.
 WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question);
 

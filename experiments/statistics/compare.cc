@@ -107,6 +107,7 @@ Comparison Compare(const ReadableRun& readable, const std::string& reference, co
   const std::vector<Compared> compared = ComparedByName(options.compared);
   const bool is_anytime_valid = options.is_anytime_valid || !run.stopping_rule.empty();
   const bool is_pooled = options.pooling == Pooling::kPooled;
+  if (is_pooled) CheckMayBePooled(run);
   const bool is_of_population = is_pooled && !is_anytime_valid && HasPopulationIntervals(run);
   const TrialGroups groups =
       is_of_population ? GroupByDraw(run) : (is_pooled ? OneGroup() : GroupByCondition(run));

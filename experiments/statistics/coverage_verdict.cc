@@ -50,6 +50,7 @@ CoverageVerdict JudgeCoverage(double coverage, const Interval& interval, std::in
 std::string DescribeCoverageVerdict(const CoverageVerdict& verdict) {
   const std::string name = Name(verdict.verdict);
   if (verdict.verdict != RegionVerdict::kUndecided) return name;
+  if (std::isnan(verdict.trials_to_decide)) return name + ", more conditions would decide";
   if (!std::isfinite(verdict.trials_to_decide)) return name + ", on the border of the margin";
   const double step = std::pow(10.0, std::floor(std::log10(verdict.trials_to_decide)) - 1.0);  // two digits
   return fmt::format("{}, about {:.0f} trials would do", name,

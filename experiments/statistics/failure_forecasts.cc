@@ -20,7 +20,7 @@ namespace {
 struct Answer {
   double stated = 0.0;        // NaN: none, or not to be judged
   double inlier_share = 0.0;  // accepted share of the matches
-  std::int64_t cluster = 0;
+  std::int64_t cluster = 0, scene = 0;
   size_t group = 0;
   bool states = false, refused = false, failed = false, is_in_even_half = false;
 };
@@ -72,6 +72,7 @@ std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDe
       if (!IsScored(records[e])) continue;
       answers[e].push_back(ReadAnswer(records[e], run.failure));
       answers[e].back().cluster = clusters.Find(problem);
+      answers[e].back().scene = clusters.FindScene(problem);
       answers[e].back().group = groups.of_condition[problem.condition];
       answers[e].back().is_in_even_half = scene % 2 == 0;
     }
@@ -153,6 +154,7 @@ std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, 
         ++of_group.num_without;
       } else {
         of_group.forecasts.push_back({probabilities[i], answer.failed, answer.cluster});
+        of_group.scenes.push_back(answer.scene);
       }
     }
   }
@@ -186,6 +188,7 @@ void AddForecastsOfRun(std::vector<FailureForecasts> run, std::vector<FailureFor
                                    added.estimator, Name(same->source), Name(added.source)));
     }
     same->forecasts.insert(same->forecasts.end(), added.forecasts.begin(), added.forecasts.end());
+    same->scenes.insert(same->scenes.end(), added.scenes.begin(), added.scenes.end());
     same->refused_clusters.insert(same->refused_clusters.end(), added.refused_clusters.begin(),
                                   added.refused_clusters.end());
     same->num_without += added.num_without;

@@ -42,6 +42,9 @@ struct FailureForecasts {
   std::vector<std::int64_t> refused_clusters;  // one per refusal
   // Answers without a probability, or whose probability cannot be judged; no other number counts them.
   std::int64_t num_without = 0;
+  // The scenes of the forecasts, which in a population are not their clusters. Numbers of different runs may
+  // be equal.
+  std::vector<std::int64_t> scenes = {};
 };
 
 // Returns the forecasts of every estimator in every group, in the order of the run. A group is a level of

@@ -106,11 +106,14 @@ std::vector<std::int64_t> CountHistogram(const std::vector<Forecast>& forecasts)
 }
 
 // Clusters for simulating outcomes of correct probabilities: the trials of a scene are drawn together; the
-// trials of a draw are independent of each other.
+// scenes of a draw are independent of each other.
 std::vector<Forecast> WithScenes(const FailureForecasts& of) {
   std::vector<Forecast> forecasts = of.forecasts;
-  for (size_t i = 0; of.is_of_population && i < forecasts.size(); ++i)
-    forecasts[i].cluster = static_cast<std::int64_t>(i);
+  std::map<std::pair<std::int64_t, std::int64_t>, std::int64_t> number_of;  // of (draw, scene)
+  for (size_t i = 0; of.is_of_population && i < forecasts.size(); ++i) {
+    const std::pair scene(forecasts[i].cluster, of.scenes[i]);
+    forecasts[i].cluster = number_of.try_emplace(scene, std::ssize(number_of)).first->second;
+  }
   return forecasts;
 }
 

@@ -6,6 +6,7 @@
 
 #include "experiments/run/store/trial_totals.h"
 #include "experiments/statistics/trial_groups.h"
+#include "stats/clustered_estimate.h"
 
 namespace rcme {
 namespace {
@@ -44,16 +45,17 @@ HypothesisEvidence::HypothesisEvidence(const RunDescription& run, const StatedHy
       against_(FindIfPresent(run, stated.against)),
       is_paired_(!stated.against.empty()),
       is_of_means_(run.repeats_per_scene > 1 || quantity_.kind == SummaryRow::Kind::kScore),
+      shares_scenes_(HasCommonScenes(run) && !IsSampleOfPopulation(run.identity)),
+      repeats_per_scene_(run.repeats_per_scene),
       bounds_(run.failure),
       has_(ConditionsWhere(run, stated.where)),
       cluster_of_(NumberDraws(run)),
-      clusters_(run.conditions.size()),
       scores_(is_paired_ ? Interval{-1.0, 1.0} : Interval{0.0, 1.0}) {}
 
 std::int64_t HypothesisEvidence::CountConditions() const { return std::ranges::count(has_, true); }
 
-void HypothesisEvidence::Add(std::uint32_t condition, const std::vector<TrialRecord>& records) {
-  if (!has_[condition]) return;
+void HypothesisEvidence::Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+  if (!has_[problem.condition]) return;
   const std::optional<double> first = quantity_.Measure(records[*estimator_], bounds_);
   const std::optional<double> second =
       is_paired_ ? quantity_.Measure(records[*against_], bounds_) : std::optional(0.0);
@@ -62,9 +64,13 @@ void HypothesisEvidence::Add(std::uint32_t condition, const std::vector<TrialRec
     sharpness_.Add(records[*estimator_]);
     if (is_paired_) sharpness_against_.Add(records[*against_]);
   }
+  current_cluster_ = shares_scenes_
+                         ? static_cast<size_t>(problem.trial) / static_cast<size_t>(repeats_per_scene_)
+                         : cluster_of_[problem.condition];
   if (is_of_means_) return scene_.Add(*first - *second);
   const bool is_first = *first != 0.0, is_second = *second != 0.0;
-  Cluster& cluster = clusters_[cluster_of_[condition]];
+  Cluster& cluster = clusters_[current_cluster_];
+  if (shares_scenes_) cluster.values.push_back(*first - *second);
   cluster.count.num_events += is_first;
   ++cluster.count.num_trials;
   cluster.pair.num_first_only += is_first && !is_second;
@@ -73,17 +79,17 @@ void HypothesisEvidence::Add(std::uint32_t condition, const std::vector<TrialRec
   pairs_.Add(is_first, is_second);
 }
 
-void HypothesisEvidence::EndScene(std::uint32_t condition) {
+void HypothesisEvidence::EndScene() {
   const std::optional<double> mean = scene_.Take();
-  if (!mean || !has_[condition]) return;
-  clusters_[cluster_of_[condition]].moments.Add(*mean);
+  if (!mean) return;
+  clusters_[current_cluster_].values.push_back(*mean);
   scores_.Add(*mean);
 }
 
 template <typename Field>
 std::vector<Field> HypothesisEvidence::Clusters(Field Cluster::*field) const {
   std::vector<Field> all;
-  for (const Cluster& cluster : clusters_) all.push_back(cluster.*field);
+  for (const auto& [number, cluster] : clusters_) all.push_back(cluster.*field);
   return all;
 }
 
@@ -99,7 +105,20 @@ StatedSharpness HypothesisEvidence::MeasureSharpness(Side side) const {
   return (side == Side::kEstimator ? sharpness_ : sharpness_against_).Measure();
 }
 
+MeasuredHypothesis HypothesisEvidence::MeasureByClusters(double confidence) const {
+  std::vector<double> values;
+  std::vector<std::int64_t> numbers;
+  for (const auto& [number, cluster] : clusters_) {
+    values.insert(values.end(), cluster.values.begin(), cluster.values.end());
+    numbers.resize(values.size(), static_cast<std::int64_t>(number));
+  }
+  const ClusteredEstimate mean =
+      MeasureBoundedClusteredMean(values, {is_paired_ ? -1.0 : 0.0, 1.0}, numbers, confidence);
+  return {mean.value, mean.interval};
+}
+
 MeasuredHypothesis HypothesisEvidence::MeasureForConditions(double confidence) const {
+  if (shares_scenes_ && CountConditions() > 1) return MeasureByClusters(confidence);
   if (is_of_means_) return {scores_.mean(), scores_.Sequence(confidence)};
   if (is_paired_) return {pairs_.RiskDifference(), RiskDifferenceInterval(pairs_, confidence)};
   const std::int64_t num_events = pairs_.both + pairs_.first_only;
@@ -112,7 +131,7 @@ MeasuredHypothesis HypothesisEvidence::MeasureForPopulation(double confidence) c
     return MeasuredHypothesis{measured.value, measured.interval};
   };
   constexpr ConditionWeights kWeights = ConditionWeights::kByTrials;  // as in a pooled summary
-  if (is_of_means_) return pair_up(MeasurePopulationMean(Clusters(&Cluster::moments), kWeights, confidence));
+  if (is_of_means_) return MeasureByClusters(confidence);
   if (is_paired_) return pair_up(MeasurePopulationDifference(Clusters(&Cluster::pair), kWeights, confidence));
   return pair_up(MeasurePopulationRate(Clusters(&Cluster::count), kWeights, confidence));
 }
@@ -140,11 +159,11 @@ EvidenceTrials ReadEvidence(const ResultStore& store, const RunDescription& run,
         ++read.num_trials[problem.condition];
         read.is_weighted = read.is_weighted || problem.weight != 1.0;
         for (HypothesisEvidence& one : *evidence) {
-          if (one.HasEstimators()) one.Add(problem.condition, records);
+          if (one.HasEstimators()) one.Add(problem, records);
         }
       },
-      [&](std::uint32_t condition) {
-        for (HypothesisEvidence& one : *evidence) one.EndScene(condition);
+      [&](std::uint32_t) {
+        for (HypothesisEvidence& one : *evidence) one.EndScene();
       });
   return read;
 }

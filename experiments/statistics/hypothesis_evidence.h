@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -12,7 +13,6 @@
 #include "experiments/study/stated_hypothesis.h"
 #include "stats/intervals.h"
 #include "stats/paired.h"
-#include "stats/population_mean.h"
 #include "stats/population_rate.h"
 #include "stats/score_mean.h"
 
@@ -33,8 +33,9 @@ class HypothesisEvidence {
   bool HasCondition(size_t condition) const { return has_[condition]; }
   std::int64_t CountConditions() const;
 
-  void Add(std::uint32_t condition, const std::vector<TrialRecord>& records);
-  void EndScene(std::uint32_t condition);
+  // Trials come scene by scene (scenes_of_run.h).
+  void Add(const ProblemRecord& problem, const std::vector<TrialRecord>& records);
+  void EndScene();
 
   MeasuredHypothesis Measure(bool is_of_population, double confidence) const;
   // Of the answers that are measured, if the quantity is a coverage; else unknown. kAgainst: of the other
@@ -43,24 +44,29 @@ class HypothesisEvidence {
   StatedSharpness MeasureSharpness(Side side) const;
 
  private:
+  // Trials that depend on each other: those of a draw, or with common scenes of a scene in all conditions.
   struct Cluster {
     ConditionCount count;
     ConditionPair pair;
-    Moments moments;
+    std::vector<double> values;  // of the trials, or the means of repeated scenes
   };
 
   template <typename Field>
   std::vector<Field> Clusters(Field Cluster::*field) const;
   MeasuredHypothesis MeasureForPopulation(double confidence) const;
   MeasuredHypothesis MeasureForConditions(double confidence) const;
+  // By betting on the sums of the clusters: valid also if all of them agree.
+  MeasuredHypothesis MeasureByClusters(double confidence) const;
 
   const TrialQuantity& quantity_;
   std::optional<size_t> estimator_, against_;
-  bool is_paired_, is_of_means_;
+  bool is_paired_, is_of_means_, shares_scenes_;
+  int repeats_per_scene_;
   FailureBounds bounds_;
   std::vector<bool> has_;  // by condition
   std::vector<size_t> cluster_of_;
-  std::vector<Cluster> clusters_;
+  std::map<size_t, Cluster> clusters_;
+  size_t current_cluster_ = 0;
   PairedCounts pairs_;
   SharpnessMedians sharpness_, sharpness_against_;  // only of a coverage
   SceneMean scene_;

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include "experiments/study/population.h"
+#include "parameters/input_error.h"
+
 namespace rcme {
 
 std::optional<double> SceneMean::Take() {
@@ -12,6 +15,13 @@ std::optional<double> SceneMean::Take() {
 
 bool HasCommonScenes(const RunDescription& run) {
   return run.study_yaml.find("common_scenes: true") != std::string::npos;
+}
+
+void CheckMayBePooled(const RunDescription& run) {
+  if (run.conditions.size() < 2 || !HasCommonScenes(run) || IsSampleOfPopulation(run.identity)) return;
+  throw InputError(
+      "pooled: the conditions share their scenes (common_scenes: true), so their trials are not independent and "
+      "a pooled interval would be too short; leave pooling out");
 }
 
 void ForEachTrialByScene(

@@ -25,6 +25,11 @@ class SceneMean {
 // Returns whether trials with the same number share their scene in all conditions (Study::common_scenes).
 bool HasCommonScenes(const RunDescription& run);
 
+// Throws InputError if trials of several conditions cannot be pooled: exact intervals need independent
+// trials, and these conditions share their scenes. A population's intervals are of its draws and may be
+// pooled.
+void CheckMayBePooled(const RunDescription& run);
+
 // Calls `visit` for every trial of the run, ordered by condition and trial, and `end_of_scene` with the
 // condition after the last trial of each scene. `is_first`: the trial is the first of its scene, which an
 // interrupted run may lack.

@@ -15,8 +15,9 @@ ClusteredShare MeasureShareOfClusters(const std::vector<bool>& holds,
   share.count = std::ranges::count(holds, true);
   share.has_shared_clusters = std::ssize(different) < share.n;
   const std::vector<double> numbers(holds.begin(), holds.end());
-  share.interval = share.has_shared_clusters ? MeasureBoundedClusteredMean(numbers, 1.0, clusters).interval
-                                             : ExactBinomialInterval(share.count, share.n);
+  share.interval = share.has_shared_clusters
+                       ? MeasureBoundedClusteredMean(numbers, {0.0, 1.0}, clusters).interval
+                       : ExactBinomialInterval(share.count, share.n);
   return share;
 }
 

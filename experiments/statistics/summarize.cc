@@ -73,6 +73,7 @@ std::string KindName(SummaryRow::Kind kind) {
 
 Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling) {
   const RunDescription& description = run.description;
+  if (pooling == Pooling::kPooled) CheckMayBePooled(description);
   if (pooling == Pooling::kPooled && HasPopulationIntervals(description)) {
     const std::vector<SummaryCell> draws = CollectDraws(run);
     if (std::ranges::none_of(draws, IsWeighted)) return SummarizePopulation(description, draws, with_times);

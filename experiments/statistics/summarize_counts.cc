@@ -2,6 +2,7 @@
 
 #include "experiments/run/store/parts.h"
 #include "experiments/statistics/population_summary.h"
+#include "experiments/statistics/scenes_of_run.h"
 
 namespace rcme {
 
@@ -20,6 +21,7 @@ bool KeepsCounts(const std::string& path) {
 
 Summary SummarizeCounts(const RunCounts& counts, bool with_times, Pooling pooling) {
   const RunDescription& run = counts.run;
+  if (pooling == Pooling::kPooled) CheckMayBePooled(run);
   if (pooling == Pooling::kPooled && HasPopulationIntervals(run)) {
     const TrialGroups groups = GroupByDraw(run);
     std::vector<SummaryCell> draws(groups.levels.size(), SummaryCell(run.estimators.size()));

@@ -86,7 +86,10 @@ TrialClusters::TrialClusters(const RunDescription& run)
 }
 
 std::int64_t TrialClusters::Find(const ProblemRecord& problem) const {
-  if (draws_) return static_cast<std::int64_t>(draws_->group_of(problem));
+  return draws_ ? static_cast<std::int64_t>(draws_->group_of(problem)) : FindScene(problem);
+}
+
+std::int64_t TrialClusters::FindScene(const ProblemRecord& problem) const {
   return problem.trial / repeats_per_scene_ + conditions_apart_ * problem.condition;
 }
 

@@ -36,6 +36,8 @@ class TrialClusters {
  public:
   explicit TrialClusters(const RunDescription& run);
   std::int64_t Find(const ProblemRecord& problem) const;
+  // Of trials that share their scene, also where Find gives the draw.
+  std::int64_t FindScene(const ProblemRecord& problem) const;
 
  private:
   std::optional<TrialGroups> draws_;

@@ -8,6 +8,9 @@
 #include "experiments/data/make_data.h"
 #include "parameters/find_setting.h"
 #include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -57,6 +60,21 @@ void SettleKey(const std::vector<std::pair<Settings, Settings>>& possible, Drawn
       fmt::format("ranges: {}: no draw has this key{}{}", drawn->key, where, ChoicesWith(drawn->key)));
 }
 
+// A side of a restriction must be a number or a key of some draw: one that no draw has would restrict
+// nothing.
+void CheckSide(const std::vector<std::pair<Settings, Settings>>& possible, const Restriction& restriction,
+               const std::string& side) {
+  double number = 0.0;
+  if (ParseReal(side, &number)) return;
+  std::vector<std::string> keys;
+  for (const auto& [settings, resolved] : possible) {
+    for (const auto& [key, value] : resolved) keys.push_back(key);
+  }
+  if (std::ranges::count(keys, side) > 0) return;
+  throw InputError(fmt::format("given: {}: no draw has the key {}{}", restriction.Text(), Quoted(side),
+                               DidYouMean(side, keys)));
+}
+
 }  // namespace
 
 Settings ChooseFirstDraw(const Study& study) {
@@ -85,6 +103,10 @@ void SettlePopulation(const Place& place, const YAML::Node& node, Study* study) 
     for (const Settings& settings : PossibleSettings(*study))
       possible.emplace_back(settings, ResolveSettings(settings));
     for (DrawnKey& drawn : study->population->keys) SettleKey(possible, &drawn);
+    for (const Restriction& restriction : study->population->given) {
+      CheckSide(possible, restriction, restriction.left);
+      CheckSide(possible, restriction, restriction.right);
+    }
   });
 }
 

@@ -83,7 +83,7 @@ struct RowConditions {
 RowConditions MakeRowConditions(const Study& study, const std::vector<std::string>& levels) {
   const Settings settings = CombineSettings(study, levels);
   DataSources made =
-      MakeDataSources(settings, study.population ? BaselineSearch::kWithFirstScene : BaselineSearch::kNow);
+      MakeDataSources(settings, study.population ? BaselineTiming::kWithFirstScene : BaselineTiming::kNow);
   RowConditions row{std::move(made.implied_factor), {}};
   for (const auto& [level, source] : made.sources) {
     Condition condition{0, levels, source, source->NumTrials(study.trials),

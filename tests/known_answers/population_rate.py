@@ -5,7 +5,7 @@ stats/population_rate.h and population_mean.h, written down once more with scipy
 """
 
 import numpy as np
-from scipy import stats
+from scipy import optimize, stats
 
 TAIL = 0.025
 
@@ -63,11 +63,15 @@ def mean(samples, equal):
     a = np.full(len(n), 1 / len(n)) if equal else n / n.sum()
     value, m = np.sum(a * x), len(n)
     V = m / (m - 1) * np.sum(a**2 * (x - value) ** 2)
-    half = stats.t.ppf(1 - TAIL, 1 / np.sum(a**2) - 1) * np.sqrt(V)
+    t = stats.t.ppf(1 - TAIL, 1 / np.sum(a**2) - 1)
+    d = a * (x - value)
+    k = np.sum(d**3) / np.sum(d**2) ** 1.5
+    upper, lower = (value - np.sqrt(V) * optimize.brentq(lambda T: T + k * T**2 / 3 + k**2 * T**3 / 27 + k / 6 - end, -99, 99)
+                    for end in (-t, t))  # Hall's (1992) cubic
     parts = a**2 * s2 / n
     half_here = stats.t.ppf(1 - TAIL, parts.sum() ** 2 / np.sum(parts**2 / (n - 1))) * np.sqrt(parts.sum())
     n_eff = np.sum(a * ((x - value) ** 2 + s2)) / V
-    return value, np.sqrt(V), value - half, value + half, value - half_here, value + half_here, n_eff
+    return value, np.sqrt(V), lower, upper, value - half_here, value + half_here, n_eff
 
 
 if __name__ == "__main__":

@@ -104,7 +104,7 @@ TEST_P(OutlierContract, BothEndsLieInTheirImagesButForNoise) {
 TEST_P(OutlierContract, FlaggedAreThoseOnTheTrueEpipolarLine) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const Scene scene = SceneForOutliers(100, trial);
-    const WrongMatches wrong = MakeWrong(*GetParam().make(), scene, 60, 0.0, trial);
+    const DrawnOutliers wrong = MakeWrong(*GetParam().make(), scene, 60, 0.0, trial);
     for (size_t i = 0; i < 100; ++i) {
       EXPECT_EQ(wrong.is_undetectable[i], i < 60 && std::abs(TripleProduct(scene, wrong.matches[i])) < 1e-12);
       EXPECT_EQ(wrong.is_undetectable[i], i < 60 && GetParam().name == "epipolar");

@@ -108,7 +108,7 @@ TEST(SceneCamera, WrongMatchesLieInTheImagesAndOnRays) {
       SCOPED_TRACE(std::string(name) + " " + law.name);
       for (std::uint32_t trial = 0; trial < 5; ++trial) {
         const Scene scene = LensScene(name, trial);
-        const WrongMatches wrong = MakeWrong(*law.make(), scene, 60, 0.0, trial);
+        const DrawnOutliers wrong = MakeWrong(*law.make(), scene, 60, 0.0, trial);
         for (size_t i = 0; i < 100; ++i) {
           ASSERT_TRUE(scene.camera1.IsInImage(wrong.matches[i].x1_px));
           ASSERT_TRUE(scene.camera2.IsInImage(wrong.matches[i].x2_px));
@@ -125,7 +125,7 @@ TEST(SceneCamera, WrongMatchesLieInTheImagesAndOnRays) {
 TEST(SceneCamera, WrongMatchesOnTheEpipolarCurveAreShifted) {
   const Scene scene = LensScene("fisheye", 1);
   const auto law = FindEntry(OutlierRegistry(), "outliers", "epipolar").make();
-  const WrongMatches wrong = MakeWrong(*law, scene, 60);
+  const DrawnOutliers wrong = MakeWrong(*law, scene, 60);
   for (size_t i = 0; i < 60; ++i)
     EXPECT_GE((wrong.matches[i].x2_px - wrong.exact[i].x2_px).norm(),
               wrong.matches[i].x1_px == wrong.exact[i].x1_px ? 5.0 : 0.0);

@@ -126,5 +126,22 @@ TEST(CalibrationError, IntervalForThePopulationOfConditions) {
   EXPECT_FALSE(covered.Admits(0.84)) << "no power";
 }
 
+// 30 conditions of four forecasts without an event: the rate may be up to 0.12 (one trial a condition
+// counts), so that probabilities of 0.002 may be right, or wrong by as much.
+TEST(CalibrationError, EventsThatWereNotSeenAreAllowedFor) {
+  std::vector<Forecast> forecasts;
+  for (int condition = 0; condition < 30; ++condition)
+    forecasts.insert(forecasts.end(), 4, {0.001 * (condition % 4), false, condition});
+  RandomStream rng({.seed = 1, .purpose = 491});
+  const BootstrapEstimate error =
+      MeasurePopulationCalibrationError(forecasts, Binning::kEqualWidth, 10, {}, rng);
+  EXPECT_EQ(error.interval.lower, 0.0);
+  EXPECT_GT(error.interval.upper, 0.1);
+  // Probabilities of 0.9 are wrong all the same.
+  for (Forecast& forecast : forecasts) forecast.probability = 0.9;
+  EXPECT_GT(MeasurePopulationCalibrationError(forecasts, Binning::kEqualWidth, 10, {}, rng).interval.lower,
+            0.7);
+}
+
 }  // namespace
 }  // namespace rcme

@@ -43,6 +43,33 @@ TEST(LogisticInterval, KnownAnswer) {
   EXPECT_NEAR(0.5 * (interval.upper - interval.lower), 0.02472, 0.0002);
 }
 
+// A setting of ten whole numbers whose rate rises by a step after the sixth. 200 searches with an exact
+// guarantee of .95 each; fewer than 178 hold with a probability of 3e-4. The fresh trials are at four numbers
+// or more, so that 3,000 tell on which side of the step each is.
+TEST(FindCrossing, OfFewPlacesIsBetweenTwoOfThem) {
+  const auto place_of_run = [](double x) { return std::round(9.0 * x) / 9.0; };
+  int num_covered = 0, num_bracketed = 0;
+  for (std::uint32_t search = 0; search < 200; ++search) {
+    RandomStream rng({3, 7, search, 0});
+    const auto ask = [&](double place, std::int64_t number) {
+      EXPECT_EQ(place, place_of_run(place));
+      std::int64_t num_events = 0;
+      for (std::int64_t k = 0; k < number; ++k)
+        num_events += rng.Uniform() < (place < 5.5 / 9.0 ? 0.05 : 0.3);
+      return EventsAtLevel{place, num_events, number};
+    };
+    const Crossing found = FindCrossing(ask, 0.1, 3000, 0.95, place_of_run);
+    EXPECT_GE(found.fresh.size(), 4u);
+    for (size_t i = 1; i < found.fresh.size(); ++i) EXPECT_LT(found.fresh[i - 1].level, found.fresh[i].level);
+    num_covered += found.interval.lower <= 5.0 / 9.0 && found.interval.upper >= 6.0 / 9.0;
+    num_bracketed += std::isfinite(found.interval.lower) && std::isfinite(found.interval.upper);
+    EXPECT_GE(found.estimate, found.interval.lower);
+    EXPECT_LE(found.estimate, found.interval.upper);
+  }
+  EXPECT_GE(num_covered, 178);
+  EXPECT_GE(num_bracketed, 190);
+}
+
 TEST(CrossingSearch, KnowsNothingAtFirstAndClosesIn) {
   CrossingSearch search(100, 0.5);
   EXPECT_EQ(search.Quantile(0.5), 50.0);

@@ -108,7 +108,7 @@ constexpr const char* kColumns =
 // Every claim about an estimator's answers, of every double.
 void PrintFaults(double confidence, int num_seeds) {
   PrintLine(fmt::format("fault,claim,{},most_trials", kColumns));
-  for (const AnswerFault& fault : AnswerFaults()) {
+  for (const DoubledFault& fault : DoubledFaults()) {
     for (const CaseClaim& claim :
          AnswerCalibration("double", "double", std::make_shared<DoubledEstimator>(fault), FailureBounds())) {
       Claim of_double;
@@ -158,7 +158,7 @@ Check EdgeCheck(Target target, double truth) {
 void PrintEdges(int num_seeds) {
   constexpr double kConfidence = 0.95;
   PrintLine(fmt::format("claim,quantity,border,{}", kColumns));
-  const AnswerFault& sound = AnswerFaults().front();
+  const DoubledFault& sound = DoubledFaults().front();
   for (const CaseClaim& claim :
        AnswerCalibration("double", "double", std::make_shared<DoubledEstimator>(sound), FailureBounds())) {
     const std::string name = claim.words.id.substr(0, claim.words.id.rfind('.'));

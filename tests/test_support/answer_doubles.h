@@ -68,7 +68,7 @@ inline MotionEstimate FullAnswer(RandomStream& rng) {
 // The claim that is to find a fault; the others may.
 enum class FoundBy { kNoClaim, kCoverageClaim, kFailureClaim, kSigmaClaim };
 
-struct AnswerFault {
+struct DoubledFault {
   const char* name;
   FoundBy found_by;
   MotionEstimate (*draw)(RandomStream& rng);
@@ -107,9 +107,9 @@ inline void ReportInRightCoordinates(MotionEstimate* answer, RandomStream&) {
 }
 
 // Sound answers first.
-inline const std::vector<AnswerFault>& AnswerFaults() {
+inline const std::vector<DoubledFault>& DoubledFaults() {
   static const auto nothing = [](MotionEstimate*, RandomStream&) {};
-  static const std::vector<AnswerFault> faults = {
+  static const std::vector<DoubledFault> faults = {
       {"sound: covariance alone", FoundBy::kNoClaim, PlainAnswer, nothing},
       {"sound: P and sigma stated", FoundBy::kNoClaim, FullAnswer, nothing},
       {"NaN in R in 10 % of the answers", FoundBy::kCoverageClaim, PlainAnswer,
@@ -165,7 +165,7 @@ inline const std::vector<AnswerFault>& AnswerFaults() {
 // An estimator that gives the answers of a double.
 class DoubledEstimator : public MotionEstimator {
  public:
-  explicit DoubledEstimator(const AnswerFault& fault) : fault_(fault) {}
+  explicit DoubledEstimator(const DoubledFault& fault) : fault_(fault) {}
 
   MotionEstimate Estimate(const MotionProblem&, RandomStream& rng) const override {
     MotionEstimate answer = fault_.draw(rng);
@@ -174,7 +174,7 @@ class DoubledEstimator : public MotionEstimator {
   }
 
  private:
-  AnswerFault fault_;
+  DoubledFault fault_;
 };
 
 // A case without matches that has the doubles' motion and noise level.

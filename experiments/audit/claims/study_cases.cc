@@ -40,7 +40,7 @@ Settings SimulatedSettings(const StudyPlan& plan, const Condition& condition) {
 CaseMaker StudyCases(const StudyPlan& plan, const Condition& condition) {
   Settings settings = SimulatedSettings(plan, condition);
   settings.emplace_back("severity", "skipped");
-  return CasesFrom(MakeSimulatedData(settings, BaselineSearch::kWithFirstScene));
+  return CasesFrom(MakeSimulatedData(settings, BaselineTiming::kWithFirstScene));
 }
 
 std::string WhatIsMissing(const Case& made, const CaseNeeds& needs) {

@@ -71,7 +71,7 @@ MapSample MakeMapSample(const Case& made, int num_points) {
 }
 
 MapSampler MakeMapSampler(const Study& study, const Settings& settings, int num_points) {
-  const CaseMaker make = CasesFrom(MakeSimulatedData(settings, BaselineSearch::kWithFirstScene));
+  const CaseMaker make = CasesFrom(MakeSimulatedData(settings, BaselineTiming::kWithFirstScene));
   const CaseNeeds needs{.num_true_matches = num_points + 1};
   return [study, make, needs, num_points](const StreamName& name) -> std::optional<MapSample> {
     auto simulated = SimulateDraw(study, [&] { return make(name); });

@@ -104,6 +104,26 @@ std::string FormatProtection(const LevelsAtRisk& at) {
       kDegPerRad * at.levels.rotation_rad, kDegPerRad * at.levels.direction_rad, at.risk);
 }
 
+// "focal_sd" as a person says it.
+std::string ErrorText(const CalibrationEffect& effect) {
+  if (effect.option == "focal_sd") return fmt::format("{:g} % of the focal length", 100.0 * effect.sd);
+  if (effect.option == "principal_point_sd_px")
+    return fmt::format("{:g} px of the principal point", effect.sd);
+  return fmt::format("{:g} of k1", effect.sd);
+}
+
+// What errors of the calibration would do that nobody stated.
+std::string CalibrationText(const std::vector<CalibrationEffect>& effects) {
+  if (effects.empty()) return {};
+  std::string text = "  if K is off, errors with these standard deviations move the motion by (rms)\n";
+  for (const CalibrationEffect& effect : effects) {
+    text += fmt::format("             {:<27} rotation {:.2g} deg, direction {:.2g} deg\n", ErrorText(effect),
+                        effect.rotation_rms_deg, effect.direction_rms_deg);
+  }
+  return text +
+         "             --set focal_sd=0.005, for example, makes such an error part of the covariance\n";
+}
+
 std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const EstimatorSpec& spec) {
   const MotionEstimate& estimate = answer.estimate;
   std::string text = "\nHow sure\n";
@@ -121,6 +141,7 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
       spread.rotation_95_deg(0), spread.rotation_95_deg(1), spread.rotation_95_deg(2),
       spread.direction_95_deg(0), spread.direction_95_deg(1));
   if (answer.protection) text += FormatProtection(*answer.protection);
+  text += CalibrationText(answer.calibration_effects);
   const MotionMode* found = FindRunnerUp(estimate);
   if (found == nullptr) return text;
   const MotionMode& other = *found;
@@ -226,6 +247,17 @@ Json ForBoundsAsJson(const std::vector<ProbabilityForBounds>& for_bounds) {
   return list;
 }
 
+Json CalibrationEffectsAsJson(const std::vector<CalibrationEffect>& effects) {
+  Json list = Json::array();
+  for (const CalibrationEffect& effect : effects) {
+    list.push_back({{"option", effect.option},
+                    {"sd", effect.sd},
+                    {"rotation_rms_deg", effect.rotation_rms_deg},
+                    {"direction_rms_deg", effect.direction_rms_deg}});
+  }
+  return list;
+}
+
 Json EvidenceAsJson(const MotionEvidence& e) {
   return {{"sigma_px", JsonNumber(e.sigma_px)},
           {"sigma_sd_px", JsonNumber(e.sigma_sd_px)},
@@ -290,6 +322,8 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
                                  {"rotation_rad", answer.protection->levels.rotation_rad},
                                  {"direction_rad", answer.protection->levels.direction_rad}};
   }
+  if (!answer.calibration_effects.empty())
+    json["calibration_effects"] = CalibrationEffectsAsJson(answer.calibration_effects);
   json["evidence"] = EvidenceAsJson(answer.evidence);
   if (!std::isnan(record.rotation_error_deg)) json["rotation_error_deg"] = record.rotation_error_deg;
   if (!std::isnan(record.direction_error_deg)) json["direction_error_deg"] = record.direction_error_deg;

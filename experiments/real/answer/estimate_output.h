@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "estimator/protection_level.h"
+#include "experiments/real/answer/calibration_effect.h"
 #include "experiments/real/answer/motion_evidence.h"
 #include "experiments/real/answer/probabilities_for_bounds.h"
 #include "experiments/study/estimator_spec.h"
@@ -27,6 +28,8 @@ struct PairAnswer {
   bool has_truth_sd = false;
   std::vector<ProbabilityForBounds> for_bounds = {};  // for the requested bounds
   std::optional<LevelsAtRisk> protection = {};
+  // Of errors that the covariance does not have; empty if it has some, or without a motion.
+  std::vector<CalibrationEffect> calibration_effects = {};
   bool has_prior = false;  // the problem had a prior
 };
 

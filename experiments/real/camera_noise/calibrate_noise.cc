@@ -47,7 +47,7 @@ PairSet SelectCamera(const PairSet& set) {
 }
 
 // Root of a variance, with the error of first order.
-Measured RootOf(const PooledParameter& variance) {
+ValueWithError RootOf(const PooledParameter& variance) {
   const double root = std::sqrt(std::max(0.0, variance.value));
   return {root, root > 0.0 ? variance.standard_error / (2.0 * root) : 0.0};
 }

@@ -65,7 +65,7 @@ std::vector<PairSet> SequencesOfStudy(const StudyPlan& plan, int num_images) {
       throw InputError(fmt::format("study {}: a sequence of images needs simulated scenes, not real pairs",
                                    plan.study.name));
     const std::shared_ptr<const SimulatedData> data =
-        MakeSimulatedData(CombineSettings(plan.study, condition.levels), BaselineSearch::kWithFirstScene);
+        MakeSimulatedData(CombineSettings(plan.study, condition.levels), BaselineTiming::kWithFirstScene);
     PairSet set{NameSet(plan, condition), {}};
     for (int trial = 0; trial < condition.num_trials; ++trial) {
       const StreamName name = NameOfScene(plan, condition, static_cast<std::uint32_t>(trial));

@@ -55,7 +55,7 @@ constexpr double kTailSigmas = 2.0;
 void AddHalves(const MotionProblem& problem, const MotionEstimate& whole, const MotionEstimator& estimator,
                StreamName name, Values* values) {
   static const double bound = ChiSquareQuantile(5, 0.95);
-  const auto add = [&](Split split, Quantity quantity) {
+  const auto add = [&](Split split, TwinQuantity quantity) {
     ++name.trial;
     const std::optional<double> difference = DifferenceOfHalves(problem, whole, split, estimator, name);
     if (difference) (*values)[quantity].push_back(*difference <= bound);

@@ -9,7 +9,7 @@
 
 namespace rcme {
 
-enum Quantity : size_t {
+enum TwinQuantity : size_t {
   kRefusal,
   kFailure,
   kStatedFailure,

@@ -54,6 +54,7 @@ TEST(MakeRareRow, OfStrataDoubtsFewFailures) {
   cell.strata[0].num_trials = 40;
   cell.rate.estimate = 0.01;
   cell.rate.cautious_upper = 0.3;
+  cell.rate.interval = {0.001, 0.2};
   cell.rate.num_effective_events = 2.9;
   EXPECT_EQ(MakeRareRow(cell).doubts, std::vector<std::string>{"few_failures"});
   cell.rate.num_effective_events = 3.0;
@@ -61,6 +62,18 @@ TEST(MakeRareRow, OfStrataDoubtsFewFailures) {
   EXPECT_EQ(MakeRareRow(cell).num_calls, 40);
   EXPECT_EQ(MakeRareRow(cell).unseen_up_to, 0.3);
   EXPECT_TRUE(std::isnan(MakeRareRow(cell).relative_spread));
+}
+
+// The failures that were seen say nothing of easy trials of which hardly any was run.
+TEST(MakeRareRow, OfStrataDoubtsFewEasyTrials) {
+  StratifiedCell cell;
+  cell.strata[0].num_trials = 40;
+  cell.rate.num_effective_events = 10.0;
+  cell.rate.interval = {0.001, 0.01};
+  cell.rate.cautious_upper = 0.02;
+  EXPECT_TRUE(MakeRareRow(cell).doubts.empty());
+  cell.rate.cautious_upper = 0.021;
+  EXPECT_EQ(MakeRareRow(cell).doubts, std::vector<std::string>{"few_easy_trials"});
 }
 
 TEST(MakeRareResult, HasTheRatesBeyondEachLevel) {

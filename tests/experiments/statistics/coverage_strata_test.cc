@@ -89,7 +89,7 @@ TEST(CoverageStrata, IntervalsAreByClusters) {
   std::vector<double> numbers;
   for (size_t i = 0; i < 200; ++i) numbers.push_back(are_covered[i] ? 1.0 : 0.0);
   const ClusteredEstimate expected =
-      MeasureBoundedClusteredMean(numbers, 1.0, std::span(answers.clusters).first(200));
+      MeasureBoundedClusteredMean(numbers, {0.0, 1.0}, std::span(answers.clusters).first(200));
   EXPECT_EQ(together.coverage.interval.lower, expected.interval.lower);
   EXPECT_LT(together.coverage.interval.lower, apart.coverage.interval.lower);
   const CoverageStratum of_population = MeasureCoverageStrata(answers, StrataIntervals::kPopulation).front();

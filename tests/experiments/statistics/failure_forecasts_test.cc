@@ -196,6 +196,24 @@ TEST_F(FailureForecastsTest, MeasuresOfRightProbabilities) {
   EXPECT_EQ(m.histogram[13], 0) << "from .4225 on";
 }
 
+// 20 draws of a population with 5 scenes each, whose probabilities are right; ten equal trials of a scene say
+// no more about them than one.
+TEST(FailureForecasts, RepeatsOfAScenesOfAPopulationDoNotMakeProbabilitiesWrong) {
+  RandomStream rng({.seed = 1, .purpose = 451});
+  FailureForecasts once{"a", "", ForecastSource::kStated, true, {}, {}, 0}, repeated = once;
+  for (std::int64_t scene = 0; scene < 100; ++scene) {
+    const double p = rng.Uniform();
+    const Forecast forecast{p, rng.Uniform() < p, scene / 5};
+    once.forecasts.push_back(forecast);
+    once.scenes.push_back(scene);
+    repeated.forecasts.insert(repeated.forecasts.end(), 10, forecast);
+    repeated.scenes.insert(repeated.scenes.end(), 10, scene);
+  }
+  const ForecastMeasures of_once = MeasureForecasts(once, 7), of_repeated = MeasureForecasts(repeated, 7);
+  EXPECT_EQ(of_repeated.check.p_value, of_once.check.p_value);
+  EXPECT_NEAR(of_repeated.error_of_equal_width.p_value, of_once.error_of_equal_width.p_value, 1e-9);
+}
+
 TEST(AddForecastsOfRun, KeepsTheScenesOfTwoRunsApart) {
   const FailureForecasts first{"a", "", ForecastSource::kStated, false, {{0.1, false, 0}, {0.2, true, 3}},
                                {5}, 1};

@@ -13,6 +13,7 @@
 #include "experiments/study/study_lock.h"
 #include "stats/paired.h"
 #include "stats/population_rate.h"
+#include "stats/score_mean.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/summarized_run.h"
 
@@ -187,6 +188,38 @@ TEST_F(PreregistrationTest, ScoresAndScenesHaveTheIntervalsOfBetting) {
   decided = Run(100, 10).hypotheses[0];
   EXPECT_EQ(decided.n, 20) << "scenes";
   EXPECT_DOUBLE_EQ(decided.value, 0.1);
+}
+
+// Scenes of a population that all agree do not show that no other draw differs.
+TEST_F(PreregistrationTest, DrawsThatAgreeDecideNoRareFailure) {
+  for (const char* hypothesis : {"  - {quantity: failure, estimator: standard, at_most: 0.001}\n",
+                                 "  - {quantity: auc_20_deg, estimator: standard, at_least: 0.949}\n"}) {
+    State(hypothesis);
+    study_.factors.clear();
+    study_.population = Population();
+    study_.population->number = 8;
+    study_.population->keys = {{"outlier_ratio", {}, {DrawnRange::Kind::kUniform, 0.0, 0.3, {}}}};
+    study_.trials = 4;
+    study_.repeats_per_scene = 2;
+    const DecidedHypothesis decided = Run(4, 0, 4).hypotheses[0];
+    EXPECT_EQ(decided.n, 16) << "scenes";
+    EXPECT_EQ(decided.verdict, HypothesisVerdict::kOpen) << hypothesis;
+    EXPECT_GT(decided.interval.upper - decided.interval.lower, 0.2) << hypothesis;
+  }
+}
+
+// Two conditions of the same scenes say what one says, if their outcomes are the same.
+TEST_F(PreregistrationTest, CommonScenesAreNotCountedTwice) {
+  State("  - {quantity: failure, estimator: standard, at_most: 0.5}\n");
+  study_.common_scenes = true;
+  const DecidedHypothesis both = Run(100, 10).hypotheses[0];
+  ScoreMean of_scenes;
+  of_scenes.Add(1.0, 10);
+  of_scenes.Add(0.0, 90);
+  EXPECT_EQ(both.n, 200);
+  EXPECT_DOUBLE_EQ(both.value, 0.1);
+  EXPECT_NEAR(both.interval.lower, of_scenes.Sequence().lower, 1e-9);
+  EXPECT_NEAR(both.interval.upper, of_scenes.Sequence().upper, 1e-9);
 }
 
 TEST_F(PreregistrationTest, IsSaidForPeople) {

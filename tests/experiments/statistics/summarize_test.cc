@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
+#include "experiments/statistics/compare.h"
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/summary_output.h"
 #include "parameters/input_error.h"
 #include "stats/confidence_sequence.h"
 #include "stats/score_mean.h"
+#include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/summarized_run.h"
 
 namespace rcme {
@@ -576,6 +578,17 @@ TEST_F(SummarizeTest, WeightedTrialsGiveWeightedRatesAndNoMeans) {
       EXPECT_EQ(row.n, 0) << row.quantity.text();  // a mean, or of a part of the trials
     }
   }
+}
+
+// Their pooled trials are not independent.
+TEST_F(SummarizedRun, ConditionsThatShareTheirScenesAreNotPooled) {
+  study_.common_scenes = true;
+  Write("common", HandMadeRecords());
+  const ResultStore store = ResultStore::OpenForReading(folder_.Path("common"));
+  EXPECT_TRUE(ThrowsInputError([&] { Summarize(store, false, Pooling::kPooled); }, {"common_scenes"}));
+  EXPECT_TRUE(
+      ThrowsInputError([&] { Compare(store, "", {.pooling = Pooling::kPooled}); }, {"common_scenes"}));
+  EXPECT_NO_THROW(Summarize(store, false, Pooling::kPerCondition));
 }
 
 }  // namespace

@@ -274,6 +274,9 @@ TEST(Population, MessagesNameLineAndKey) {
   EXPECT_THAT(CatchMessage("  ranges: {scene: match_files}\n", ""), HasSubstr("cannot be drawn"));
   EXPECT_THAT(CatchMessage("  ranges: {scene: plane}\n  given: sigma_px = 2\n"),
               HasSubstr("given: 'sigma_px = 2'"));
+  EXPECT_THAT(
+      CatchMessage("  ranges: {scene: plane}\n  given: [sigma_px < 2, paralax_deg > 1]\n"),
+      HasSubstr("given: paralax_deg > 1: no draw has the key 'paralax_deg' (did you mean 'parallax_deg'?)"));
   EXPECT_THAT(CatchMessage("  number: 0\n  ranges: {scene: plane}\n"),
               HasSubstr("number: '0' is not allowed"));
   EXPECT_THAT(CatchMessage("  number: 5\n"), HasSubstr("key 'ranges' or 'population' is missing"));

@@ -20,7 +20,7 @@ double PUniform(const std::vector<double>& sample) {
 
 // The matches by cluster, for a spread far below the distance of the clusters: by the point in image 1 or 2,
 // rounded to 10 px.
-std::map<std::pair<long, long>, std::vector<Correspondence>> ByCluster(const WrongMatches& wrong,
+std::map<std::pair<long, long>, std::vector<Correspondence>> ByCluster(const DrawnOutliers& wrong,
                                                                        bool by_image1) {
   std::map<std::pair<long, long>, std::vector<Correspondence>> clusters;
   for (const Correspondence& match : wrong.matches) {
@@ -49,7 +49,7 @@ TEST(ClusteredOutliers, AreNormalAroundACentreInTheImageTheyAreNamedAfter) {
   const Settings one_cluster = {{"num_outlier_clusters", "1"}, {"outlier_spread_px", "0.5"}};
   for (const bool in_image1 : {true, false}) {
     const auto law = WithSettings(in_image1 ? MakeClusteredInImage1() : MakeClusteredInImage2(), one_cluster);
-    const WrongMatches wrong = MakeWrong(*law, scene, 4000, 0.3, 3);
+    const DrawnOutliers wrong = MakeWrong(*law, scene, 4000, 0.3, 3);
     std::vector<Eigen::Vector2d> clustered;
     std::vector<double> other_x, other_y;
     for (size_t i = 0; i < 4000; ++i) {
@@ -78,7 +78,7 @@ TEST(ClusteredOutliers, InBothImagesAClusterAgreesOnOneShift) {
   const auto law =
       WithSettings(MakeClusteredInBoth(), {{"num_outlier_clusters", "4"}, {"outlier_spread_px", "15"}});
   std::map<std::pair<long, long>, int> shifts;
-  const WrongMatches exact = MakeWrong(*law, scene, 2000), noisy = MakeWrong(*law, scene, 2000, 0.3);
+  const DrawnOutliers exact = MakeWrong(*law, scene, 2000), noisy = MakeWrong(*law, scene, 2000, 0.3);
   std::vector<Eigen::Vector2d> spread;
   for (size_t i = 0; i < 2000; ++i) {
     const Eigen::Vector2d shift_px = exact.matches[i].x2_px - exact.matches[i].x1_px;

@@ -20,7 +20,7 @@ TEST(DisplacedOutliers, ShiftsAreUniformInTheAnnulus) {
   const auto law =
       WithSettings(MakeDisplacedOutliers(), {{"outlier_min_shift_px", "10"}, {"outlier_max_shift_px", "40"}});
   const Scene scene = SceneForOutliers(5000);
-  const WrongMatches wrong = MakeWrong(*law, scene, 5000, 0.5);
+  const DrawnOutliers wrong = MakeWrong(*law, scene, 5000, 0.5);
   std::vector<double> area, length, turn;
   for (size_t i = 0; i < 5000; ++i) {
     EXPECT_EQ(wrong.matches[i].x1_px, wrong.noisy[i].x1_px);

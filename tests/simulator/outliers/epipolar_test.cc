@@ -21,7 +21,7 @@ Eigen::Vector2d InverseDepthAndRatio(const Scene& scene, const Correspondence& m
 }
 
 // Whether x1 is that of the match's own scene point, before noise.
-bool IsOnItsOwnRay(const WrongMatches& wrong, size_t i) {
+bool IsOnItsOwnRay(const DrawnOutliers& wrong, size_t i) {
   return (wrong.matches[i].x1_px - wrong.exact[i].x1_px).norm() < 1e-9;
 }
 
@@ -33,7 +33,7 @@ TEST(EpipolarOutliers, SatisfyTheTrueConstraintAwayFromTheTruePoint) {
     int num_own = 0, num_all = 0;
     for (std::uint32_t trial = 0; trial < 10; ++trial) {
       const Scene scene = SceneForOutliers(300, trial, motion);
-      const WrongMatches wrong = MakeWrong(*MakeEpipolarOutliers(), scene, 200, 0.0, trial);
+      const DrawnOutliers wrong = MakeWrong(*MakeEpipolarOutliers(), scene, 200, 0.0, trial);
       for (size_t i = 0; i < 300; ++i) {
         EXPECT_EQ(wrong.is_undetectable[i], i < 200);
         if (i >= 200) continue;
@@ -90,7 +90,7 @@ TEST(EpipolarOutliers, AreUniformOnTheVisibleLineButForTheGap) {
   std::erase_if(scene.points_in_cam1, [&](const Eigen::Vector3d& point) { return !scene.Sees(point); });
   const size_t n = scene.points_in_cam1.size();
   const auto law = WithSettings(MakeEpipolarOutliers(), {{"outlier_min_shift_px", "30"}});
-  const WrongMatches wrong = MakeWrong(*law, scene, n);
+  const DrawnOutliers wrong = MakeWrong(*law, scene, n);
   std::vector<double> places, places_without_gap;
   for (size_t i = 0; i < n; ++i) {
     if (!IsOnItsOwnRay(wrong, i)) continue;
@@ -115,7 +115,7 @@ TEST(EpipolarOutliers, AreUniformOnTheVisibleLineButForTheGap) {
 TEST(EpipolarOutliers, KeepTheNoiseOfTheMatchTheyReplace) {
   const Scene scene = SceneForOutliers(100);
   const auto law = MakeEpipolarOutliers();
-  const WrongMatches exact = MakeWrong(*law, scene, 100), noisy = MakeWrong(*law, scene, 100, 0.5);
+  const DrawnOutliers exact = MakeWrong(*law, scene, 100), noisy = MakeWrong(*law, scene, 100, 0.5);
   for (size_t i = 0; i < 100; ++i) {
     const Eigen::Vector2d noise1_px = noisy.noisy[i].x1_px - noisy.exact[i].x1_px;
     const Eigen::Vector2d noise2_px = noisy.noisy[i].x2_px - noisy.exact[i].x2_px;

@@ -34,7 +34,7 @@ TEST(OutlierMixture, SplitsByTheWeightsToOneMatch) {
       MakeMixture({{"weight_epipolar", "3"}, {"weight_one_to_many", "2"}, {"weight_displaced", "1"}});
   for (const auto& [num_wrong, expected] :
        {std::pair{60u, std::array{30, 20, 10}}, {61u, std::array{31, 20, 10}}, {1u, std::array{1, 0, 0}}}) {
-    const WrongMatches wrong = MakeWrong(*law, SceneForOutliers(100), num_wrong, 0.1);
+    const DrawnOutliers wrong = MakeWrong(*law, SceneForOutliers(100), num_wrong, 0.1);
     std::array<int, 3> counts = {0, 0, 0};
     for (size_t i = 0; i < num_wrong; ++i) {
       const bool is_shared =
@@ -51,8 +51,8 @@ TEST(OutlierMixture, OfOneLawIsThatLaw) {
   for (const OutlierEntry& entry : OutlierRegistry()) {
     if (entry.name == "mixture") continue;
     const Scene scene = SceneForOutliers(100);
-    const WrongMatches alone = MakeWrong(*entry.make(), scene, 50, 0.5);
-    const WrongMatches mixed = MakeWrong(*MakeMixture({{"weight_" + entry.name, "0.1"}}), scene, 50, 0.5);
+    const DrawnOutliers alone = MakeWrong(*entry.make(), scene, 50, 0.5);
+    const DrawnOutliers mixed = MakeWrong(*MakeMixture({{"weight_" + entry.name, "0.1"}}), scene, 50, 0.5);
     EXPECT_TRUE(std::ranges::equal(alone.matches, mixed.matches, AreEqual)) << entry.name;
     EXPECT_EQ(alone.is_undetectable, mixed.is_undetectable) << entry.name;
   }
@@ -62,7 +62,7 @@ TEST(OutlierMixture, OfOneLawIsThatLaw) {
 TEST(OutlierMixture, ASharedKeySetsAllLawsThatHaveIt) {
   const auto law =
       MakeMixture({{"weight_epipolar", "1"}, {"weight_displaced", "1"}, {"outlier_min_shift_px", "20"}});
-  const WrongMatches wrong = MakeWrong(*law, SceneForOutliers(200), 200);
+  const DrawnOutliers wrong = MakeWrong(*law, SceneForOutliers(200), 200);
   for (size_t i = 0; i < 200; ++i) {
     const bool is_on_own_ray = (wrong.matches[i].x1_px - wrong.exact[i].x1_px).norm() < 1e-9;
     if (is_on_own_ray) {

@@ -23,7 +23,7 @@ struct OwnMotion {
   Eigen::Matrix3d E;      // the solution
 };
 
-OwnMotion FitMotion(const Scene& scene, const WrongMatches& wrong, size_t num_wrong) {
+OwnMotion FitMotion(const Scene& scene, const DrawnOutliers& wrong, size_t num_wrong) {
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(num_wrong), 9);
   for (size_t i = 0; i < num_wrong; ++i) {
     const Eigen::Vector3d ray1 = scene.camera1.Ray(wrong.matches[i].x1_px);
@@ -65,7 +65,7 @@ TEST(MovingObject, ItsMatchesHaveOneRigidMotionOfTheirOwn) {
   const auto uniform = MakeUniformOutliers();
   for (std::uint32_t trial = 0; trial < 50; ++trial) {
     const Scene scene = SceneForOutliers(60, trial);
-    const WrongMatches wrong = MakeWrong(*law, scene, 40, 0.0, trial);
+    const DrawnOutliers wrong = MakeWrong(*law, scene, 40, 0.0, trial);
     const OwnMotion own = FitMotion(scene, wrong, 40);
     EXPECT_LT(own.relative_residual, 1e-12);
     const Eigen::Vector3d sv = SingularValues(own.E);
@@ -131,7 +131,7 @@ TEST(MovingObject, LiesAroundAPointOfTheScene) {
   const auto law =
       WithSettings(MakeMovingObject(),
                    {{"object_size_m", "0.01"}, {"object_shift_m", "0.2"}, {"object_rotation_deg", "0"}});
-  const WrongMatches wrong = MakeWrong(*law, scene, 4000);
+  const DrawnOutliers wrong = MakeWrong(*law, scene, 4000);
   const Correspondence centre = ExactMatch(scene, scene.points_in_cam1[0]);
   std::vector<double> offsets, wider;
   Eigen::Vector2d sum_shift_px = Eigen::Vector2d::Zero();
@@ -159,7 +159,7 @@ TEST(MovingObject, TurnsAboutItsOwnCentre) {
                    {{"object_size_m", "1e-6"}, {"object_shift_m", "1e-6"}, {"object_rotation_deg", "90"}});
   const Correspondence centre = ExactMatch(scene, scene.points_in_cam1[0]);
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
-    const WrongMatches wrong = MakeWrong(*law, scene, 40, 0.0, trial);
+    const DrawnOutliers wrong = MakeWrong(*law, scene, 40, 0.0, trial);
     for (const Correspondence& match : wrong.matches) {
       EXPECT_LT((match.x1_px - centre.x1_px).norm(), 0.01);
       EXPECT_LT((match.x2_px - centre.x2_px).norm(), 0.01);
@@ -170,7 +170,7 @@ TEST(MovingObject, TurnsAboutItsOwnCentre) {
 TEST(MovingObject, KeepsTheNoiseOfTheMatchItReplaces) {
   const Scene scene = SceneForOutliers(50);
   const auto law = MakeMovingObject();
-  const WrongMatches exact = MakeWrong(*law, scene, 30), noisy = MakeWrong(*law, scene, 30, 0.5);
+  const DrawnOutliers exact = MakeWrong(*law, scene, 30), noisy = MakeWrong(*law, scene, 30, 0.5);
   for (size_t i = 0; i < 30; ++i) {
     const Eigen::Vector2d noise1_px = noisy.noisy[i].x1_px - noisy.exact[i].x1_px;
     const Eigen::Vector2d noise2_px = noisy.noisy[i].x2_px - noisy.exact[i].x2_px;

@@ -11,7 +11,7 @@ namespace rcme {
 namespace {
 
 // How many wrong matches share their noisy point in image 1, to the bit, with each true match.
-std::vector<int> FanOuts(const WrongMatches& wrong, size_t num_wrong) {
+std::vector<int> FanOuts(const DrawnOutliers& wrong, size_t num_wrong) {
   std::vector<int> fan_outs;
   for (size_t source = num_wrong; source < wrong.matches.size(); ++source) {
     fan_outs.push_back(static_cast<int>(std::count_if(
@@ -41,7 +41,7 @@ TEST(OneToManyOutliers, TakeTheTrueMatchesInTurnWhereTheyAreFew) {
 // At 1e-4; not uniform in image 1's size, which is half as wide.
 TEST(OneToManyOutliers, AreUniformInImage2) {
   const Scene scene = SceneForOutliers(3000);
-  const WrongMatches wrong = MakeWrong(*MakeOneToManyOutliers(), scene, 2000, 0.5);
+  const DrawnOutliers wrong = MakeWrong(*MakeOneToManyOutliers(), scene, 2000, 0.5);
   std::vector<double> x, y, x_in_image1;
   for (size_t i = 0; i < 2000; ++i) {
     x.push_back((wrong.matches[i].x2_px.x() + 0.5) / scene.camera2.width);

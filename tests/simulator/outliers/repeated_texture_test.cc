@@ -34,7 +34,7 @@ TEST(RepeatedTexture, IsTheImageOfAnotherRepetition) {
   const auto law = WithSettings(MakeRepeatedTexture(), {{"max_repeat_steps", "3"}});
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     const Scene scene = SceneForOutliers(200, trial);
-    const WrongMatches wrong = MakeWrong(*law, scene, 200, 0.5, trial);
+    const DrawnOutliers wrong = MakeWrong(*law, scene, 200, 0.5, trial);
     for (size_t i = 0; i < 200; ++i) {
       EXPECT_EQ(wrong.matches[i].x1_px, wrong.noisy[i].x1_px);
       const Eigen::Vector2d noise_px = wrong.noisy[i].x2_px - wrong.exact[i].x2_px;
@@ -53,7 +53,7 @@ TEST(RepeatedTexture, IsTheImageOfAnotherRepetition) {
 TEST(RepeatedTexture, AllRepetitionsAreEquallyLikely) {
   Scene scene = SceneForOutliers(5000);
   scene.repeat_steps_m = {{1e-4, 0.0, 0.0}, {0.0, 1e-4, 0.0}};
-  const WrongMatches wrong = MakeWrong(*MakeRepeatedTexture(), scene, 5000);
+  const DrawnOutliers wrong = MakeWrong(*MakeRepeatedTexture(), scene, 5000);
   std::map<Steps, double> counts;
   for (size_t i = 0; i < 5000; ++i) {
     ++counts[Explain(scene, scene.points_in_cam1[i], wrong.matches[i].x2_px, 2).first];
@@ -78,7 +78,7 @@ TEST(RepeatedTexture, AStepOfItsOwnRunsAlongXOfCamera1) {
   Scene scene = SceneForOutliers(100);
   scene.repeat_steps_m.clear();
   const auto law = WithSettings(MakeRepeatedTexture(), {{"repeat_step_m", "0.2"}});
-  const WrongMatches wrong = MakeWrong(*law, scene, 100);
+  const DrawnOutliers wrong = MakeWrong(*law, scene, 100);
   scene.repeat_steps_m = {{0.2, 0.0, 0.0}, {0.0, 1e6, 0.0}};  // the second one explains nothing
   for (size_t i = 0; i < 100; ++i) {
     EXPECT_LT(Explain(scene, scene.points_in_cam1[i], wrong.matches[i].x2_px, 2).second, 1e-9);
@@ -94,7 +94,7 @@ TEST(RepeatedTexture, StepsAlongTheBaselineAreFlagged) {
   const Eigen::Vector3d across = along.cross(Eigen::Vector3d::UnitZ()).normalized();
   for (const bool is_along : {true, false}) {
     scene.repeat_steps_m = {0.05 * (is_along ? along : across)};
-    const WrongMatches wrong = MakeWrong(*MakeRepeatedTexture(), scene, 100);
+    const DrawnOutliers wrong = MakeWrong(*MakeRepeatedTexture(), scene, 100);
     for (size_t i = 0; i < 100; ++i) {
       EXPECT_EQ(wrong.is_undetectable[i], is_along);
       EXPECT_EQ(std::abs(TripleProduct(scene, wrong.matches[i])) < 1e-12, is_along);

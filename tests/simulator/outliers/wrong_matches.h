@@ -35,18 +35,18 @@ inline Scene SceneForOutliers(int num_matches, std::uint32_t trial = 0, const st
 }
 
 // The matches of a scene, in the order of its points, of which the first ones have become wrong.
-struct WrongMatches {
+struct DrawnOutliers {
   std::vector<Correspondence> exact, noisy, matches;  // noisy: before they became wrong
   std::vector<std::uint32_t> points;                  // 0, 1, ...; first the wrong ones
   std::vector<bool> is_undetectable;
 };
 
-inline WrongMatches MakeWrong(const OutlierLaw& law, const Scene& scene, size_t num_wrong,
-                              double noise_px = 0.0, std::uint32_t trial = 0) {
+inline DrawnOutliers MakeWrong(const OutlierLaw& law, const Scene& scene, size_t num_wrong,
+                               double noise_px = 0.0, std::uint32_t trial = 0) {
   const size_t n = scene.points_in_cam1.size();
   RandomStream noise_rng({.seed = 1, .trial = trial, .purpose = 81});
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 82});
-  WrongMatches wrong;
+  DrawnOutliers wrong;
   for (const Eigen::Vector3d& point : scene.points_in_cam1) {
     wrong.exact.push_back(ExactMatch(scene, point));
     wrong.noisy.push_back(wrong.exact.back());

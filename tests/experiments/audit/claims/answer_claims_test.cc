@@ -92,12 +92,12 @@ TEST(DrawShareBeyond, IsTheProbabilityByTheCovariance) {
 // flipped they are.
 TEST(StatedFailures, OfAWideButRightCovarianceAreNoFault) {
   const auto decide = [](void (*plant)(MotionEstimate*, RandomStream&)) {
-    const AnswerFault wide = {"wide", FoundBy::kFailureClaim,
-                              [](RandomStream& rng) {
-                                return AnswerWithErrors(kMotionOfDoubles, 40.0 * ErrorCovarianceOfDoubles(),
-                                                        rng);
-                              },
-                              plant};
+    const DoubledFault wide = {"wide", FoundBy::kFailureClaim,
+                               [](RandomStream& rng) {
+                                 return AnswerWithErrors(kMotionOfDoubles, 40.0 * ErrorCovarianceOfDoubles(),
+                                                         rng);
+                               },
+                               plant};
     const CaseClaim claim = FailureCalibration("wide", "wide", std::make_shared<DoubledEstimator>(wide), {});
     return DecideCheck(CheckOfDoubles(claim), {1, 3, Budget::kQuick, kConfidence});
   };
@@ -111,7 +111,7 @@ TEST(StatedFailures, OfAWideButRightCovarianceAreNoFault) {
 
 // The claims about answers: covariance, failures, sigma.
 constexpr size_t kNumClaims = 3;
-CheckResult Decide(const AnswerFault& fault, size_t claim, std::uint64_t seed) {
+CheckResult Decide(const DoubledFault& fault, size_t claim, std::uint64_t seed) {
   const std::vector<CaseClaim> claims =
       AnswerCalibration("double", "double", std::make_shared<DoubledEstimator>(fault), FailureBounds());
   return DecideCheck(CheckOfDoubles(claims.at(claim)), {seed, 7, Budget::kQuick, kConfidence});
@@ -123,7 +123,7 @@ CheckResult Decide(const AnswerFault& fault, size_t claim, std::uint64_t seed) {
 // the quick budget's trials.
 TEST(AnswerClaims, FindTheirFaults) {
   constexpr int kNumSeeds = 5;
-  for (const AnswerFault& fault : AnswerFaults()) {
+  for (const DoubledFault& fault : DoubledFaults()) {
     if (fault.found_by == FoundBy::kNoClaim) continue;
     int num_caught = 0;
     for (std::uint64_t seed = 1; seed <= kNumSeeds; ++seed) {
@@ -135,7 +135,7 @@ TEST(AnswerClaims, FindTheirFaults) {
 }
 
 TEST(AnswerClaims, OfSoundAnswersHoldWithinTheQuickBudget) {
-  for (const AnswerFault& fault : AnswerFaults()) {
+  for (const DoubledFault& fault : DoubledFaults()) {
     if (fault.found_by != FoundBy::kNoClaim) continue;
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       for (size_t claim = 0; claim < kNumClaims; ++claim) {
@@ -153,8 +153,8 @@ TEST(AnswerClaims, OfSoundAnswersHoldWithinTheQuickBudget) {
 TEST(AnswerClaims, AreMadeOfWhatIsStated) {
   std::vector<CheckResult> plain, full;
   for (size_t claim = 0; claim < kNumClaims; ++claim) {
-    plain.push_back(Decide(AnswerFaults()[0], claim, 1));
-    full.push_back(Decide(AnswerFaults()[1], claim, 1));
+    plain.push_back(Decide(DoubledFaults()[0], claim, 1));
+    full.push_back(Decide(DoubledFaults()[1], claim, 1));
   }
   EXPECT_EQ(plain[1].not_possible, "");
   EXPECT_EQ(plain[1].targets[1].n, 0);
@@ -167,11 +167,11 @@ TEST(AnswerClaims, AreMadeOfWhatIsStated) {
   EXPECT_EQ(full[2].targets[0].verdict, Verdict::kHolds);
 
   // One that states its probabilities in one answer of twenty only, and wrong ones.
-  const AnswerFault rare = {"rare", FoundBy::kFailureClaim, FullAnswer,
-                            [](MotionEstimate* a, RandomStream& rng) {
-                              if (rng.Uniform() < 0.95) a->failure_probability = kNaN;
-                              if (!std::isnan(a->failure_probability)) a->failure_probability = 0.9;
-                            }};
+  const DoubledFault rare = {"rare", FoundBy::kFailureClaim, FullAnswer,
+                             [](MotionEstimate* a, RandomStream& rng) {
+                               if (rng.Uniform() < 0.95) a->failure_probability = kNaN;
+                               if (!std::isnan(a->failure_probability)) a->failure_probability = 0.9;
+                             }};
   EXPECT_EQ(Decide(rare, 1, 1).targets[1].verdict, Verdict::kDoesNotHold);
 }
 

@@ -125,7 +125,7 @@ std::vector<PairAnswers> AnswerPairs(const PairSet& set, int first, int last) {
 }
 
 // Sets of `num_pairs` answered pairs of 400 matches, noise 0.2 px, 5 % of them wrong.
-PairSet MakePairs(const Settings& data, int num_pairs) {
+PairSet SimulatePairs(const Settings& data, int num_pairs) {
   Study study = ParseStudy(
       "data: {scene: uniform_volume, num_matches: 400, sigma_px: 0.2, outlier_ratio: 0.05}\n"
       "estimators: [{name: rcme_calibrated}]\nseed: 7\n",
@@ -135,7 +135,7 @@ PairSet MakePairs(const Settings& data, int num_pairs) {
   return PairSetsOfStudy(MakePlan(study)).front();
 }
 std::vector<CalibrationReport> MakeReports(const Settings& data, int num_sets, int num_pairs) {
-  const PairSet pairs = MakePairs(data, num_sets * num_pairs);
+  const PairSet pairs = SimulatePairs(data, num_sets * num_pairs);
   std::vector<CalibrationReport> reports;
   for (int set = 0; set < num_sets; ++set)
     reports.push_back(TestCalibration(AnswerPairs(pairs, set * num_pairs, (set + 1) * num_pairs)));
@@ -193,7 +193,7 @@ TEST(TestCalibration, FindsFaults) {
 
 // What the twins show as well is no fault of the camera.
 TEST(TestCalibration, DecidesNothingThatItsTwinsShowToo) {
-  std::vector<PairAnswers> answers = AnswerPairs(MakePairs({{"focal_error", "0.02"}}, 20), 0, 20);
+  std::vector<PairAnswers> answers = AnswerPairs(SimulatePairs({{"focal_error", "0.02"}}, 20), 0, 20);
   const size_t focal = static_cast<size_t>(CameraFault::kFocalLength);
   EXPECT_EQ(TestCalibration(answers).faults[focal].verdict, TruthFreeVerdict::kTooLarge);
   for (PairAnswers& pair : answers) pair.twins = {pair.whole};

@@ -1,4 +1,4 @@
-#include "estimator/calibrated/calibration_check.h"
+#include "estimator/calibrated/intrinsics_check.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -95,7 +95,7 @@ constexpr double kLeastInformation = 0.7;  // U, 1 / rad^2
 constexpr double kLeastRad = 1e-5, kMostRad = 3.0, kMostGain = 30.0;
 
 template <Eigen::Index kErrors>
-CalibrationCheck Check(const MotionProblem& problem, const Mode& answer, const Explanation& e) {
+IntrinsicsCheck Check(const MotionProblem& problem, const Mode& answer, const Explanation& e) {
   using Square = Eigen::Matrix<double, kErrors, kErrors>;
   const auto sums = SumProducts<kErrors>(problem, answer, e);
   const Matrix5d of_motion = sums.template topLeftCorner<5, 5>();
@@ -121,8 +121,8 @@ CalibrationCheck Check(const MotionProblem& problem, const Mode& answer, const E
 
 }  // namespace
 
-CalibrationCheck CheckCalibration(const MotionProblem& problem, const Mode& answer,
-                                  const Explanation& explanation) {
+IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer,
+                                const Explanation& explanation) {
   if (problem.camera1.K() == problem.camera2.K()) return Check<kOfCamera>(problem, answer, explanation);
   return Check<2 * kOfCamera>(problem, answer, explanation);
 }

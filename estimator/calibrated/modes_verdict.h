@@ -5,7 +5,7 @@
 
 namespace rcme {
 
-struct Verdict {
+struct ModesVerdict {
   double by_modes = 1.0;             // probability of failure according to the modes alone
   double failure_probability = 1.0;  // after the model check, and with uncertain intrinsics
   double mass_beyond = 0.0;          // weight of the modes within the bounds that lies beyond them
@@ -16,6 +16,6 @@ struct Verdict {
 
 // Applies the check to the weights. A probability of failure that it adds becomes weight of no motion. One
 // that it removes is taken from the rivals and from no motion, and given to the other modes.
-ModeWeights ReweighModes(ModeWeights weights, const Verdict& verdict);
+ModeWeights ReweighModes(ModeWeights weights, const ModesVerdict& verdict);
 
 }  // namespace rcme

@@ -1,4 +1,4 @@
-#include "estimator/calibrated/calibration_check.h"
+#include "estimator/calibrated/intrinsics_check.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 namespace rcme {
 namespace {
 
-CalibrationCheck CheckFitted(const FittedMode& f) {
-  return CheckCalibration(f.problem, f.mode, Explain(f.matches, f.mode));
+IntrinsicsCheck CheckFitted(const FittedMode& f) {
+  return CheckIntrinsics(f.problem, f.mode, Explain(f.matches, f.mode));
 }
 
 // The points of an image as they would be undistorted by this k1.
@@ -62,7 +62,7 @@ FittedMode FitOneCamera(int num_matches, double sigma_px, std::uint32_t trial) {
 }
 
 // Every match of a scene with little noise; the motion is fitted again with each error of the calibration.
-TEST(CalibrationCheck, ReachIsHowFarTheFitMoves) {
+TEST(IntrinsicsCheck, ReachIsHowFarTheFitMoves) {
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     const FittedMode two = FitScene(100, 0.1, 0.0, trial), one = FitOneCamera(100, 0.1, trial);
     double square_of_two = 0.0, square_of_one = 0.0;
@@ -83,7 +83,7 @@ TEST(CalibrationCheck, ReachIsHowFarTheFitMoves) {
 
 // q'Vq is chi-square with four degrees of freedom, or less where the prior decides. Of many matches, because
 // a term that is missing from the residuals' derivative is a bias of the score that grows with their number.
-TEST(CalibrationCheck, MatchesOfARightCalibrationSpeakForNoError) {
+TEST(IntrinsicsCheck, MatchesOfARightCalibrationSpeakForNoError) {
   constexpr int kScenes = 50;
   double sum = 0.0;
   for (std::uint32_t trial = 0; trial < kScenes; ++trial)
@@ -94,7 +94,7 @@ TEST(CalibrationCheck, MatchesOfARightCalibrationSpeakForNoError) {
 
 // k1 = 0.1 in both images, which 400 matches show. The shift is as long as the error that the distortion
 // causes, within a factor of two in the geometric mean over the scenes.
-TEST(CalibrationCheck, PlantedDistortionIsSeen) {
+TEST(IntrinsicsCheck, PlantedDistortionIsSeen) {
   constexpr int kScenes = 20;
   int num_seen = 0;
   double log_ratio = 0.0;
@@ -102,7 +102,7 @@ TEST(CalibrationCheck, PlantedDistortionIsSeen) {
     const FittedMode f = FitOneCamera(400, 0.3, trial);
     MotionProblem distorted = f.problem;
     for (const Image& image : kImages) ChangeCalibration(image, 3, 0.1, &distorted);
-    const CalibrationCheck check = CheckFitted(FitFromTruth(distorted, f.pose_true));
+    const IntrinsicsCheck check = CheckFitted(FitFromTruth(distorted, f.pose_true));
     num_seen += check.root_gain > 4.0;
     log_ratio += std::log(check.shift_rad / FindMove(f, distorted).tail<2>().norm()) / kScenes;
   }

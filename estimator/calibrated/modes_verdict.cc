@@ -1,8 +1,8 @@
-#include "estimator/calibrated/verdict.h"
+#include "estimator/calibrated/modes_verdict.h"
 
 namespace rcme {
 
-ModeWeights ReweighModes(ModeWeights weights, const Verdict& verdict) {
+ModeWeights ReweighModes(ModeWeights weights, const ModesVerdict& verdict) {
   if (verdict.failure_probability == verdict.by_modes) return weights;
   const bool is_greater = verdict.failure_probability > verdict.by_modes;
   const double factor = is_greater ? (1.0 - verdict.failure_probability) / (1.0 - verdict.by_modes)

@@ -1,5 +1,5 @@
 // The weights after the check are still probabilities.
-#include "estimator/calibrated/verdict.h"
+#include "estimator/calibrated/modes_verdict.h"
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ double Total(const ModeWeights& weights) {
 }
 
 TEST(ReweighModes, WhatTheCheckAddsIsOfNoMode) {
-  const Verdict verdict{.by_modes = 0.3, .failure_probability = 0.65};
+  const ModesVerdict verdict{.by_modes = 0.3, .failure_probability = 0.65};
   const ModeWeights after = ReweighModes(SomeWeights(), verdict);
   EXPECT_NEAR(Total(after), 1.0, 1e-12);
   EXPECT_NEAR(after.of_modes[0] + after.of_modes[1], 0.35, 1e-12);
@@ -31,7 +31,7 @@ TEST(ReweighModes, WhatTheCheckAddsIsOfNoMode) {
 }
 
 TEST(ReweighModes, WhatTheCheckTakesAwayIsTakenFromTheRivals) {
-  const Verdict verdict{.by_modes = 0.3, .failure_probability = 0.15};
+  const ModesVerdict verdict{.by_modes = 0.3, .failure_probability = 0.15};
   const ModeWeights after = ReweighModes(SomeWeights(), verdict);
   EXPECT_NEAR(Total(after), 1.0, 1e-12);
   EXPECT_NEAR(after.of_modes[0] + after.of_modes[1], 0.85, 1e-12);

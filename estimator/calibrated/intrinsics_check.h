@@ -2,7 +2,7 @@
 //
 // A camera may have errors of the logarithm of its focal length and of both coordinates of its principal
 // point, and a radial distortion k1 that was not removed. theta are these errors over their usual standard
-// deviations (calibration_check.cc): four if one camera took both images (equal K), eight for two cameras. A
+// deviations (intrinsics_check.cc): four if one camera took both images (equal K), eight for two cameras. A
 // priori theta is N(0, I).
 //
 // r are the residuals of the matches that the answer explains, in standard deviations, J = dr/dp and G =
@@ -26,13 +26,13 @@ namespace rcme {
 
 // The direction of the translation moves by D theta, where D are the last two rows of -M. Angles are clipped
 // to [1e-5, 3] rad.
-struct CalibrationCheck {
+struct IntrinsicsCheck {
   double reach_rad = 1e-5;  // sqrt(tr D D'): the direction's standard deviation by errors of usual size
   double root_gain = 0.0;   // sqrt(q'Vq), at most 30: how clearly the matches show an error
   double shift_rad = 1e-5;  // |D V q|: how far the direction moves if the most likely errors are corrected
 };
 
-CalibrationCheck CheckCalibration(const MotionProblem& problem, const Mode& answer,
-                                  const Explanation& explanation);
+IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer,
+                                const Explanation& explanation);
 
 }  // namespace rcme
