@@ -39,7 +39,7 @@ struct DrawnKey {
   // have such a key.
   Settings with;
   DrawnRange range;
-  std::string place;  // "study.yaml:12": of the key in the file that has it
+  std::string place = {};  // "study.yaml:12": of the key in the file that has it
 };
 
 // A comparison of two sides, each a key or a number: "sigma_px < 2", "min_depth_m < max_depth_m". It does
