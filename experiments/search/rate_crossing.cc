@@ -234,20 +234,23 @@ std::int64_t RateCrossing::num_trials() const {
 
 Study KeepEstimatorsWithSetting(Study study, const CrossingQuestion& question) {
   std::vector<EstimatorSpec> kept;
-  std::string why_not;
+  const std::string from = fmt::format("{}", question.from);
   for (const EstimatorSpec& spec : study.estimators) {
     Study alone = study;
     alone.estimators = {spec};
     try {
-      Override(&alone, question.setting, fmt::format("{}", question.from));
+      Override(&alone, question.setting, from);
       kept.push_back(spec);
-    } catch (const InputError& error) {
-      why_not = error.what();
+    } catch (const InputError&) {  // it has no such option
     }
   }
   if (kept.empty()) {
-    const size_t end = why_not.starts_with("--set: ") ? std::string_view("--set: ").size() : 0;
-    throw InputError("--over: " + why_not.substr(end));
+    try {
+      Override(&study, question.setting, from);  // says what is wrong for all of them
+    } catch (const InputError& error) {
+      const std::string why = error.what();
+      throw InputError("--over: " + why.substr(why.starts_with("--set: ") ? 7 : 0));
+    }
   }
   study.estimators = kept;
   return study;

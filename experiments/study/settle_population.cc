@@ -23,16 +23,6 @@ bool Has(const Settings& resolved, const Settings& with) {
 // Settings that can be drawn, and what they resolve to.
 using PossibleDraw = std::pair<Settings, Settings>;
 
-// Runs `check` and adds the place of the key to an InputError from it.
-template <typename Check>
-void AtKey(const DrawnKey& drawn, Check check) {
-  try {
-    check();
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", drawn.place, error.what()));
-  }
-}
-
 // Resolves the draw of all first words. An error is that of the choice whose name begins it, or else of all.
 PossibleDraw ResolveFirstDraw(const Place& place, const YAML::Node& node, const Study& study) {
   const Settings first = ChooseFirstDraw(study);

@@ -51,6 +51,15 @@ void RequireDifferentLevels(const Place& place, const YAML::Node& line, const Fa
   }
 }
 
+// The key of a population that is drawn in every draw; nullptr if there is none of this name.
+const DrawnKey* FindDrawnKey(const Study& study, const std::string& key) {
+  if (!study.population) return nullptr;
+  const std::vector<DrawnKey>& keys = study.population->keys;
+  const auto found = std::ranges::find_if(
+      keys, [&](const DrawnKey& drawn) { return drawn.key == key && drawn.with.empty(); });
+  return found == keys.end() ? nullptr : &*found;
+}
+
 }  // namespace
 
 Settings ChooseFirstSettings(const Study& study) {
@@ -82,10 +91,13 @@ void SettleData(const Place& place, const YAML::Node& root, Study* of) {
   for (const auto& choice : first) {
     if (!IsChoice(choice.first)) continue;
     choices.push_back(choice);
+    const auto check = [&] { ResolveSettings({*scene, choice}); };
+    if (const DrawnKey* const drawn = FindDrawnKey(study, choice.first)) {
+      AtKey(*drawn, check);
+      continue;
+    }
     const bool is_in_data = root["data"] && root["data"][choice.first];
-    place.At(line_of(is_in_data ? "data" : "factors", choice.first), [&] {
-      ResolveSettings({*scene, choice});
-    });
+    place.At(line_of(is_in_data ? "data" : "factors", choice.first), check);
   }
   for (auto& [key, value] : study.data) {
     place.At(line_of("data", key),

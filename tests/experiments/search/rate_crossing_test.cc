@@ -96,6 +96,22 @@ TEST(FindCrossings, NoTwoLevelsShareATrial) {
 }
 
 // Which draws are conditions must not depend on the level.
+TEST(KeepEstimatorsWithSetting, AreThoseThatHaveTheOption) {
+  const Study study = ParseSolved("data: {scene: plane, num_matches: 20}\n");
+  CrossingQuestion question;
+  question.from = 0.5;
+  question.setting = "sigma_px";
+  EXPECT_EQ(KeepEstimatorsWithSetting(study, question).estimators.size(), 2U);
+  question.from = 10;
+  question.setting = "standard.num_iterations";
+  const std::vector<EstimatorSpec> kept = KeepEstimatorsWithSetting(study, question).estimators;
+  ASSERT_EQ(kept.size(), 1U);
+  EXPECT_EQ(kept[0].label, "standard");
+  question.setting = "standard.num_iteration";
+  EXPECT_TRUE(ThrowsInputError([&] { KeepEstimatorsWithSetting(study, question); },
+                               {"--over: ", "'num_iteration'", "num_iterations"}));
+}
+
 TEST(FindCrossings, RefusesDrawsThatSomeLevelsLack) {
   CrossingQuestion question;
   question.setting = "max_depth_m";
