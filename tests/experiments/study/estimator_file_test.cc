@@ -128,7 +128,7 @@ TEST(EstimatorFileText, RoundTrip) {
 TEST(EstimatorFileText, RoundTripOfAwkwardText) {
   EstimatorSpec spec = ParseEstimatorFile(TunedFileYaml(), "tuned.yaml");
   const std::vector<std::string> texts = {
-      "a: b, \"c\" #d \xC3\xA4 - e", "~", "", " x", "1.0", "{a: b}", "---"};
+      "a: b; \"c\" #d \xC3\xA4 - e", "~", "", " x", "1.0", "{a: b}", "---"};
   Provenance provenance;
   for (const std::string& text : texts) provenance.emplace_back("key " + text, text + "\n- two lines");
   for (const std::string& text : texts) {
