@@ -5,10 +5,9 @@
 // over samples of conditions is V = m / (m - 1) sum a_i^2 (x_i - value)^2, whatever the law within a
 // condition (Cochran 1977, 9A.4 for equal weights, 6.3 for weights by trials). The interval is Student's with
 // M - 1 degrees of freedom, M = 1 / sum a_i^2, corrected for the skewness of the conditions' means (Hall
-// 1992). Student's alone misses a mean of few failures 10 to 250 times too often at the small levels of
-// simultaneous intervals; the corrected one at most 2 times from 28 conditions on, 8 to 26 times with 10
-// (tests/stats/population_mean_test.cc). Measured coverage: results/population/README.md. It covers too
-// little if a few extreme conditions dominate the mean.
+// 1992). Student's alone misses a mean of few failures several times too often at the small levels of
+// simultaneous intervals (tests/stats/population_mean_test.cc). Measured coverage:
+// results/population/README.md. It covers too little if a few extreme conditions dominate the mean.
 #pragma once
 
 #include <cstdint>

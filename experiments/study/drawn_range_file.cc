@@ -79,7 +79,7 @@ DrawnRange ReadWord(const Place& place, const YAML::Node& node, const std::strin
       place.Fail(node, fmt::format("{}: {} is not allowed; give {}[..., ...]", key, Quoted(text), beginning));
     }
   };
-  const Place here = place.AtLineOf(node);
+  const Place here = place.FixLineTo(node);
   if (text.starts_with(kLogOf)) return ReadEnds(here, rest(kLogOf), key, DrawnRange::Kind::kLogUniform);
   if (text.starts_with(kAnyOf))
     return {DrawnRange::Kind::kAnyOf, 0.0, 0.0, ReadWords(here, rest(kAnyOf), key)};

@@ -64,7 +64,7 @@ TEST(PopulationMean, WithoutSkewnessIsStudents) {
 }
 
 // Failures less their right probability 0.0125, 100 conditions of 20 trials: at a level of 5e-4 a side
-// Student's interval lies below 0 in some 3e-3 of the samples (60 of 20,000), the corrected one in at most
+// Student's interval lies below 0 in 84 of these 20,000 samples, the corrected one in at most
 // 5e-4 (25 or more with a probability of 2e-4).
 TEST(PopulationMean, HoldsAtTheLevelsOfManyIntervals) {
   RandomStream rng({.seed = 1, .purpose = 485});

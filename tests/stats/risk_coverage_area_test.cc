@@ -72,9 +72,9 @@ TEST(RiskCoverageArea, CoversClosedForms) {
 }
 
 // Failures of 200 or 1,000 trials are few, and their scores are lower by `apart` standard deviations; the
-// area is that of 400,000 trials. Of 600 repetitions with a failure the intervals cover at least 0.93 (with
-// Student's C - 1 degrees of freedom they cover 0.78 to 0.89, which 600 repetitions tell from 0.93 with
-// probability 0.99).
+// area is that of 400,000 trials. Of 600 repetitions with a failure at least 0.91 are covered, which
+// fails with a probability of 5e-4 at a coverage of 0.94. With C - 1 degrees of freedom one of the cases
+// fails.
 TEST(RiskCoverageArea, CoversWhereFewFail) {
   const struct {
     int n;

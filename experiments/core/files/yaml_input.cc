@@ -29,7 +29,7 @@ void CheckIsUtf8(std::string_view text, const std::string& path) {
 
 }  // namespace
 
-Place Place::AtLineOf(const YAML::Node& value) const {
+Place Place::FixLineTo(const YAML::Node& value) const {
   Place place(path_);
   place.line_ = value.Mark().line;
   return place;

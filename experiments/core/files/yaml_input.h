@@ -20,7 +20,7 @@ class Place {
   explicit Place(std::string path) : path_(std::move(path)) {}
   const std::string& path() const { return path_; }
   // For a text inside a value, which has no lines of its own: all its messages name the line of the value.
-  Place AtLineOf(const YAML::Node& value) const;
+  Place FixLineTo(const YAML::Node& value) const;
   // "file:line".
   std::string Text(const YAML::Mark& mark) const;
   std::string Text(const YAML::Node& node) const { return Text(node.Mark()); }

@@ -14,26 +14,29 @@
 namespace rcme {
 namespace {
 
-constexpr const char *kFocal = "focal_sd", *kPrincipalPoint = "principal_point_sd_px",
-                     *kDistortion = "distortion_sd";
-
 struct AssumedError {
-  const char* option;
+  const char *text, *option;
   double sd;
   CalibrationPrior prior;
 };
-const AssumedError kAssumedErrors[] = {{kFocal, 0.01, {.focal_sd = 0.01}},
-                                       {kPrincipalPoint, 5.0, {.principal_point_sd_px = 5.0}},
-                                       {kDistortion, 0.01, {.distortion_sd = 0.01}}};
+const AssumedError kAssumedErrors[] = {
+    {"1 % of the focal length", "focal_sd", 0.01, {.focal_sd = 0.01}},
+    {"5 px of the principal point", "principal_point_sd_px", 5.0, {.principal_point_sd_px = 5.0}},
+    {"0.01 of k1", "distortion_sd", 0.01, {.distortion_sd = 0.01}}};
 
 }  // namespace
 
+bool CanStateCalibrationErrors(const EstimatorSpec& spec) {
+  return FindSetting(spec.options, "covariance").value_or("own") != "own";
+}
+
 bool StatesCalibrationErrors(const EstimatorSpec& spec) {
-  return std::ranges::any_of(kAssumedErrors, [&](const AssumedError& error) {
-    const std::optional<std::string> text = FindSetting(spec.options, error.option);
-    double sd = 0.0;
-    return text && ParseReal(*text, &sd) && sd > 0.0;
-  });
+  return CanStateCalibrationErrors(spec) &&
+         std::ranges::any_of(kAssumedErrors, [&](const AssumedError& error) {
+           const std::optional<std::string> text = FindSetting(spec.options, error.option);
+           double sd = 0.0;
+           return text && ParseReal(*text, &sd) && sd > 0.0;
+         });
 }
 
 std::vector<CalibrationEffect> ComputeCalibrationEffects(const MotionProblem& problem,
@@ -51,7 +54,8 @@ std::vector<CalibrationEffect> ComputeCalibrationEffects(const MotionProblem& pr
         [&](const MotionProblem& changed) -> Vector5d { return sum_at(changed).gradient; });
     if (!linear.allFinite()) return {};
     const Matrix5d moves = BoundByUniformMotion(linear);
-    effects.push_back({error.option, error.sd, kDegPerRad * std::sqrt(moves.topLeftCorner<3, 3>().trace()),
+    effects.push_back({error.text, error.option, error.sd,
+                       kDegPerRad * std::sqrt(moves.topLeftCorner<3, 3>().trace()),
                        kDegPerRad * std::sqrt(moves.bottomRightCorner<2, 2>().trace())});
   }
   return effects;

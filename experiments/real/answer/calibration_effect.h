@@ -14,12 +14,15 @@ namespace rcme {
 // Root mean squares, over errors of one intrinsic with standard deviation `sd`, of the angles by which
 // rotation and direction move. A direction that the error may turn anywhere moves by some 90 deg.
 struct CalibrationEffect {
+  std::string error;   // for people: "1 % of the focal length"
   std::string option;  // that states the standard deviation
   double sd = 0.0;     // in the unit of the option
   double rotation_rms_deg = 0.0, direction_rms_deg = 0.0;
 };
 
-// Returns whether an estimator's options state errors of the calibration, so that its covariance has them.
+// Returns whether the covariance of an estimator with these options has errors of the calibration that they
+// state. That which the estimator itself makes (covariance: own) has none.
+bool CanStateCalibrationErrors(const EstimatorSpec& spec);
 bool StatesCalibrationErrors(const EstimatorSpec& spec);
 
 // The effects of 1 % of the focal length, 5 px of the principal point and 0.01 of k1 on the motion that fits

@@ -105,24 +105,16 @@ std::string FormatProtection(const LevelsAtRisk& at) {
       kDegPerRad * at.levels.rotation_rad, kDegPerRad * at.levels.direction_rad, at.risk);
 }
 
-// "focal_sd" as a person says it.
-std::string ErrorText(const CalibrationEffect& effect) {
-  if (effect.option == "focal_sd") return fmt::format("{:g} % of the focal length", 100.0 * effect.sd);
-  if (effect.option == "principal_point_sd_px")
-    return fmt::format("{:g} px of the principal point", effect.sd);
-  return fmt::format("{:g} of k1", effect.sd);
-}
-
 // What errors of the calibration would do that nobody stated.
-std::string CalibrationText(const std::vector<CalibrationEffect>& effects) {
+std::string CalibrationText(const std::vector<CalibrationEffect>& effects, const EstimatorSpec& spec) {
   if (effects.empty()) return {};
   std::string text = "  if K is off, errors with these standard deviations move the motion by (rms)\n";
   for (const CalibrationEffect& effect : effects) {
-    text += fmt::format("             {:<27} rotation {:.2g} deg, direction {:.2g} deg\n", ErrorText(effect),
+    text += fmt::format("             {:<27} rotation {:.2g} deg, direction {:.2g} deg\n", effect.error,
                         effect.rotation_rms_deg, effect.direction_rms_deg);
   }
-  return text +
-         "             --set focal_sd=0.005, for example, makes such an error part of the covariance\n";
+  return text + fmt::format("             in the covariance by{} --set focal_sd=0.005\n",
+                            CanStateCalibrationErrors(spec) ? "" : " --set covariance=robust");
 }
 
 std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const EstimatorSpec& spec) {
@@ -142,7 +134,7 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
       spread.rotation_95_deg(0), spread.rotation_95_deg(1), spread.rotation_95_deg(2),
       spread.direction_95_deg(0), spread.direction_95_deg(1));
   if (answer.protection) text += FormatProtection(*answer.protection);
-  text += CalibrationText(answer.calibration_effects);
+  text += CalibrationText(answer.calibration_effects, spec);
   const MotionMode* found = FindRunnerUp(estimate);
   if (found == nullptr) return text;
   const MotionMode& other = *found;

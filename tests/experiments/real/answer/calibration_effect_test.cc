@@ -55,8 +55,8 @@ void AddMoves(const ExactAnswer& answered, const Change& change, Moves* sum) {
 void ExpectEffect(const CalibrationEffect& effect, const Moves& moves) {
   const double rotation_deg = 100.0 * kDegPerRad * std::sqrt(moves.rotation),
                direction_deg = 100.0 * kDegPerRad * std::sqrt(moves.direction);
-  EXPECT_NEAR(effect.rotation_rms_deg / rotation_deg, 1.0, 0.1) << effect.option;
-  EXPECT_NEAR(effect.direction_rms_deg / direction_deg, 1.0, 0.1) << effect.option;
+  EXPECT_NEAR(effect.rotation_rms_deg / rotation_deg, 1.0, 0.1) << effect.error;
+  EXPECT_NEAR(effect.direction_rms_deg / direction_deg, 1.0, 0.1) << effect.error;
 }
 
 void ScaleFocal(Camera& camera) { camera.fx *= 1.0001, camera.fy *= 1.0001; }
@@ -109,6 +109,11 @@ TEST(CalibrationEffect, OptionsStateErrors) {
   EXPECT_FALSE(StatesCalibrationErrors(spec));
   SetOptions(&spec, {{"distortion_sd", "0.01"}});
   EXPECT_TRUE(StatesCalibrationErrors(spec));
+  EstimatorSpec standard = DefaultEstimator("standard");  // its own covariance knows no such error
+  SetOptions(&standard, {{"focal_sd", "0.01"}});
+  EXPECT_FALSE(StatesCalibrationErrors(standard));
+  SetOptions(&standard, {{"covariance", "robust"}});
+  EXPECT_TRUE(StatesCalibrationErrors(standard));
 }
 
 }  // namespace
