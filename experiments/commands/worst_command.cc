@@ -98,7 +98,10 @@ void FindWorst(const WorstArguments& arguments) {
       RunPlotScript("worst", words, is_for_people ? ScriptOutput::kShown : ScriptOutput::kDropped);
   if (end == ScriptEnd::kNoPython) ThrowNoPython("worst");
   if (end == ScriptEnd::kFailed)
-    throw InputError("worst: not finished, for the reason above; the same command goes on");
+    throw InputError(fmt::format(
+        "worst: not finished, for the reason above; {}/trials holds the finished trials, which the same "
+        "command does not run again",
+        arguments.out));
   if (is_for_people) return;
   const auto read = [&](const char* name) {
     return ReadInputText((folder / name).string(), {"result", "a result of `rcme worst`"});

@@ -61,22 +61,23 @@ def words_around(space, key, level, tried, inside, outside):
                      if word == level or float(gain[column == word].sum()) >= 0.0)
 
 
-def widen(objective, name, box, inside, outside):
-    """Lets one limited key after the other free, and takes back what the trials do not speak against."""
+def widen(objective, name, box, around, inside, outside):
+    """Lets one limited key after the other free within the box `around`, and takes back what the trials do not speak
+    against."""
     space, limits = objective.space, dict(box.limits)
     for key, limit in box.limits:
-        free = Box.of(space, {k: v for k, v in limits.items() if k != key})
+        free = Box.of(space, {k: v for k, v in limits.items() if k != key}).meet(space, around)
         tried = objective.try_box(f"{name}_{key}", free, 2 * AXIS_DRAWS)
         if isinstance(limit, frozenset):
             limits[key] = limit | words_around(space, key, None, tried, inside, outside)
         else:
             ends = [range_around(space, key, end, tried, inside, outside, True) for end in limit]
             limits[key] = min(limit[0], ends[0][0]), max(limit[1], ends[1][1])
-    return Box.of(space, limits)
+    return Box.of(space, limits).meet(space, around)
 
 
-def first_box(objective, name, levels, inside, outside):
-    """Varies one key after the other."""
+def first_box(objective, name, levels, around, inside, outside):
+    """Varies one key after the other within the box `around`, which holds this draw."""
     space, limits = objective.space, {}
     for key in space.keys:
         level = levels[key]
@@ -84,10 +85,10 @@ def first_box(objective, name, levels, inside, outside):
         if is_absent or not space.varies(key):
             continue
         number = AXIS_DRAWS if space.numeric[key] else max(AXIS_DRAWS, 2 * len(space.words[key]))
-        tried = objective.try_box(f"{name}_{key}", point_box(space, levels, key), number)
+        tried = objective.try_box(f"{name}_{key}", point_box(space, levels, key).meet(space, around), number)
         find = range_around if space.numeric[key] else words_around
         limits[key] = find(space, key, level, tried, inside, outside)
-    return Box.of(space, limits)
+    return Box.of(space, limits).meet(space, around)
 
 
 def slices(space, box, tried):

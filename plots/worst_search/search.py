@@ -156,10 +156,23 @@ def rates_apart(plan, inside):
     return inside, min(0.5 * inside, max(0.2, plan.claim))
 
 
-def grow(objective, plan, name, draw, evidence):
+def box_beside(space, draw, evidence, regions):
+    """The box beside the regions within which a draw's box may grow: of each region the side with the most events, so that
+    the worst of what is left becomes a box of its own."""
+    box, levels = Box(()), space.pool.row(draw)
+    for region in regions:
+        weights = np.where(region.box.contains(space.pool), -evidence.events, evidence.events)
+        sides = list(region.box.sides(space, levels))
+        if sides:  # none: the draw lies in the region
+            box = box.meet(space, max(sides, key=lambda side: weights[side.contains(space.pool)].sum()))
+    return box
+
+
+def grow(objective, plan, name, draw, evidence, regions):
     space = objective.space
     inside, outside = rates_apart(plan, (evidence.events[draw] + 1) / (evidence.trials[draw] + 2))
-    box = first_box(objective, f"{name}_axis", space.pool.row(draw), inside, outside)
+    beside = box_beside(space, draw, evidence, regions)
+    box = first_box(objective, f"{name}_axis", space.pool.row(draw), beside, inside, outside)
     for look in range(plan.num_looks):
         tried = objective.try_box(f"{name}_look_{look}", box, plan.box_draws)
         if tried.events.sum() < MIN_EVENTS:
@@ -167,8 +180,8 @@ def grow(objective, plan, name, draw, evidence):
         box, kept = peel(space, box, tried, plan.least_share)
         rate = (kept.events.sum() + 1) / (kept.trials.sum() + 2)
         if look + 1 < plan.num_looks:
-            box = widen(objective, f"{name}_wider_{look}", box, *rates_apart(plan, rate))
-    return Region(box, draw, rate) if rate > plan.claim else None
+            box = widen(objective, f"{name}_wider_{look}", box, beside, *rates_apart(plan, rate))
+    return Region(box.without_idle_ends(space), draw, rate) if rate > plan.claim else None
 
 
 def next_draw(objective, plan, evidence, regions, given_up):
@@ -193,7 +206,7 @@ def grow_regions(objective, plan, evidence, regions, given_up):
         draw = next_draw(objective, plan, evidence, regions, given_up)
         if draw is None:
             return
-        region = grow(objective, plan, f"region_{draw}", draw, evidence)
+        region = grow(objective, plan, f"region_{draw}", draw, evidence, regions)
         given_up.add(draw)
         if region and all(overlap(region.box, other.box, space.pool) <= plan.most_overlap for other in regions):
             regions.append(region)

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 
 ABSENT = "-"  # the level of a key that a draw does not have
+IDLE_SHARE = 0.01  # of the draws with a key
 
 
 def is_number(text):
@@ -118,17 +119,54 @@ class Box:
         return inside
 
     def neighbourhood(self, space):
-        """With half of its width more at both ends of every range, by shares of the population."""
+        """With half of its width more at both ends of every range, by shares of the population, and with all words of a key
+        if it has most of them."""
         limits = dict(self.limits)
         for key, limit in self.limits:
-            if not isinstance(limit, frozenset):
+            if isinstance(limit, frozenset):
+                if 2 * len(limit) > len(space.words[key]):
+                    del limits[key]
+            else:
                 lower, upper = (float(space.share_below(key, end)) for end in limit)
                 more = (upper - lower) / 2
                 limits[key] = (min(limit[0], space.value_at(key, lower - more)), max(limit[1], space.value_at(key, upper + more)))
         return Box.of(space, limits)
 
+    def without_idle_ends(self, space):
+        """Without the ends of ranges beyond which hardly any draw lies."""
+        limits = dict(self.limits)
+        for key, limit in self.limits:
+            if not isinstance(limit, frozenset):
+                below, beyond = (float(space.share_below(key, end)) for end in limit)
+                limits[key] = (-np.inf if below < IDLE_SHARE else limit[0], np.inf if beyond > 1 - IDLE_SHARE else limit[1])
+        return Box.of(space, limits)
+
+    def meet(self, space, other):
+        """The draws in both, which hold at least one."""
+        limits = dict(self.limits)
+        for key, limit in other.limits:
+            if key not in limits:
+                limits[key] = limit
+            elif isinstance(limit, frozenset):
+                limits[key] = limits[key] & limit
+            else:
+                limits[key] = max(limits[key][0], limit[0]), min(limits[key][1], limit[1])
+        return Box.of(space, limits)
+
     def share(self, table):
         return float(self.contains(table).mean())
+
+    def sides(self, space, levels):
+        """Boxes around a draw outside of this one, each beyond one of its limits. Draws without that key lie in both."""
+        for key, limit in self.limits:
+            level, known = levels[key], space.sorted.get(key)
+            if isinstance(limit, frozenset):
+                if level != ABSENT and level not in limit:
+                    yield Box.of(space, {key: frozenset(space.words[key]) - limit})
+            elif level < limit[0]:
+                yield Box(((key, (-np.inf, known[np.searchsorted(known, limit[0], "left") - 1])),))
+            elif level > limit[1]:
+                yield Box(((key, (known[np.searchsorted(known, limit[1], "right")], np.inf)),))
 
 
 def overlap(one, other, pool):

@@ -50,6 +50,16 @@ class KnownFunctions(unittest.TestCase):
             inside = objective.is_inside(objective.try_box("check", region.box, 1000).table)
             self.assertGreater(inside.mean(), 0.7)
 
+    def test_of_regions_that_overlap_the_rest_of_the_second_is_found(self):
+        boxes = [{"x0": (0.1, 0.4)}, {"x1": (0.5, 0.8)}]  # 30 % of each lie in the other
+        objective = PlantedRegion(boxes, seed=3, pool_size=5000)
+        regions = [r for r in find_worst(objective, Plan(budget=3500, num_regions=2, num_fresh=100)) if r.is_find]
+        self.assertEqual(len(regions), 2)
+        self.assertLessEqual(overlap(regions[0].box, regions[1].box, objective.space.pool), 0.01)
+        for region in regions:
+            inside = objective.is_inside(objective.try_box("check", region.box, 1000).table)
+            self.assertGreater(inside.mean(), 0.7)
+
     def test_rates_are_of_fresh_trials_alone(self):
         objective = Recorder([WORDS_BOX, OTHER_BOX], seed=2, pool_size=5000)
         regions = find_worst(objective, Plan(budget=3000, num_fresh=100))
@@ -85,12 +95,40 @@ class KnownFunctions(unittest.TestCase):
                                                                        num_looks=2, box_draws=40, seed=seed)))
         self.assertLess(finds, 4)
 
-
     def test_a_search_ends_where_nothing_counts(self):
         objective = Recorder([WORDS_BOX], seed=5, pool_size=400)
         objective.tried = lambda name, table, trials: Tried(table, *np.zeros((3, table.size), dtype=int))
         with self.assertRaisesRegex(PlotError, "none of the .* trials so far counts"):
             find_worst(objective, Plan(budget=1500, num_fresh=50))
+
+
+class Sides(unittest.TestCase):
+    def test_a_box_beside_another_holds_the_draw_and_nothing_of_the_other(self):
+        levels = [[repr(x), repr(y), word] for x in range(4) for y in range(4) for word in ("a", "b", "c")]
+        space = Space(["x", "y", "word"], levels)
+        box = Box.of(space, {"x": (1, 2), "y": (0, 2), "word": frozenset("ab")})
+        inside = box.contains(space.pool)
+        for i in range(space.pool.size):
+            levels = space.pool.row(i)
+            sides = list(box.sides(space, levels))
+            self.assertEqual(len(sides), sum([levels["x"] in (0, 3), levels["y"] == 3, levels["word"] == "c"]))
+            self.assertEqual(bool(sides), not inside[i])
+            for side in sides:
+                self.assertTrue(side.contains(space.pool)[i])
+                self.assertFalse((side.contains(space.pool) & inside).any())
+
+    def test_ends_beyond_which_hardly_any_draw_lies_are_no_limits(self):
+        space = Space(["x", "y"], [[repr(i), repr(-i)] for i in range(1000)])
+        box = Box.of(space, {"x": (9, 980), "y": (-995, -11)})
+        self.assertEqual(box.without_idle_ends(space).limits, (("x", (-np.inf, 980)), ("y", (-np.inf, -11))))
+
+    def test_boxes_meet_in_the_draws_of_both(self):
+        space = Space(["x", "word"], [[repr(x), word] for x in range(6) for word in ("a", "b", "c")])
+        one = Box.of(space, {"x": (0, 3), "word": frozenset("ab")})
+        other = Box.of(space, {"x": (2, 5), "word": frozenset("bc")})
+        both = one.contains(space.pool) & other.contains(space.pool)
+        self.assertEqual(both.sum(), 2)
+        np.testing.assert_array_equal(one.meet(space, other).contains(space.pool), both)
 
 
 class Shares(unittest.TestCase):
