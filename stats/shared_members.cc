@@ -55,11 +55,25 @@ SharedGroupMean AverageGroups(std::span<const GroupValue> groups) {
   return mean;
 }
 
-double ReductionForFewMembers(std::int64_t n, std::int64_t num_members, double confidence) {
-  if (n < 2 || num_members < 2) return 1.0;
+// G in the header.
+template <typename Pair>
+std::int64_t CountClusters(std::span<const Pair> pairs) {
+  std::map<std::int64_t, std::set<std::int64_t>> partners;
+  for (const Pair& pair : pairs) {
+    partners[pair.member1].insert(pair.member2);
+    partners[pair.member2].insert(pair.member1);
+  }
+  std::int64_t num_halves = 0;  // of pairs whose members have no other partner
+  for (const auto& [member, others] : partners)
+    num_halves += others.size() == 1 && *others.begin() != member && partners.at(*others.begin()).size() == 1;
+  return std::ssize(partners) - num_halves / 2;
+}
+
+double ReductionForFewClusters(std::int64_t n, std::int64_t num_clusters, double confidence) {
+  if (n < 2 || num_clusters < 2) return 1.0;
   const double p = 0.5 * (1.0 + confidence);
   const double ratio =
-      StudentQuantile(static_cast<int>(n - 1), p) / StudentQuantile(static_cast<int>(num_members - 1), p);
+      StudentQuantile(static_cast<int>(n - 1), p) / StudentQuantile(static_cast<int>(num_clusters - 1), p);
   return std::min(1.0, ratio * ratio);
 }
 
@@ -80,7 +94,8 @@ SharedMemberRate MeasureSharedMemberRate(std::span<const PairEvent> pairs, doubl
     ++measured.num_apart;
   }
   measured.num_members = std::ssize(members);
-  const double n = static_cast<double>(measured.n), G = static_cast<double>(measured.num_members);
+  const std::int64_t num_clusters = CountClusters(pairs);
+  const double n = static_cast<double>(measured.n), G = static_cast<double>(num_clusters);
   measured.rate = static_cast<double>(measured.num_events) / n;
   const double independent = n * measured.rate * (1.0 - measured.rate);
   if (independent > 0.0 && G > 1.0) {
@@ -90,7 +105,7 @@ SharedMemberRate MeasureSharedMemberRate(std::span<const PairEvent> pairs, doubl
     measured.design_effect = std::max(1.0, G / (G - 1.0) * SharedProducts(deviations) / independent);
   }
   measured.effective_n =
-      n / measured.design_effect * ReductionForFewMembers(measured.n, measured.num_members, confidence);
+      n / measured.design_effect * ReductionForFewClusters(measured.n, num_clusters, confidence);
   if (std::min(measured.num_events, measured.n - measured.num_events) < kLeastEvents)
     measured.effective_n = std::min(measured.effective_n, static_cast<double>(measured.num_apart));
   measured.interval = BetaInterval(measured.rate * measured.effective_n, measured.effective_n, confidence);
@@ -104,9 +119,10 @@ SharedMemberMean MeasureSharedMemberMean(std::span<const PairValue> pairs, doubl
     members.insert({pair.member1, pair.member2});
     sum += pair.value;
   }
-  const double n = static_cast<double>(pairs.size()), G = static_cast<double>(members.size());
+  const std::int64_t num_clusters = CountClusters(pairs);
+  const double n = static_cast<double>(pairs.size()), G = static_cast<double>(num_clusters);
   SharedMemberMean mean{std::ssize(pairs), std::ssize(members), sum / n, kNaN, {-kInfinity, kInfinity}};
-  if (pairs.size() < 2 || members.size() < 2) return mean;
+  if (pairs.size() < 2 || num_clusters < 2) return mean;
   std::vector<PairValue> deviations(pairs.begin(), pairs.end());
   double squares = 0.0;
   for (PairValue& pair : deviations) {
@@ -117,7 +133,7 @@ SharedMemberMean MeasureSharedMemberMean(std::span<const PairValue> pairs, doubl
       std::max(G / (G - 1.0) * SharedProducts(deviations), n / (n - 1.0) * squares) / (n * n);
   mean.standard_error = std::sqrt(variance);
   const double half =
-      mean.standard_error * StudentQuantile(static_cast<int>(members.size()) - 1, 0.5 * (1.0 + confidence));
+      mean.standard_error * StudentQuantile(static_cast<int>(num_clusters) - 1, 0.5 * (1.0 + confidence));
   mean.interval = {mean.value - half, mean.value + half};
   return mean;
 }

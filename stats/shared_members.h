@@ -31,7 +31,8 @@ struct SharedMemberRate {
 };
 
 // The variance of the rate p allows for any dependence between pairs that share a member (Fafchamps & Gubert
-// 2007; Aronow, Samii & Assenova 2015). With u_i = x_i - p and G members in all:
+// 2007; Aronow, Samii & Assenova 2015). With u_i = x_i - p and G clusters, which are the members, except that
+// two members without other partners are one (they have the same observations):
 //
 //   V = G / (G - 1) sum_(i, j share a member) u_i u_j / n^2,
 //   design effect d = max(1, V / (p (1 - p) / n)).
@@ -47,7 +48,7 @@ SharedMemberRate MeasureSharedMemberRate(std::span<const PairEvent> pairs, doubl
 struct SharedMemberMean {
   std::int64_t n = 0, num_members = 0;
   double value = 0.0;           // NaN at n = 0
-  double standard_error = 0.0;  // NaN below two members or two pairs
+  double standard_error = 0.0;  // NaN below two clusters or two observations
   Interval interval;            // unbounded if there is no standard error
 };
 
