@@ -9,11 +9,6 @@ import math
 import os
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from audit_figures import groups, look
 from audit_figures.audit_file import read_audit
 from audit_figures.curve import panels_of

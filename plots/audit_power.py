@@ -6,11 +6,6 @@ It draws what sigma.csv says and computes nothing but shares.
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common import style
 from common.command_line import FigureParser, check_figure_path, draw_figure
 from common.summary_csv import read_table

@@ -7,11 +7,6 @@ It draws what the file says and computes nothing: coverages, intervals and sizes
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
 from conform_figure.conform_file import read_report, read_table_of_regions
 from conform_figure.panels import draw

@@ -7,11 +7,6 @@ It draws what the file says and computes nothing: values and interval bounds are
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import of_estimators, read_summary, where
 from rates.lines import Choices, draw

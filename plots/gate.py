@@ -7,11 +7,6 @@ It draws what the file says and computes nothing but that ratio: changes, interv
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, check_figure_path, draw_figure
 from gate_figure.gate_file import read_gate
 from gate_figure.panel import draw

@@ -7,11 +7,6 @@ helps the eye, and is the same for equal rates of a quantity in all panels; the 
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import read_summary, where
 from rates.cells import draw

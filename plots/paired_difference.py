@@ -8,11 +8,6 @@ compare`. A mark is filled where the Holm-adjusted p-value is below 0.05.
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import of_estimators, read_comparison, where
 from rates.differences import draw

@@ -7,11 +7,6 @@ It draws what the file says and computes nothing: curves, bands, intervals and s
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from reliability_figure.panels import draw
 from reliability_figure.reliability_file import read_reliability

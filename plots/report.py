@@ -11,11 +11,6 @@ import re
 import shlex
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import Parser, PlotError, check_folder, run as run_script
 from common.style import label_of, split_unit
 from common.whole_file import write_text

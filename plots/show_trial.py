@@ -8,11 +8,6 @@ It draws what the file says and computes nothing but where a line leaves an imag
 import argparse
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common import style
 from common.command_line import Parser, check_figure_path, draw_figure
 from common.text_size import fill, height_of, width_of

@@ -8,11 +8,6 @@ below it the answer misled.
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, check_figure_path, draw_figure
 from stanford_figure.integrity_file import read_integrity
 from stanford_figure.panels import draw

@@ -15,11 +15,6 @@ import re
 import sys
 import time
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import Parser, PlotError, run
 from common import sheet, style
 from common.whole_file import write_text

@@ -7,11 +7,6 @@ It draws what the files say: values and interval bounds are those of `rcme summa
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, check_figure_path, draw_figure
 from common.summary_csv import read_summary
 from rates.time_points import draw

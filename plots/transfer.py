@@ -8,11 +8,6 @@ It draws what the file says and computes nothing: rates, intervals and verdicts 
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 import pandas
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure

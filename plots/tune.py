@@ -10,11 +10,6 @@ program. Colours and lines between settings are interpolated.
 
 import sys
 
-from common.interrupt import end_on_interrupt
-
-if __name__ == "__main__":
-    end_on_interrupt()  # before the imports that take long
-
 from common.command_line import FigureParser, PlotError, check_figure_path, draw_figures, printable
 from tuning_figures.front import draw_front
 from tuning_figures.roc import draw_roc

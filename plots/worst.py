@@ -7,12 +7,10 @@ import hashlib
 import os
 import sys
 
-from common.interrupt import end_on_interrupt
 from worst_search.run_rcme import end_with_parent
 
 if __name__ == "__main__":
-    end_with_parent()
-    end_on_interrupt()  # before the imports that take long
+    end_with_parent()  # before the imports that take long
 
 from common.command_line import Parser, PlotError, run
 from common.whole_file import write_text

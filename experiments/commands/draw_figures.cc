@@ -23,14 +23,14 @@ constexpr const char* kHasPackages =
     "import sys; sys.path = [p for p in sys.path if p]; import importlib.util as u; "
     "sys.exit(not all(map(u.find_spec, ('matplotlib', 'pandas'))))";
 
-std::string FindScript(const std::string& kind) {
+std::string FindPlots() {
   const std::string folder = FindSharedFolder(SharedFolder::kPlots);
   if (folder.empty())
     throw InputError(
         "the scripts that draw figures are missing: they belong in share/rcme/plots beside the program's "
         "folder bin; "
         "move the whole installation, or install it again with cmake --install");
-  return (std::filesystem::path(folder) / (kind + ".py")).string();
+  return folder;
 }
 
 // Whether a program of PATH ends with exit code 0.
@@ -54,11 +54,11 @@ bool RunsWell(std::vector<std::string> command, ScriptOutput output) {
 
 ScriptEnd RunPlotScript(const std::string& kind, const std::vector<std::string>& arguments,
                         ScriptOutput output) {
-  const std::string script = FindScript(kind);
+  const std::string run_script = (std::filesystem::path(FindPlots()) / "common" / "run_script.py").string();
   // Debian's own Python first: another one may stand before it on PATH, without matplotlib.
   for (const char* python : {"/usr/bin/python3", "python3"}) {
     if (!RunsWell({python, "-c", kHasPackages}, ScriptOutput::kDropped)) continue;
-    std::vector<std::string> command = {python, script};
+    std::vector<std::string> command = {python, run_script, kind};
     command.insert(command.end(), arguments.begin(), arguments.end());
     return RunsWell(std::move(command), output) ? ScriptEnd::kDone : ScriptEnd::kFailed;
   }
