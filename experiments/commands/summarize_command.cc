@@ -107,6 +107,7 @@ the greater of its rotation and direction error.
                             averaged over these thresholds (as in the image-matching
                             benchmark; others use the name for a mean of AUCs)
   median errors             of rotation, direction and e
+Tables of a population show the number of a draw; --format csv has its levels.
 A refusal or an invalid answer counts as infinitely wrong. Quantities called _answered
 leave out refusals. A direction opposite to the true one is wrong.
 

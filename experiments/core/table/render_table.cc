@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <ranges>
+#include <string_view>
+#include <unordered_map>
 
 #include "experiments/core/text/field_text.h"
 
@@ -282,6 +285,26 @@ std::string RenderLatexRow(const Table& table, const std::vector<Value>& row, bo
   return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
 }
 
+// The levels that the first one determines, such as those of the draws of a population, which are numbered,
+// if the keys together take more than half of `width`.
+std::vector<size_t> FindImpliedLevels(const std::vector<Column>& columns, const Cells& cells, size_t width) {
+  std::vector<size_t> levels, implied;
+  size_t keys_width = 0;
+  for (size_t c = 0; c < columns.size(); ++c) {
+    if (columns[c].is_key) keys_width += FindWidth(cells, c) + kGap;
+    if (columns[c].is_key && columns[c].group == "levels") levels.push_back(c);
+  }
+  if (keys_width <= width / 2) return {};
+  for (size_t k = 1; k < levels.size(); ++k) {
+    std::unordered_map<std::string_view, std::string_view> level_of;  // by that of the first
+    const bool is_implied = std::all_of(cells.begin() + 1, cells.end(), [&](const auto& row) {
+      return level_of.try_emplace(row[levels[0]], row[levels[k]]).first->second == row[levels[k]];
+    });
+    if (is_implied && level_of.size() > 1) implied.push_back(levels[k]);
+  }
+  return implied;
+}
+
 }  // namespace
 
 std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format) {
@@ -301,7 +324,12 @@ void AppendCells(const Table& rows, Cells* cells) {
   }
 }
 
-std::string RenderCells(const std::vector<Column>& columns, Cells cells, size_t width) {
+std::string RenderCells(std::vector<Column> columns, Cells cells, size_t width) {
+  const std::vector<size_t> implied = FindImpliedLevels(columns, cells, width);
+  for (const size_t c : std::views::reverse(implied)) {
+    columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(c));
+    for (std::vector<std::string>& row : cells) row.erase(row.begin() + static_cast<std::ptrdiff_t>(c));
+  }
   AlignCounts(columns, &cells);
   const std::vector<size_t> most = FindMostWidths(columns, cells, width);
   std::string text;
@@ -312,6 +340,7 @@ std::string RenderCells(const std::vector<Column>& columns, Cells cells, size_t 
     if (part.size() == 1 && cells.size() > 1) continue;
     text += (text.empty() ? "" : "\n") + FormatColumns(BreakCells(std::move(part), most_of_block));
   }
+  if (!implied.empty()) text += fmt::format("({} stands for {} more columns)\n", cells[0][0], implied.size());
   return text;
 }
 

@@ -21,13 +21,14 @@ namespace rcme {
 // Text columns are broken into several lines at half of `width`, or at the width that the key columns leave;
 // a text column that is the only one beside the keys gets all of that. Columns that do not fit follow in
 // further blocks, which repeat the key columns and omit rows without a value in the block; a block without
-// rows is omitted. The result is wider than `width` only if a single column does not fit beside the keys.
+// rows is omitted. Levels that the first one determines are left out if the keys take more than half of
+// `width`; a last line says how many. The result is wider than `width` only if a single column does not fit beside the keys.
 std::string RenderText(const Table& table, size_t width = kTextWidth);
 
 // The texts of a table's cells: the headings, then each row.
 using Cells = std::vector<std::vector<std::string>>;
 void AppendCells(const Table& rows, Cells* cells);
-std::string RenderCells(const std::vector<Column>& columns, Cells cells, size_t width = kTextWidth);
+std::string RenderCells(std::vector<Column> columns, Cells cells, size_t width = kTextWidth);
 
 // Makes a table from 1000 items at a time and visits it. The values of a whole large table would take
 // several times as much memory as their texts.

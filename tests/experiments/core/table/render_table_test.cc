@@ -105,6 +105,33 @@ TEST(RenderText, BreaksATextWhereTheKeysLeaveLess) {
             "key         text\n----------  ----------------\ntwenty-one  four words of 19\ncharacters  ch\n");
 }
 
+// Two draws with 20 keys of their own and a factor with two levels.
+TEST(RenderText, LeavesOutLevelsThatTheFirstDeterminesIfTheyAreMany) {
+  Table table{{{.name = "draw", .group = "levels", .is_key = true}}, {}};
+  for (int k = 0; k < 20; ++k)
+    table.columns.push_back({.name = "key_" + std::to_string(k), .group = "levels", .is_key = true});
+  table.columns.push_back({.name = "outlier_ratio", .group = "levels", .is_key = true});
+  table.columns.push_back({.name = "rate", .type = ColumnType::kNumber});
+  for (const std::string draw : {"0", "7"}) {
+    for (const std::string ratio : {"0.1", "0.2"}) {
+      std::vector<Value> row = {draw};
+      for (int k = 0; k < 20; ++k) row.push_back("1" + draw);
+      row.insert(row.end(), {ratio, 0.5});
+      table.rows.push_back(row);
+    }
+  }
+  EXPECT_EQ(RenderText(table),
+            "draw  outlier_ratio  rate\n"
+            "----  -------------  ----\n"
+            "0     0.1             0.5\n"
+            "0     0.2             0.5\n"
+            "7     0.1             0.5\n"
+            "7     0.2             0.5\n"
+            "(draw stands for 20 more columns)\n");
+  EXPECT_NE(RenderText(table, 1000).find("key_19"), std::string::npos);
+  EXPECT_NE(RenderMarkdown(table).find("key_19"), std::string::npos);
+}
+
 TEST(FormatEstimate, SaysHowFarToTrustANumber) {
   EXPECT_EQ(FormatEstimate({.value = 1.234, .standard_error = 0.0456}, kSignificant), "1.23 +- 0.046");
   EXPECT_EQ(FormatEstimate({.value = 1.234, .interval = {1.0, kInf}}, kSignificant), "1.23 [1, inf]");
