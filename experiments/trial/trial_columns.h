@@ -160,4 +160,16 @@ std::string FormatField(Number number) {
   return fmt::format("{}", number);
 }
 
+// Whether two records agree in every column but the time.
+inline bool AreEqualButForTime(const TrialRecord& a, const TrialRecord& b) {
+  const auto join_fields = [](const TrialRecord& record) {
+    std::string text;
+    VisitColumns(record, [&](const StoredColumn& column, const auto& field) {
+      if (column.role != StoredColumn::Role::kTime) text += FormatField(field) + " ";
+    });
+    return text;
+  };
+  return join_fields(a) == join_fields(b);
+}
+
 }  // namespace rcme

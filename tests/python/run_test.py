@@ -2,6 +2,7 @@
 ends a run; then the tables of a run, and tune."""
 
 import os
+import subprocess
 import sys
 import tempfile
 import threading
@@ -10,6 +11,7 @@ import warnings
 
 import numpy as np
 import rcme
+from program import PROGRAM
 from small_study import STUDY, TUNED_STUDY
 
 
@@ -195,6 +197,26 @@ class Tables(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.run_file = rcme.run(STUDY, {"worse": identity})
+
+    def test_a_trial_is_replayed_with_its_function_and_by_the_program_without_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = rcme.run(STUDY, {"mine": estimate_again}, out=os.path.join(folder, "run.sqlite"))
+            frame = rcme.replay(path, 1, 3, {"mine": estimate_again})
+            stored = rcme.trials(path).query("condition == 1 and trial == 3")
+            self.assertEqual(list(frame.estimator), list(stored.estimator))
+            self.assertTrue(frame.same.all())
+            np.testing.assert_allclose(frame.rotation_error_deg, stored.rotation_error_deg, rtol=1e-6)
+            self.assertIsNone(rcme.replay(path, 1, 5000, {"mine": estimate_again}).same[0])
+            with self.assertRaisesRegex(ValueError, "function 'mine' is not there"):
+                rcme.replay(path, 1, 3)
+            with self.assertRaisesRegex(ValueError, "has changed since"):
+                rcme.replay(path, 1, 3, {"mine": identity})
+            with self.assertRaisesRegex(ValueError, "condition: 2 is not allowed"):
+                rcme.replay(path, 2, 3, {"mine": estimate_again})
+            said = subprocess.run([PROGRAM, "replay", path, "--condition", "1", "--trial", "3"], capture_output=True, text=True,
+                                  check=True).stdout
+            self.assertIn("mine: a function of Python", said)
+            self.assertEqual(said.count("the record in the file:   the same"), 2)
 
     def test_summarize(self):
         frame = rcme.summarize(self.run_file, times=True)
