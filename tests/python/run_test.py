@@ -10,6 +10,7 @@ import unittest
 import warnings
 
 import numpy as np
+import pandas
 import rcme
 from program import PROGRAM
 from small_study import STUDY, TUNED_STUDY
@@ -217,6 +218,20 @@ class Tables(unittest.TestCase):
                                   check=True).stdout
             self.assertIn("mine: a function of Python", said)
             self.assertEqual(said.count("the record in the file:   the same"), 2)
+
+    def test_pairs_from_python_are_those_of_the_study(self):
+        study = {**STUDY, "factors": {"outlier_ratio": [0.4]}}
+        pairs = [{**rcme.simulate(study, trial=i), "scene": "mine"} for i in range(20)]
+        with tempfile.TemporaryDirectory() as folder:
+            written = rcme.write_pairs(os.path.join(folder, "pairs"), pairs)
+            of_files = rcme.trials(rcme.run({**STUDY, "factors": {}, "data": {"scene": "match_files", "folder": written}}))
+            pandas.testing.assert_series_equal(of_files.rotation_error_deg, rcme.trials(rcme.run(study)).rotation_error_deg)
+            with self.assertRaisesRegex(ValueError, "holds something"):
+                rcme.write_pairs(written, pairs)
+        for key, value, message in (("x2", np.zeros((3, 2)), "x2 3"), ("camera1", np.eye(3), "camera1"),
+                                    ("truth", {"R": 2 * np.eye(3), "t": [1, 0, 0]}, "truth: R"), ("sigma_px", -1.0, "sigma_px")):
+            with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, rf"pairs\[0\].*{message}"):
+                rcme.write_pairs(folder, [{**pairs[0], key: value}])
 
     def test_summarize(self):
         frame = rcme.summarize(self.run_file, times=True)
