@@ -1,5 +1,8 @@
 #include "experiments/statistics/summarize.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <map>
 
@@ -9,6 +12,8 @@
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/summary_cell.h"
 #include "experiments/statistics/summary_quantities.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -83,6 +88,34 @@ Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling) {
 
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
   return Summarize(ReadRun(store), with_times, pooling);
+}
+
+Summary SummarizeBy(const ReadableRun& run, bool with_times, const std::string& factor) {
+  const std::vector<std::string>& factors = run.description.factors;
+  const auto found = std::ranges::find(factors, factor);
+  if (found == factors.end())
+    throw InputError(fmt::format("--by: {} is not a factor of the run; it has: {}", Quoted(factor),
+                                 factors.empty() ? "none" : fmt::format("{}", fmt::join(factors, ", "))));
+  std::vector<std::string> levels;
+  for (const DescribedCondition& condition : run.description.conditions) {
+    const std::string& level = condition.levels.at(static_cast<size_t>(found - factors.begin()));
+    if (std::ranges::count(levels, level) == 0) levels.push_back(level);
+  }
+  Summary all;
+  for (const std::string& level : levels) {
+    Summary part = Summarize(SelectLevel(run, factor, level), with_times, Pooling::kPooled);
+    for (SummaryRow& row : part.rows) row.condition = static_cast<std::uint32_t>(all.levels.size());
+    if (all.levels.empty()) {
+      all = std::move(part);
+      all.factor_names = {factor};
+      all.levels = {{level}};
+    } else {
+      all.num_trials_done += part.num_trials_done;
+      all.rows.insert(all.rows.end(), part.rows.begin(), part.rows.end());
+      all.levels.push_back({level});
+    }
+  }
+  return all;
 }
 
 std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {

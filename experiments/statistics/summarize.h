@@ -109,6 +109,8 @@ const std::vector<QuantityHelp>& SummaryQuantities();
 // scores.
 Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling = Pooling::kPerCondition);
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling = Pooling::kPerCondition);
+// Pooled, once for each level of a factor of the run. Throws InputError for another name.
+Summary SummarizeBy(const ReadableRun& run, bool with_times, const std::string& factor);
 // The same with other groups of trials.
 Summary Summarize(const ReadableRun& run, bool with_times, const TrialGroups& groups);
 
