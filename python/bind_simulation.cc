@@ -7,7 +7,6 @@
 #include <cstdint>
 
 #include "experiments/trial/severity_columns.h"
-#include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 #include "python/function_estimator.h"
 #include "python/study_source.h"

@@ -8,7 +8,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/core/files/file_output.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/study/find_estimator.h"
 #include "parameters/input_error.h"

@@ -24,7 +24,6 @@
 #include "experiments/data/match_folder.h"
 #include "experiments/real/answer/answer_report.h"
 #include "experiments/real/camera_noise/apply_noise.h"
-#include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"

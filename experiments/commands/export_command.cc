@@ -19,7 +19,6 @@
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/match_file.h"
-#include "experiments/study/study_file.h"
 #include "experiments/trial/simulate_draw.h"
 #include "parameters/input_error.h"
 #include "peers/answer_json.h"

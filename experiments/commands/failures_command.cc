@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <limits>
 #include <memory>
@@ -7,7 +6,6 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/core/files/file_output.h"
 #include "experiments/statistics/failing_trials.h"
 #include "experiments/trial/trial_event.h"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <memory>
 
@@ -6,7 +5,6 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/core/files/file_output.h"
 #include "experiments/statistics/marginals_output.h"
 
 namespace rcme {

@@ -1,7 +1,5 @@
-#include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
 #include <memory>
 
 #include "experiments/commands/format_option.h"

@@ -6,7 +6,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/core/files/file_output.h"
 #include "experiments/statistics/forecast_output.h"
 
 namespace rcme {

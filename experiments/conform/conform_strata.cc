@@ -1,7 +1,6 @@
 #include "experiments/conform/conform_strata.h"
 
 #include <cmath>
-#include <string>
 
 #include "experiments/conform/region_kinds.h"
 #include "stats/constants.h"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "estimator/problem_check.h"
 #include "experiments/data/colmap_camera.h"
 #include "experiments/data/likely_size.h"
 

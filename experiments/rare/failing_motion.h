@@ -8,7 +8,6 @@
 
 #include "experiments/rare/rare_event.h"
 #include "experiments/study/study_plan.h"
-#include "experiments/trial/trial.h"
 
 namespace rcme {
 

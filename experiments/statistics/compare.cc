@@ -2,13 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "experiments/statistics/compared_pairs.h"
 #include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/study/find_estimator.h"
-#include "parameters/input_error.h"
 #include "stats/multiple_testing.h"
 
 namespace rcme {

@@ -11,7 +11,6 @@
 #include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
-#include "parameters/plain_text.h"
 #include "parameters/text_lines.h"
 #include "stats/fnv1a.h"
 

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "estimator/estimator_registry.h"
 #include "experiments/core/files/shared_files.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/camera_noise.h"

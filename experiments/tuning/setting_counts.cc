@@ -1,8 +1,5 @@
 #include "experiments/tuning/setting_counts.h"
 
-#include <fmt/format.h>
-
-#include <array>
 #include <map>
 
 #include "experiments/run/for_each_trial.h"

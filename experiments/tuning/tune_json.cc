@@ -8,7 +8,6 @@
 #include "estimator/estimator_registry.h"
 #include "estimator/loop_inspection.h"
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/study/tuning_file.h"
 #include "experiments/tuning/rate_output.h"

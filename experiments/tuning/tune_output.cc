@@ -10,8 +10,6 @@
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
 #include "experiments/tuning/rate_output.h"
-#include "stats/intervals.h"
-#include "stats/thresholds.h"
 
 namespace rcme {
 namespace {

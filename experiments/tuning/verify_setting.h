@@ -2,7 +2,6 @@
 // calls, on the same problems for all.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "experiments/study/study_plan.h"

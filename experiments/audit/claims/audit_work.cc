@@ -4,7 +4,6 @@
 
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <stdexcept>
 
 #include "estimator/instruction_set.h"
 #include "experiments/audit/claims/outcomes_json.h"

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "experiments/data/make_data.h"
 #include "parameters/find_setting.h"
 #include "stats/distributions.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "estimator/motion_estimate.h"
 #include "estimator/motion_problem.h"

@@ -10,7 +10,6 @@
 #include "experiments/real/truth_free/residual_correlation.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_source.h"
-#include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
