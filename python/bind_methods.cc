@@ -20,7 +20,7 @@
 #include "experiments/conform/conform_words.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
 #include "experiments/tuning/tuning_work.h"

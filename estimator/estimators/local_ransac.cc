@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "estimator/estimators/inlier_count.h"
 #include "estimator/estimators/ransac_model.h"
+#include "estimator/estimators/standard.h"
 #include "estimator/local_optimisation.h"
 #include "estimator/ransac_estimate.h"
 #include "estimator/reference_matches.h"

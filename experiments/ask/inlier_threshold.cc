@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "parameters/find_setting.h"
 #include "parameters/parameter.h"
+#include "parameters/settings.h"
 #include "stats/distributions.h"
 
 namespace rcme {

@@ -7,6 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/command_result.h"
+#include "experiments/study/estimator_spec.h"
+#include "experiments/study/study.h"
+
 namespace rcme {
 
 // The required argument: a study file, or the name of an installed study.
@@ -26,5 +30,31 @@ CLI::Option* AddEstimatorsOption(CLI::App* command, std::vector<std::string>* la
 
 // --sigma in px, with its default in the help: the noise that an estimator assumes.
 CLI::Option* AddSigmaOption(CLI::App* command, std::optional<double>* sigma_px);
+
+// --allow-process, for all commands that call estimators (study/command_permission.h).
+void AddProcessOption(CLI::App* command, bool* is_allowed);
+
+// Allows the commands that estimators from files name, and prints them on standard error.
+void AllowAndSay(std::vector<EstimatorSpec>* estimators);
+
+// --format, for the commands that report a result; the initial value of `format` is the default.
+CLI::Option* AddFormatOption(CLI::App* command, std::string* format);
+
+// Prints the result in the format to standard output, or writes it to the file `out` if that is not empty.
+void PrintResult(const CommandResult& result, const std::string& format, const std::string& out = "");
+
+// Writes `stem`.txt, .csv and .json.
+void WriteResultFiles(const CommandResult& result, const std::string& stem);
+
+// --max-time, for commands whose work can be resumed. `pieces` names the items between which the command can
+// stop: "trials". An empty time is no limit.
+CLI::Option* AddTimeLimit(CLI::App* command, const std::string& pieces, std::string* max_time);
+
+// Starts the clock. Call it while a StopOnSignals exists (core/work/stop_request.h).
+void StartTimeLimit(const std::string& max_time);
+
+// Parses "1,5": the bounds on the rotation and direction errors, deg. Throws InputError that names --bounds
+// and the allowed values.
+FailureBounds ParseFailureBounds(const std::string& text);
 
 }  // namespace rcme

@@ -2,9 +2,9 @@
 #include <filesystem>
 #include <memory>
 
-#include "experiments/commands/format_option.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/commands/twin_commands.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/real/paper_table/paper_table_output.h"
 

@@ -8,7 +8,6 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_name.h"
 #include "experiments/core/files/file_output.h"

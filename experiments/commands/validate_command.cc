@@ -8,10 +8,8 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/format_option.h"
 #include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/work/stop_request.h"
@@ -25,9 +23,9 @@
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/study/study_file.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "experiments/conform/region_kinds.h"
+#include "experiments/conform/conform_tables.h"
 #include "stats/constants.h"
 
 namespace rcme {

@@ -5,7 +5,7 @@
 #include "experiments/statistics/compared_pairs.h"
 #include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scenes_of_run.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "stats/multiple_testing.h"
 
 namespace rcme {

@@ -17,9 +17,9 @@
 #include "experiments/study/settle_study.h"
 #include "experiments/study/study_keys.h"
 #include "experiments/study/tuning_file.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "parameters/suggestion.h"
 
 namespace rcme {

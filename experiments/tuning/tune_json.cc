@@ -12,7 +12,7 @@
 #include "experiments/study/tuning_file.h"
 #include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_output.h"
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
 #include "stats/pareto_front.h"
 #include "stats/thresholds.h"
 

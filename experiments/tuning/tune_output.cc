@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <functional>
 
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/table/table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
 #include "experiments/tuning/rate_output.h"

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/data/make_data.h"
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
 #include "stats/distributions.h"
 
 namespace rcme {

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "experiments/data/match_folder.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "parameters/text_lines.h"
 #include "stats/median_ratio.h"
 

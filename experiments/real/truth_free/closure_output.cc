@@ -1,7 +1,7 @@
 #include "experiments/real/truth_free/closure_output.h"
 
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/table/table.h"
 
 namespace rcme {
 namespace {

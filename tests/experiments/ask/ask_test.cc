@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/ask/accept_rule.h"
+#include "experiments/ask/answer.h"
 #include "experiments/ask/answer_output.h"
 #include "experiments/ask/inlier_threshold.h"
 #include "experiments/ask/question.h"
