@@ -37,13 +37,6 @@ struct AskArguments {
   int threads = 0;
 };
 
-template <typename Entry>
-std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
-  std::vector<std::string> names;
-  for (const Entry& entry : registry) names.push_back(entry.name);
-  return names;
-}
-
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
 
 // Throws InputError if the simulator cannot make the question's problems, before anything is written.

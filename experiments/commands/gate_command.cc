@@ -68,10 +68,8 @@ size_t FindInFile(const RunDescription& run, const std::string& label, const std
                   const std::string& path) {
   if (!label.empty()) return FindEstimator(run.estimators, label, fmt::format("{}: {}", option, path));
   if (run.estimators.size() == 1) return 0;
-  std::vector<std::string> labels;
-  for (const DescribedEstimator& estimator : run.estimators) labels.push_back(estimator.label);
   throw InputError(fmt::format("{}: holds several estimators; choose one with {}: {}", path, option,
-                               fmt::join(labels, ", ")));
+                               fmt::join(ListLabels(run.estimators), ", ")));
 }
 
 GateReport BeginReport(const ReadableRun& run, const std::vector<GateTest>& tests, bool has_old) {

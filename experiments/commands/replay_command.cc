@@ -92,10 +92,8 @@ void EmitCpp(const StudyPlan& plan, const Condition& condition, const TrialResul
   if (!arguments.estimator.empty())
     chosen = std::ranges::find(specs, arguments.estimator, &EstimatorSpec::label);
   if (chosen == specs.end()) {
-    std::vector<std::string> labels;
-    for (const EstimatorSpec& spec : specs) labels.push_back(spec.label);
     throw InputError(fmt::format("--estimator: {} is not an estimator of the run; it has: {}",
-                                 Quoted(arguments.estimator), fmt::join(labels, ", ")));
+                                 Quoted(arguments.estimator), fmt::join(ListLabels(specs), ", ")));
   }
   WriteFileWhole(arguments.cpp,
                  TrialAsCpp(plan, condition, result, static_cast<size_t>(chosen - specs.begin())));

@@ -17,7 +17,6 @@
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/trial_output.h"
 #include "parameters/input_error.h"
-#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -46,14 +45,8 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
 std::vector<size_t> NumbersOfEstimators(const Study& study, const std::vector<std::string>& labels) {
   std::vector<size_t> chosen;
   for (const std::string& label : labels) {
-    const auto spec = std::ranges::find(study.estimators, label, &EstimatorSpec::label);
-    if (spec == study.estimators.end()) {
-      std::vector<std::string> allowed;
-      for (const EstimatorSpec& other : study.estimators) allowed.push_back(other.label);
-      throw InputError(fmt::format("--estimators: study '{}' has no estimator '{}'{}; allowed: {}",
-                                   study.name, label, DidYouMean(label, allowed), fmt::join(allowed, ", ")));
-    }
-    const auto e = static_cast<size_t>(spec - study.estimators.begin());
+    const size_t e =
+        FindEstimator(study.estimators, label, fmt::format("--estimators: study '{}'", study.name));
     if (std::ranges::count(chosen, e) == 0) chosen.push_back(e);
   }
   return chosen;

@@ -106,7 +106,7 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
 // The names that hypotheses may refer to; call this after the levels of the factors are canonical.
 StatableNames ListStatableNames(const Study& study) {
   StatableNames names;
-  for (const EstimatorSpec& spec : study.estimators) names.estimators.push_back(spec.label);
+  names.estimators = ListLabels(study.estimators);
   for (const Factor& factor : study.factors) names.factors.emplace_back(factor.key, factor.levels);
   return names;
 }
@@ -183,11 +183,9 @@ void OverrideData(const std::string& key, const std::string& value, Study* study
 }
 
 EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
-  std::vector<std::string> labels;
-  for (EstimatorSpec& spec : study->estimators) {
-    if (spec.label == label) return spec;
-    labels.push_back(spec.label);
-  }
+  const auto spec = std::ranges::find(study->estimators, label, &EstimatorSpec::label);
+  if (spec != study->estimators.end()) return *spec;
+  const std::vector<std::string> labels = ListLabels(study->estimators);
   throw InputError(fmt::format("--set: the study has no estimator {}{}; its estimators: {}", Quoted(label),
                                DidYouMean(label, labels), fmt::join(labels, ", ")));
 }
