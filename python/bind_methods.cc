@@ -1,5 +1,3 @@
-#include "python/bind_methods.h"
-
 #include <pybind11/stl.h>
 
 #include <cstdint>
@@ -25,6 +23,7 @@
 #include "experiments/tuning/tune_output.h"
 #include "experiments/tuning/tuning_work.h"
 #include "parameters/input_error.h"
+#include "python/bindings.h"
 #include "python/stoppable.h"
 #include "python/study_source.h"
 

@@ -1,5 +1,3 @@
-#include "python/bind_runs.h"
-
 #include <pybind11/stl.h>
 
 #include <string>
@@ -13,6 +11,7 @@
 #include "experiments/statistics/summary_output.h"
 #include "experiments/statistics/trial_table.h"
 #include "parameters/input_error.h"
+#include "python/bindings.h"
 #include "python/stoppable.h"
 #include "python/study_source.h"
 

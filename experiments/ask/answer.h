@@ -14,6 +14,7 @@
 #include "experiments/statistics/coverage_verdict.h"
 #include "experiments/statistics/stated_sharpness.h"
 #include "experiments/study/study.h"
+#include "parameters/settings.h"
 #include "stats/constants.h"
 #include "stats/risk_control.h"
 
@@ -97,5 +98,10 @@ void RankEstimators(std::vector<AskedEstimator>* estimators, const HasGreaterErr
 
 // Throws InputError if the run has several conditions or a damaged trial.
 Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most);
+
+// Describes in words, with units, which matches the built-in estimator `name` takes for inliers with these
+// options, for noise of sigma_px: "1.37 px of Sampson distance (1.96 sigma: ...)", "none in px: ...". Empty
+// if it is unknown.
+std::string DescribeInlierThreshold(const std::string& name, const Settings& options, double sigma_px);
 
 }  // namespace rcme

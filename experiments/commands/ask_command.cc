@@ -10,7 +10,6 @@
 #include "experiments/ask/question.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/duration.h"
 #include "experiments/core/text/message.h"

@@ -12,7 +12,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/plan_of_cases.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"

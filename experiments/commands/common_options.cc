@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/duration.h"
 #include "experiments/core/text/message.h"
@@ -49,6 +49,22 @@ CLI::Option* AddSigmaOption(CLI::App* command, std::optional<double>* sigma_px) 
           "standard deviation of the noise per coordinate that the estimator assumes, px; default: the "
           "header '# sigma_px' of a match file, otherwise 0.5")
       ->transform(NumberIn({1e-9, 1000.0}));
+}
+
+CLI::Option* AddNoiseFileOption(CLI::App* command, std::string* path) {
+  return command
+      ->add_option("--noise", *path,
+                   "a file of `rcme calibrate-noise`: its sigma in place of --sigma, its corrections of the "
+                   "camera, and covariances for what it says is shared")
+      ->excludes("--sigma");
+}
+
+void AddTrialChoice(CLI::App* command, std::uint32_t* condition, std::uint32_t* trial) {
+  const CLI::Validator index = WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max());
+  command->add_option("--condition", *condition, "condition, from 0 (column condition of the summary)")
+      ->transform(index)
+      ->required();
+  command->add_option("--trial", *trial, "trial, from 0")->transform(index)->required();
 }
 
 void AddProcessOption(CLI::App* command, bool* is_allowed) {

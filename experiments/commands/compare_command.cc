@@ -7,7 +7,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/statistics/comparison_output.h"
 #include "experiments/study/estimator_spec.h"
 #include "parameters/input_error.h"

@@ -9,7 +9,6 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_run_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/conform/calibration_work.h"
 #include "experiments/conform/conform_output.h"
 #include "experiments/conform/conform_words.h"

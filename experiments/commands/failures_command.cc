@@ -4,7 +4,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/statistics/failing_trials.h"
 #include "experiments/trial/trial_event.h"
 

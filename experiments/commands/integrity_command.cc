@@ -6,7 +6,6 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_run_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/integrity/integrity_output.h"

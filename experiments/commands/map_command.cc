@@ -8,7 +8,6 @@
 #include "experiments/audit/validity/study_samples.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/plan_of_cases.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"

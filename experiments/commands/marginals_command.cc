@@ -3,7 +3,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/statistics/marginals_output.h"
 
 namespace rcme {

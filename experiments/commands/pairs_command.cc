@@ -9,7 +9,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/front_end_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/real/sequences/layouts.h"

@@ -4,7 +4,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/real/paper_table/paper_table_output.h"
 

@@ -5,7 +5,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"

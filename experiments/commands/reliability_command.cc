@@ -5,7 +5,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/statistics/forecast_output.h"
 
 namespace rcme {

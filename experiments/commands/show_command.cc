@@ -7,7 +7,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_name.h"
 #include "experiments/core/files/file_output.h"
@@ -121,13 +120,7 @@ Examples:
   command
       ->add_option("study", arguments->study, "study file (YAML) or its name, or result file of `rcme run`")
       ->required();
-  command
-      ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
-      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
-      ->required();
-  command->add_option("--trial", arguments->trial, "trial, from 0")
-      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
-      ->required();
+  AddTrialChoice(command, &arguments->condition, &arguments->trial);
   AddEstimatorsOption(command, &arguments->estimators,
                       "labels a,b,... of the estimators to draw, a row of images each");
   CLI::Option* out = command->add_option("-o,--out", arguments->out,

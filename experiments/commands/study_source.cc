@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"

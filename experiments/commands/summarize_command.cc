@@ -5,7 +5,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/message.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -39,5 +40,15 @@ struct RunReport {
 // trials finish. Memory does not grow with the number of trials. After an error or Stopped, the trials
 // finished so far are kept.
 RunReport RunTrials(const StudyPlan& plan, const Shard& shard, int num_threads, TrialKeeper* keeper);
+
+// The work on one trial. `index` counts from 0; each condition has `trials.end - trials.first` consecutive
+// indices.
+using TrialWork = std::function<void(const Condition& condition, std::uint32_t trial, std::int64_t index)>;
+
+// Calls `work` for the same trial numbers of every condition of a plan. With one thread, the order is that of
+// the plan. With several (`num_threads`; 0: one per core), all conditions take turns, because the first trial
+// of a condition searches its baseline while the condition's other trials wait. A stop request ends it with
+// Stopped.
+void ForEachTrial(const StudyPlan& plan, TrialRange trials, const TrialWork& work, int num_threads = 1);
 
 }  // namespace rcme

@@ -9,7 +9,6 @@
 #include "experiments/core/text/json_output.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/trial/trial_event.h"
-#include "experiments/trial/trial_outcome.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"

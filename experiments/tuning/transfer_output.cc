@@ -8,8 +8,8 @@
 #include "experiments/core/table/table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
-#include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_json.h"
+#include "experiments/tuning/tune_output.h"
 
 namespace rcme {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "experiments/run/for_each_trial.h"
+#include "experiments/run/run_trials.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 

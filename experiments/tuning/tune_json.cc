@@ -10,7 +10,6 @@
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/study/tuning_file.h"
-#include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_output.h"
 #include "parameters/settings.h"
 #include "stats/pareto_front.h"

@@ -7,7 +7,7 @@
 #include "estimator/geometry/sampson.h"
 #include "estimator/noise_scale.h"
 #include "experiments/real/truth_free/halves.h"
-#include "experiments/real/truth_free/residual_correlation.h"
+#include "experiments/real/truth_free/residual_pattern.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_source.h"
 #include "experiments/trial/trial.h"
