@@ -1,5 +1,3 @@
-#include "python/bind_runs.h"
-
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
@@ -17,6 +15,7 @@
 #include "experiments/trial/trial_columns.h"
 #include "experiments/trial/trial_outcome.h"
 #include "parameters/input_error.h"
+#include "python/bindings.h"
 #include "python/stoppable.h"
 #include "python/study_source.h"
 

@@ -25,7 +25,6 @@
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
 #include "parameters/probability_text.h"
-#include "stats/constants.h"
 
 namespace rcme {
 namespace {

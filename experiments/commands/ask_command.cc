@@ -10,8 +10,6 @@
 #include "experiments/ask/question.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/duration.h"
 #include "experiments/core/text/message.h"
@@ -37,13 +35,6 @@ struct AskArguments {
   int trials = 0;  // 0: as many as the time allows
   int threads = 0;
 };
-
-template <typename Entry>
-std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
-  std::vector<std::string> names;
-  for (const Entry& entry : registry) names.push_back(entry.name);
-  return names;
-}
 
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
 

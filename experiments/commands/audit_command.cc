@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <memory>
 #include <utility>
@@ -13,13 +12,9 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/plan_of_cases.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/stop_request.h"

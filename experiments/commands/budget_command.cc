@@ -3,13 +3,11 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/table/table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/progress.h"

@@ -1,14 +1,11 @@
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/failure_bounds_option.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/twin_commands.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/real/truth_check/truth_check_output.h"

@@ -25,7 +25,7 @@ std::vector<const CLI::App*> ListSubcommands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-// "{a,b,c}" as MakeChoiceValidator (number_option.h) describes what it allows; empty: something else.
+// "{a,b,c}" as MakeChoiceValidator (common_options.h) describes what it allows; empty: something else.
 std::vector<std::string> WordsIn(const std::string& allowed) {
   std::vector<std::string> words;
   if (!allowed.starts_with('{') || !allowed.ends_with('}')) return words;

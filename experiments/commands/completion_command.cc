@@ -5,7 +5,7 @@
 
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/plot_options.h"
 
 namespace rcme {

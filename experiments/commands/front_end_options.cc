@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 
 namespace rcme {
 

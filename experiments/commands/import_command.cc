@@ -9,7 +9,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/lock_option.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"

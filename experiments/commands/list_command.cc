@@ -9,7 +9,7 @@
 #include "estimator/estimator_registry.h"
 #include "experiments/audit/claims/claim_table.h"
 #include "experiments/commands/commands.h"
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/files/shared_files.h"
 #include "experiments/core/files/yaml_input.h"
 #include "experiments/core/text/columns.h"

@@ -7,9 +7,8 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/front_end_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/real/sequences/layouts.h"

@@ -1,12 +1,9 @@
-#include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
 #include <memory>
 
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/twin_commands.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/real/paper_table/paper_table_output.h"
 

@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
@@ -16,7 +14,7 @@
 #include "experiments/statistics/trial_program.h"
 #include "experiments/study/absent_python.h"
 #include "experiments/trial/trial_columns.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "stats/constants.h"
@@ -94,10 +92,8 @@ void EmitCpp(const StudyPlan& plan, const Condition& condition, const TrialResul
   if (!arguments.estimator.empty())
     chosen = std::ranges::find(specs, arguments.estimator, &EstimatorSpec::label);
   if (chosen == specs.end()) {
-    std::vector<std::string> labels;
-    for (const EstimatorSpec& spec : specs) labels.push_back(spec.label);
     throw InputError(fmt::format("--estimator: {} is not an estimator of the run; it has: {}",
-                                 Quoted(arguments.estimator), fmt::join(labels, ", ")));
+                                 Quoted(arguments.estimator), fmt::join(ListLabels(specs), ", ")));
   }
   WriteFileWhole(arguments.cpp,
                  TrialAsCpp(plan, condition, result, static_cast<size_t>(chosen - specs.begin())));
@@ -153,13 +149,7 @@ Examples:
   rcme replay run.sqlite --condition 6 --trial 17 --emit-cpp trial.cc --estimator standard)");
   auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
-  command
-      ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
-      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
-      ->required();
-  command->add_option("--trial", arguments->trial, "trial, from 0")
-      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
-      ->required();
+  AddTrialChoice(command, &arguments->condition, &arguments->trial);
   CLI::Option* cpp =
       command->add_option("--emit-cpp", arguments->cpp, "also write a C++ program of one estimator's call");
   command

@@ -7,8 +7,7 @@
 #include <fstream>
 #include <string_view>
 
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/study/absent_python.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"

@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/message.h"

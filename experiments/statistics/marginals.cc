@@ -11,7 +11,7 @@
 
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/statistics/trial_groups.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"

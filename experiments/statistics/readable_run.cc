@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "experiments/core/files/first_difference.h"
 #include "experiments/trial/trial_columns.h"

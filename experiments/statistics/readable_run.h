@@ -2,7 +2,6 @@
 // estimators have answered the same problems.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>

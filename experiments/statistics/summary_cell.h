@@ -12,7 +12,6 @@
 // variance split for repeated scenes (scene_split.h), and the ranking of errors (error_ranking.h).
 #pragma once
 
-#include <string>
 #include <variant>
 #include <vector>
 

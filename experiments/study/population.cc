@@ -8,10 +8,9 @@
 
 #include "experiments/data/make_data.h"
 #include "experiments/study/study.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
-#include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "parameters/text_lines.h"
 #include "stats/fnv1a.h"
 

@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "experiments/trial/severity_columns.h"
-#include "experiments/trial/stored_column.h"
 #include "experiments/trial/trial.h"
 
 namespace rcme {

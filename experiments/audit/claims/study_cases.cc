@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "experiments/data/make_data.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {

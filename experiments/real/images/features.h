@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "estimator/geometry/correspondence.h"
 #include "experiments/real/images/grey_image.h"
 
 namespace rcme {

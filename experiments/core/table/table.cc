@@ -1,4 +1,4 @@
-#include "experiments/core/table/interval_columns.h"
+#include "experiments/core/table/table.h"
 
 namespace rcme {
 

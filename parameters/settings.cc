@@ -1,4 +1,4 @@
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 
