@@ -260,6 +260,7 @@ class ScriptTest(SurfaceTestCase):
         code, out, err = self.run_script(self.write(self.known(is_sample=False)), "--out", self.out(), "--no-figures")
         self.assertEqual(code, 0, err)
         self.assertIn("None of them is a random draw", " ".join(out.split()))
+        self.assertIn("Mean over these conditions where", out)
 
     def test_what_is_wrong_is_named(self):
         few = self.known()
