@@ -12,14 +12,14 @@
 namespace rcme {
 namespace {
 
-MotionEstimate Estimate(const std::string& sampler, const MotionProblem& problem, std::uint32_t trial) {
+MotionEstimate EstimateWith(const std::string& sampler, const MotionProblem& problem, std::uint32_t trial) {
   PeerEntries();  // adds them
   RandomStream rng({1, 0, trial, 4});
   return MakeEstimator("opencv_usac", {{"sampler", sampler}, {"max_iterations", "30"}})
       ->Estimate(problem, rng);
 }
 
-bool IsNear(const MotionEstimate& estimate, const RelativePose& pose_true) {
+bool IsRight(const MotionEstimate& estimate, const RelativePose& pose_true) {
   return estimate.status == MotionStatus::kOk &&
          RotationAngleBetween(estimate.cam2_from_cam1.R, pose_true.R) <= 0.052 &&
          AngleBetween(estimate.cam2_from_cam1.t, pose_true.t) <= 0.26;
@@ -56,10 +56,10 @@ TEST(MatchQuality, ProsacFindsMotionsAmongWrongMatchesByTheirQuality) {
   int num_scored = 0, num_shuffled = 0, num_unscored = 0;
   for (std::uint32_t trial = 0; trial < kNumTrials; ++trial) {
     auto [problem, pose_true] = MakeScoredProblem(trial);
-    num_scored += IsNear(Estimate("prosac", problem, trial), pose_true);
-    num_shuffled += IsNear(Estimate("prosac", WithShuffledQuality(problem, trial), trial), pose_true);
+    num_scored += IsRight(EstimateWith("prosac", problem, trial), pose_true);
+    num_shuffled += IsRight(EstimateWith("prosac", WithShuffledQuality(problem, trial), trial), pose_true);
     problem.match_quality.clear();
-    num_unscored += IsNear(Estimate("prosac", problem, trial), pose_true);
+    num_unscored += IsRight(EstimateWith("prosac", problem, trial), pose_true);
   }
   EXPECT_GE(num_scored, 54);
   EXPECT_LE(num_shuffled, 9);
@@ -71,14 +71,14 @@ TEST(MatchQuality, InliersAreThoseOfTheGivenOrder) {
   int num_found = 0;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const auto [problem, pose_true] = MakeScoredProblem(trial);
-    const MotionEstimate estimate = Estimate("prosac", problem, trial);
-    if (!IsNear(estimate, pose_true)) continue;
+    const MotionEstimate estimate = EstimateWith("prosac", problem, trial);
+    if (!IsRight(estimate, pose_true)) continue;
     ++num_found;
     std::vector<int> order(problem.matches.size());
     std::iota(order.begin(), order.end(), 0);
     RandomStream rng({.seed = 1, .trial = trial, .purpose = 2743});
     rng.Shuffle(std::span(order));
-    const MotionEstimate of_shuffled = Estimate("prosac", SelectPart(problem, order), trial);
+    const MotionEstimate of_shuffled = EstimateWith("prosac", SelectPart(problem, order), trial);
     EXPECT_EQ(of_shuffled.cam2_from_cam1.R, estimate.cam2_from_cam1.R);
     std::vector<int> inliers;
     for (const int i : of_shuffled.inliers) inliers.push_back(order[static_cast<size_t>(i)]);
@@ -91,12 +91,12 @@ TEST(MatchQuality, InliersAreThoseOfTheGivenOrder) {
 // Equal qualities keep the order of the rows, and the other samplers do not look at them.
 TEST(MatchQuality, EqualOnesChangeNothing) {
   ScoredProblem scored = MakeScoredProblem(0);
-  const MotionEstimate uniform = Estimate("uniform", scored.problem, 0);
+  const MotionEstimate uniform = EstimateWith("uniform", scored.problem, 0);
   scored.problem.match_quality.assign(200, 1.0);
-  const MotionEstimate equal = Estimate("prosac", scored.problem, 0);
+  const MotionEstimate equal = EstimateWith("prosac", scored.problem, 0);
   scored.problem.match_quality.clear();
-  EXPECT_EQ(Estimate("uniform", scored.problem, 0).inliers, uniform.inliers);
-  EXPECT_EQ(Estimate("prosac", scored.problem, 0).inliers, equal.inliers);
+  EXPECT_EQ(EstimateWith("uniform", scored.problem, 0).inliers, uniform.inliers);
+  EXPECT_EQ(EstimateWith("prosac", scored.problem, 0).inliers, equal.inliers);
 }
 
 }  // namespace
