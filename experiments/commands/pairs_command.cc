@@ -72,6 +72,7 @@ void CheckApplies(const PairsArguments& arguments) {
   refuse("--every", arguments.pairs.every > 1, images);
   refuse("--neighbours", arguments.pairs.neighbours > 1, images);
   refuse("--scores", arguments.pairs.has_scores, images);
+  refuse("--subpixel", arguments.pairs.detector.refines_corners, images);
   refuse("--window", arguments.pairs.window > 0, images);
   if (arguments.pairs.window > 0 && arguments.pairs.neighbours > 1)
     throw InputError("--neighbours: does not apply with --window, which pairs all images near each other");
@@ -86,13 +87,14 @@ std::string DescribePairsIdentity(const PairsArguments& arguments) {
   return fmt::format(
       "{} {} | sequences {} | name {} | K {} | {} {} | model {} | frames {} | detector {} {} | ratio {} {} | "
       "gate {} {} "
-      "{} {} | every {} | neighbours {} | truth_sd {}{}{}",
+      "{} {} | every {} | neighbours {} | truth_sd {}{}{}{}",
       arguments.layout, std::filesystem::weakly_canonical(d.folder).string(), fmt::join(d.only, " "), d.name,
       fmt::join(d.K, " "), arguments.lens, fmt::join(d.distortion, " "), d.model, d.max_frames,
       static_cast<int>(p.detector.detector), p.detector.max_features, p.matcher.max_ratio,
       p.matcher.is_mutual, arguments.gate, p.gate.least_matches, p.gate.least_parallax_deg, p.gate.sigma_px,
       p.every, p.neighbours, fmt::join(arguments.truth_sd, " "), p.has_scores ? " | scores" : "",
-      p.window > 0 ? fmt::format(" | window {}", p.window) : "");
+      p.window > 0 ? fmt::format(" | window {}", p.window) : "",
+      p.detector.refines_corners ? " | subpixel" : "");
 }
 
 // The command to suggest next: a study needs true motions; without them motions are estimated and covariances

@@ -255,12 +255,15 @@ MatchFile ReadMatchesFromInput(const GivenCameras& given) {
 }
 
 MotionProblem MakeMotionProblem(MatchFile file, std::optional<double> sigma_px) {
+  if (file.better_score == BetterScore::kLower)
+    for (double& score : file.scores) score = -score;
   return {std::move(file.matches),
           file.camera1,
           file.camera2,
           sigma_px.value_or(file.assumed_sigma_px.value_or(kUsualSigmaPx)) * file.noise_growth,
           ComputeNoiseScale(std::move(file.sigma_px)),
-          file.prior};
+          file.prior,
+          std::move(file.scores)};
 }
 
 void WriteMatchFile(const MatchFile& file, const std::string& path) {

@@ -1,111 +1,17 @@
 #include "experiments/run/run_trials.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
-#include <map>
-#include <mutex>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/for_each_index.h"
+#include "experiments/run/outcome_watch.h"
 #include "experiments/run/store/result_store.h"
-#include "experiments/trial/trial.h"
 
 namespace rcme {
 namespace {
-
-// Warnings that matter before the tables of a run are read: an estimator gave no valid answer in any trial,
-// which suggests that it or its set-up is broken; trials could not be simulated. Add may be called from any
-// thread.
-class OutcomeWatch {
- public:
-  void Add(const TrialResult& result);
-  // Prints to standard error: a warning for each estimator of the plan whose answers are all refusals or
-  // invalid, and one with the number of trials that were not simulated and the reason of the first.
-  void Warn(const StudyPlan& plan) const;
-
- private:
-  void WarnOfNoAnswers(const StudyPlan& plan) const;
-  void WarnOfNotSimulated(const StudyPlan& plan) const;
-
-  // The trials of one condition that were not simulated.
-  struct NotSimulatedTrials {
-    std::int64_t count = 0;
-    std::uint32_t first = 0;
-    std::string why;  // reason of the first
-  };
-
-  mutable std::mutex mutex_;
-  std::int64_t num_simulated_ = 0, num_not_simulated_ = 0;
-  // By estimator: the number of each status except ok.
-  std::vector<std::map<MotionStatus, std::int64_t>> no_answers_;
-  std::map<std::uint32_t, NotSimulatedTrials> not_simulated_;  // by condition
-};
-
-void OutcomeWatch::Add(const TrialResult& result) {
-  const std::lock_guard lock(mutex_);
-  no_answers_.resize(result.records.size());
-  if (!result.why_not_simulated.empty()) {
-    ++num_not_simulated_;
-    NotSimulatedTrials& of_condition = not_simulated_[result.problem.condition];
-    const std::uint32_t trial = result.problem.trial;
-    if (of_condition.count == 0 || trial < of_condition.first)
-      of_condition = {of_condition.count, trial, result.why_not_simulated};
-    ++of_condition.count;
-    return;
-  }
-  if (!IsCounted(result.records.front())) return;
-  ++num_simulated_;
-  for (size_t e = 0; e < result.records.size(); ++e) {
-    if (const MotionStatus status = result.records[e].status; status != MotionStatus::kOk)
-      ++no_answers_[e][status];
-  }
-}
-
-void OutcomeWatch::Warn(const StudyPlan& plan) const {
-  const std::lock_guard lock(mutex_);
-  WarnOfNoAnswers(plan);
-  WarnOfNotSimulated(plan);
-}
-
-void OutcomeWatch::WarnOfNoAnswers(const StudyPlan& plan) const {
-  if (num_simulated_ == 0) return;
-  for (size_t e = 0; e < no_answers_.size(); ++e) {
-    std::int64_t num_unanswered = 0;
-    bool is_invalid_somewhere = false;
-    std::vector<std::string> counts;
-    for (const auto& [status, count] : no_answers_[e]) {
-      num_unanswered += count;
-      is_invalid_somewhere |=
-          status == MotionStatus::kInvalidMotion || status == MotionStatus::kInvalidCovariance;
-      counts.push_back(fmt::format("{} {}", StatusName(status), count));
-    }
-    if (num_unanswered < num_simulated_) continue;
-    PrintMessage(
-        "warning: {} {} of the {} trials run now ({}); rcme replay FILE --condition 0 --trial 0 shows why\n",
-        plan.study.estimators.at(e).label,
-        is_invalid_somewhere ? "gave no valid answer in any" : "refused every one", num_simulated_,
-        fmt::join(counts, ", "));
-  }
-}
-
-void OutcomeWatch::WarnOfNotSimulated(const StudyPlan& plan) const {
-  if (not_simulated_.empty()) return;
-  size_t num_whole = 0;
-  for (const auto& [condition, trials] : not_simulated_)
-    num_whole += trials.count == plan.conditions.at(condition).num_trials;
-  const auto& [condition, example] = *not_simulated_.begin();
-  PrintMessage(
-      "warning: {} of the {} trials run now could not be simulated: in {} of {} conditions, in {} of them "
-      "all. "
-      "They are kept as {}, and no other rate counts them. Condition {}, trial {}: {}\n",
-      num_not_simulated_, num_not_simulated_ + num_simulated_, not_simulated_.size(), plan.conditions.size(),
-      num_whole, StatusName(MotionStatus::kNotSimulated), condition, example.first, example.why);
-}
 
 // The trials that a run still has to compute, numbered from 0 in the plan's order.
 class TrialsToRun {

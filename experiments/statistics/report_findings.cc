@@ -47,6 +47,11 @@ std::string RateAt(const Summary& summary, const SummaryRow& row) {
          FormatPlace(summary.levels.at(row.condition), summary.factor_names);
 }
 
+// Formats " over the population of study any_room"; empty if the numbers are not of a population.
+std::string FormatOverPopulation(const Summary& summary) {
+  return summary.is_of_population ? " over the population of study " + summary.study : "";
+}
+
 // Returns the distance of an interval from a range; 0 if they overlap.
 double DistanceFrom(const Interval& interval, double lower, double upper) {
   return std::max({0.0, lower - interval.upper, interval.lower - upper});
@@ -99,7 +104,7 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
         {farthest,
          fmt::format(
              "Coverage: the 95 % regions that {} states contain the truth in {}{}{}: they are too {}{}.",
-             label, RateAt(summary, *worst), summary.is_of_population ? " over the population" : "",
+             label, RateAt(summary, *worst), FormatOverPopulation(summary),
              DescribeSharpness(summary, *worst), worst->value < kStatedCoverage ? "small" : "large",
              num_known > 1 ? fmt::format(", and far off in {} of {} conditions", num_off, num_known) : "")});
   }
@@ -140,9 +145,10 @@ void AddRefusals(const Summary& summary, std::vector<std::string>* sentences) {
       if (!most || row.value > most->value) most = &row;
     }
     if (!most || most->interval.lower < kManyRefusals) continue;
-    findings.push_back({most->value, fmt::format("Refusals: {} refuses {}{} ({}).", label,
-                                                 summary.is_of_population ? "" : "up to ",
-                                                 RateAt(summary, *most), most->quantity.text())});
+    findings.push_back(
+        {most->value,
+         fmt::format("Refusals: {} refuses {}{}{} ({}).", label, summary.is_of_population ? "" : "up to ",
+                     RateAt(summary, *most), FormatOverPopulation(summary), most->quantity.text())});
   }
   AddByWeight(std::move(findings), sentences);
 }
@@ -158,8 +164,8 @@ void AddRangesOfFailure(const Summary& summary, std::vector<std::string>* senten
     if (!least) continue;
     const std::string range =
         least->value == most->value
-            ? fmt::format("{} {}", PercentWithInterval(least->value, least->interval),
-                          summary.is_of_population ? "over the population" : "throughout")
+            ? PercentWithInterval(least->value, least->interval) +
+                  (summary.is_of_population ? FormatOverPopulation(summary) : " throughout")
             : fmt::format("from {} to {}", RateAt(summary, *least), RateAt(summary, *most));
     sentences->push_back(fmt::format("Failure rate of {}: {}.", label, range));
   }
@@ -239,7 +245,8 @@ void AddPairedDifferences(const Summary& summary, const Comparison& comparison,
 }
 
 // The farthest ahead of the reference comes first.
-void AddDifferencesInPopulation(const Comparison& comparison, std::vector<std::string>* sentences) {
+void AddDifferencesInPopulation(const Summary& summary, const Comparison& comparison,
+                                std::vector<std::string>* sentences) {
   std::vector<Finding> findings;
   for (const ComparisonRow& row : comparison.rows) {
     if (row.event != "failure_or_refusal" || row.n == 0) continue;
@@ -247,10 +254,10 @@ void AddDifferencesInPopulation(const Comparison& comparison, std::vector<std::s
     findings.push_back(
         {-row.difference,
          fmt::format(
-             "Over the population {} fails or refuses {:+.2f} points [{:+.2f}, {:+.2f}] against {} on the "
-             "same trials{}.",
-             row.estimator, 100.0 * row.difference, 100.0 * row.interval.lower, 100.0 * row.interval.upper,
-             comparison.reference,
+             "Over the population of study {} {} fails or refuses {:+.2f} points [{:+.2f}, {:+.2f}] against {} "
+             "on the same trials{}.",
+             summary.study, row.estimator, 100.0 * row.difference, 100.0 * row.interval.lower,
+             100.0 * row.interval.upper, comparison.reference,
              is_decided ? fmt::format(" (Holm-adjusted p < {})", kSignificanceLevel) : "")});
   }
   AddByWeight(std::move(findings), sentences);
@@ -263,7 +270,7 @@ std::vector<std::string> ListFindings(const Summary& summary, const Comparison& 
   std::vector<std::string> sentences;
   AddWrongCoverages(summary, &sentences);
   if (summary.is_of_population) {
-    AddDifferencesInPopulation(comparison, &sentences);
+    AddDifferencesInPopulation(summary, comparison, &sentences);
   } else {
     AddPairedDifferences(summary, comparison, &sentences);
   }

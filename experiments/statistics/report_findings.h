@@ -16,8 +16,8 @@ namespace rcme {
 // - stated failure probabilities whose mean is outside the interval of the failure rate;
 // - refusals of more than a tenth of the trials;
 // - the range of each failure rate, with the conditions at its ends.
-// Rates have 95 % intervals and the digits of the tables. Quantities without trials, and comparisons without
-// a partner, are left out.
+// Findings over a population name the study that describes it. Rates have 95 % intervals and the digits of
+// the tables. Quantities without trials, and comparisons without a partner, are left out.
 std::vector<std::string> ListFindings(const Summary& summary, const Comparison& comparison,
                                       const std::vector<ForecastMeasures>& forecasts);
 

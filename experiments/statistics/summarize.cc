@@ -37,7 +37,44 @@ std::vector<SummaryCell> CollectDraws(const ReadableRun& run) {
   return draws;
 }
 
+// Notes which conditions have a trial, and one that was simulated.
+class ConditionWatch {
+ public:
+  explicit ConditionWatch(size_t num_conditions)
+      : has_trial_(num_conditions), is_simulated_(num_conditions) {}
+
+  // Returns a run that also notes what its readers visit. The watch and the run must outlive it.
+  ReadableRun Watch(const ReadableRun& run) {
+    return {run.description, [this, &run](const VisitTrial& visit) {
+              run.for_each_trial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+                has_trial_[problem.condition] = true;
+                if (WasSimulated(records.front())) is_simulated_[problem.condition] = true;
+                visit(problem, records);
+              });
+            }};
+  }
+
+  void Report(Summary* summary) const {
+    for (size_t c = 0; c < has_trial_.size(); ++c) {
+      summary->num_conditions_with_trials += has_trial_[c];
+      summary->num_conditions_not_simulated += has_trial_[c] && !is_simulated_[c];
+    }
+  }
+
+ private:
+  std::vector<bool> has_trial_, is_simulated_;
+};
+
 bool IsWeighted(const SummaryCell& cell) { return cell.of_problems().is_weighted; }
+
+Summary SummarizePooled(const ReadableRun& run, bool with_times) {
+  if (HasPopulationIntervals(run.description)) {
+    const std::vector<SummaryCell> draws = CollectDraws(run);
+    if (std::ranges::none_of(draws, IsWeighted))
+      return SummarizePopulation(run.description, draws, with_times);
+  }
+  return Summarize(run, with_times, OneGroup());
+}
 
 }  // namespace
 
@@ -78,12 +115,12 @@ std::string KindName(SummaryRow::Kind kind) {
 
 Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling) {
   const RunDescription& description = run.description;
-  if (pooling == Pooling::kPooled) CheckMayBePooled(description);
-  if (pooling == Pooling::kPooled && HasPopulationIntervals(description)) {
-    const std::vector<SummaryCell> draws = CollectDraws(run);
-    if (std::ranges::none_of(draws, IsWeighted)) return SummarizePopulation(description, draws, with_times);
-  }
-  return Summarize(run, with_times, pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(description));
+  if (pooling == Pooling::kPerCondition) return Summarize(run, with_times, GroupByCondition(description));
+  CheckMayBePooled(description);
+  ConditionWatch watch(description.conditions.size());
+  Summary summary = SummarizePooled(watch.Watch(run), with_times);
+  watch.Report(&summary);
+  return summary;
 }
 
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {

@@ -103,6 +103,8 @@ struct Summary {
   std::string truth_quality;      // truth_quality.h
   bool is_of_population = false;  // intervals are for the population (population_summary.h)
   std::string population;         // DescribePopulation of study/population.h
+  // If pooled: conditions all of whose trials the simulator could not make, and conditions that have trials.
+  std::int64_t num_conditions_not_simulated = 0, num_conditions_with_trials = 0;
   std::int64_t num_retried = 0;   // trials that were run again (RunDescription::retried_trials)
   std::optional<Preregistration> preregistration;  // if requested (preregistration.h)
 };

@@ -176,6 +176,10 @@ bool IsSampleOfPopulation(const std::string& identity) {
   return identity.find(std::string("\n") + kDrawsLine) != std::string::npos;
 }
 
+bool HasChosenDraws(const std::string& identity) {
+  return identity.find(std::string("\n") + kChosenLine) != std::string::npos;
+}
+
 std::string DescribePopulation(const std::string& identity) {
   int num_draws = 0, num_refused = 0;
   const char* what = "Population";

@@ -215,6 +215,18 @@ TEST(PopulationSummaryOfCounts, IsThatOfTheTrials) {
   EXPECT_EQ(row("not_simulated").n, 40);
   EXPECT_GT(row("not_simulated").value, 0.0);
   EXPECT_EQ(row("failure").n, std::llround(40 * (1.0 - row("not_simulated").value)));
+  // A draw of 119 deg has no trial that counts, any other draw has all four.
+  const std::int64_t num_impossible = std::ranges::count_if(plan.conditions, [](const Condition& condition) {
+    return std::ranges::count(condition.levels, "119") > 0;
+  });
+  for (const Summary& summary : {of_trials, of_counts}) {
+    EXPECT_EQ(summary.num_conditions_not_simulated, num_impossible);
+    EXPECT_EQ(summary.num_conditions_with_trials, 10);
+    const std::string text = SummaryAsTable(summary);
+    EXPECT_NE(text.find(fmt::format("{} of 10 conditions have no trial that counts", num_impossible)),
+              std::string::npos)
+        << text;
+  }
 }
 
 }  // namespace

@@ -114,6 +114,23 @@ TEST(ListFindings, ACoverageIsNotSaidWithoutItsSharpness) {
       "0.1, with an sd of 0.62 times the Cramer-Rao bound: they are too small.");
 }
 
+TEST(ListFindings, NamesThePopulation) {
+  Summary summary = MakeSummary({Rate("nees_coverage", "ours", 0, 0.8, 0.05), Failure(0, "ours", 0.05),
+                                 Rate("no_candidate", "ours", 0, 0.5, 0.05)});
+  summary.study = "any_room";
+  summary.is_of_population = true;
+  summary.factor_names.clear();
+  summary.levels = {{}};
+  Comparison comparison;
+  comparison.reference = "standard";
+  comparison.rows = {Difference(0, "failure_or_refusal", -0.02, 0.2)};
+  comparison.rows[0].n = 100;
+  const std::vector<std::string> sentences = ListFindings(summary, comparison, {});
+  ASSERT_EQ(sentences.size(), 4u);
+  for (const std::string& sentence : sentences)
+    EXPECT_THAT(sentence, testing::ContainsRegex("[Oo]ver the population of study any_room"));
+}
+
 TEST(ListFindings, TheOneAheadComesBeforeTheOneBehind) {
   Comparison comparison;
   comparison.reference = "c";
