@@ -200,6 +200,34 @@ TEST(Completion, OffersCommandsOptionsAndNames) {
   EXPECT_THAT(Completed({"rcme", "run", "x", "--shard", "au"}), ElementsAre("auto", "auto/8"));
   EXPECT_THAT(Completed({"rcme", "failures", "x", "--estimators", "opengv"}), ElementsAre("opengv_ransac"));
   EXPECT_THAT(Completed({"rcme", "summarize", "x", "--quantities", "kappa"}), ElementsAre("kappa_flag"));
+  EXPECT_THAT(Completed({"rcme", "ask", "--scene", "corr"}), ElementsAre("corridor"));
+  EXPECT_THAT(Completed({"rcme", "audit", "--only", "sampson.det"}), ElementsAre("sampson.determinant"));
+  EXPECT_THAT(Completed({"rcme", "solve", "x", "--over", "outlier_ra"}), ElementsAre("outlier_ratio"));
+  EXPECT_THAT(Completed({"rcme", "plot", "heat_map", "x", "--quantities", "kappa"}),
+              ElementsAre("kappa_flag"));
+}
+
+// Files are not offered where there is a list, but where they are allowed besides.
+TEST(Completion, OffersFilesOnlyWhereTheyAreAllowed) {
+  using testing::Contains;
+  EXPECT_THAT(Completed({"rcme", "ask", "--scene", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "audit", "--only", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "summarize", "x", "--format", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "plot", "heat_map", "x", "--quantities", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "list", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "run", "x", "--add-estimator", "c"}), Contains("c.bash"));
+  EXPECT_THAT(Completed({"rcme", "run", "x", "--out", "c"}), Contains("c.bash"));
+}
+
+// Labels of a run are those of its study, not the names of the program's estimators.
+TEST_F(Habits, CompletionOffersTheLabelsOfTheRunOnTheLine) {
+  ASSERT_EQ(Run({"--out", out_}).exit_code, 0);
+  const ProgramResult labels = RunRcme({"completion", "labels", out_});
+  EXPECT_THAT(labels.out, HasSubstr("ours\n"));
+  EXPECT_THAT(Completed({"$RCME", "failures", out_, "--estimators", "our"}), testing::ElementsAre("ours"));
+  EXPECT_THAT(Completed({"$RCME", "replay", out_, "--estimator", "our"}), testing::ElementsAre("ours"));
+  EXPECT_TRUE(IsRefused(RunRcme({"completion", "labels"}), {"give the result file"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"completion", "bash", out_}), {"takes no file"}));
 }
 
 // The scripts that draw know their options themselves.
