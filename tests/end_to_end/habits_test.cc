@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -113,6 +114,29 @@ TEST_F(Habits, EveryCommandShowsExamples) {
   for (std::string name; names >> name; ++num_commands)
     EXPECT_THAT(RunRcme({name, "--help"}).out, HasSubstr("Examples:\n")) << name;
   EXPECT_GT(num_commands, 35);
+}
+
+// The longest line of a text, but for indented lines after `end`, which are examples.
+size_t LongestLine(const std::string& text, const std::string& end = "\n\n\n\n") {
+  std::istringstream lines(text.substr(0, text.find(end)));
+  size_t longest = 0;
+  for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
+  return longest;
+}
+
+TEST_F(Habits, HelpAndListsFitATerminal) {
+  for (const std::string command : {"run", "ask", "audit", "worst", "tune"})
+    EXPECT_LE(LongestLine(RunRcme({command, "--help"}).out, "Examples:"), 95u) << command;
+  const ProgramResult plot = RunRcme({"plot", "--help"});
+  EXPECT_LE(LongestLine(plot.out.substr(plot.out.find("Kinds")), "Examples:"), 80u);
+  for (const std::string list : {"options", "settings", "claims", "quantities", "scenes"})
+    EXPECT_LE(LongestLine(RunRcme({"list", list}).out), 80u) << list;
+  const std::string lists = RunRcme({"list"}).out;
+  EXPECT_LE(LongestLine(lists), 80u);
+  EXPECT_LT(std::ranges::count(lists, '\n'), 24);
+  for (const std::string name : {"estimators", "settings", "studies", "estimator_files"})
+    EXPECT_THAT(lists, HasSubstr("\n" + name + " "));
+  EXPECT_THAT(RunRcme({"list", "--format", "json"}).out, HasSubstr("\"settings\": ["));
 }
 
 TEST_F(Habits, ASlipOfThePenIsUnderstood) {
