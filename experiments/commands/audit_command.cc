@@ -156,10 +156,11 @@ code 75 (docs/many_machines.md):
                    "ids of claims or families, separated by commas (`rcme list claims`)")
       ->delimiter(',');
   command
-      ->add_option("--budget", arguments->budget,
-                   "quick (all claims of the paper: minutes) or full (hours). A study takes longer the more "
-                   "conditions "
-                   "and slow estimators it has; the greatest time is printed first")
+      ->add_option(
+          "--budget", arguments->budget,
+          "quick: minutes for the claims of the paper; full: hours. With a study the time grows with its "
+          "conditions times its estimators, also to hours; the greatest is printed first. --max-time, "
+          "--only and --set FACTOR=LEVEL bound it")
       ->check(MakeChoiceValidator({"quick", "full"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,

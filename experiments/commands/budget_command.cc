@@ -115,7 +115,7 @@ that file compares the same thing. If an estimator cannot reach the time, it get
 nearest effort and the table says why. `rcme summarize` prints the effort of each.
 
 Examples:
-  rcme budget studies/peers_uniform.yaml --time-ms 10 --out peers_10ms.yaml
+  rcme budget peers_uniform --time-ms 10 --out peers_10ms.yaml
   rcme run peers_10ms.yaml --out run.sqlite)");
   auto arguments = std::make_shared<BudgetArguments>();
   command

@@ -62,7 +62,7 @@ score them.
 Examples:
   rcme check-truth PAIRS --out checked
   rcme check-truth pairs/sift pairs/orb --bounds 1,5 --out checked
-  rcme run studies/real_pairs.yaml --set folder=PAIRS \
+  rcme run real_pairs --set folder=PAIRS \
       --set truth_in_doubt=checked/truth_in_doubt.csv --out run.sqlite)");
   auto arguments = std::make_shared<CheckTruthArguments>();
   command->add_option("pairs", arguments->folders, "folders of match files, one per front end")->required();

@@ -175,7 +175,7 @@ void AddExportCommand(CLI::App& app) {
   FOLDER/study.lock       its lock, if it has one (`rcme lock`)
 
 Examples:
-  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
+  rcme export failure_vs_outliers --trials 100 --out problems
   python3 mine.py < problems/problems.jsonl > answers.jsonl
   rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite)");
   auto arguments = std::make_shared<ExportArguments>();

@@ -129,7 +129,7 @@ problem without an answer gets the status no_answer; an answer that cannot be re
 unreadable_answer.
 
 Examples:
-  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
+  rcme export failure_vs_outliers --trials 100 --out problems
   python3 mine.py < problems/problems.jsonl > answers.jsonl
   rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite
   rcme compare run.sqlite --against mine)");

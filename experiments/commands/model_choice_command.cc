@@ -57,8 +57,8 @@ If the command is stopped or killed, run it again: finished work is kept in
 OUT/unfinished.part.
 
 Examples:
-  rcme model-choice studies/model_choice.yaml --out choice
-  rcme model-choice studies/model_choice.yaml --by outlier_ratio --out choice
+  rcme model-choice model_choice --out choice
+  rcme model-choice model_choice --by outlier_ratio --out choice
   rcme plot heat_map choice/model_choice.csv --x verdict --y truth --quantities share \
       --where outlier_ratio=0.2 --out matrix)");
   auto arguments = std::make_shared<ModelChoiceArguments>();

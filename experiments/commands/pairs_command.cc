@@ -103,7 +103,7 @@ std::string NameNextCommand(const std::vector<PairRow>& rows, const std::string&
   const auto is_kept = [](const PairRow& row) { return row.reason == kKeptPair; };
   const bool has_truth = std::ranges::any_of(
       rows, [&](const PairRow& row) { return is_kept(row) && !std::isnan(row.rotation_deg); });
-  if (has_truth) return fmt::format("rcme run studies/real_pairs.yaml --set folder={} --out run.sqlite", out);
+  if (has_truth) return fmt::format("rcme run real_pairs --set folder={} --out run.sqlite", out);
   const auto first = std::ranges::find_if(rows, is_kept);
   return fmt::format("rcme estimate {} (one motion), or rcme validate {} (are the covariances right?)",
                      (std::filesystem::path(out) / (first->pair_id + ".csv")).string(), out);

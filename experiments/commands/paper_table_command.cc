@@ -46,7 +46,7 @@ whose truth is in doubt (truth_in_doubt of the study) are counted apart. The pap
 printed figures follow, with intervals.
 
 Examples:
-  rcme run studies/paper_table.yaml --set folder=PAIRS --out run.sqlite
+  rcme run paper_table --set folder=PAIRS --out run.sqlite
   rcme paper-table run.sqlite --out table
   rcme paper-table run.sqlite --bound 5 --bound 10      outcomes at 5 and at 10 degrees
   rcme paper-table run.sqlite --group indoor='MH_*,V1_*,office' --group outdoor='kitti*')");

@@ -94,7 +94,7 @@ cannot be trusted is marked, with the reason. If the command is stopped or kille
 again: finished work is kept in OUT/unfinished.part.
 
 Examples:
-  rcme rare studies/rare_noise.yaml --out rare
+  rcme rare rare_noise --out rare
   rcme rare STUDY --set sigma_px=0.25 --replicates 40 --out rare
   rcme rare STUDY --event misleading_direction --risk 1e-5 --out misleading
   rcme rare STUDY --method stratified --trials 1000000 --out strata)");

@@ -112,7 +112,7 @@ the answer, by the estimator's own score, then the search failed and more sample
 Otherwise the model cannot distinguish them and more samples do not help.
 
 Examples:
-  rcme show studies/failure_vs_outliers.yaml --condition 6 --trial 17
+  rcme show failure_vs_outliers --condition 6 --trial 17
   rcme show run.sqlite --condition 6 --trial 17 --estimators standard,rcme_rank_aware
   rcme show study.yaml --condition 0 --trial 3 --seed 5 --set outlier_ratio=0.4
 `rcme report` names the first failure and refusal of every condition.)");

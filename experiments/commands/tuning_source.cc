@@ -33,7 +33,7 @@ StudyPlan MakeTuningPlan(const TuningArguments& arguments) {
   if (!study.tuning) {
     throw InputError(
         fmt::format("{}: has no block 'tune' (estimator, target, options); see "
-                    "studies/tune_mu_lambda.yaml",
+                    "the study tune_mu_lambda",
                     arguments.study));
   }
   if (study.repeats_per_scene > 1) {

@@ -206,8 +206,8 @@ OUT/unfinished.part until the end.
 Examples:
   rcme validate PAIRS --out validation
   rcme validate PAIRS --set covariance=robust --scene kitti00
-  rcme validate studies/indoor_like.yaml --data noise=correlated --trials 40
-  rcme validate studies/indoor_like.yaml --images 8 --loops 8 --trials 20 --no-advice
+  rcme validate indoor_like --data noise=correlated --trials 40
+  rcme validate indoor_like --images 8 --loops 8 --trials 20 --no-advice
   rcme validate PAIRS --plant focal_length=0.01 --no-advice   would these pairs show it?)");
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("pairs", arguments->pairs, "folders of match files, or study files (YAML)")->required();

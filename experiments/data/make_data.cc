@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "experiments/data/calibration_file.h"
@@ -176,6 +177,13 @@ DataSources MakeDataSources(const Settings& settings, BaselineTiming search) {
   if (configured.simulated) {
     if (search == BaselineTiming::kNow) configured.simulated->FixBaseline();
     return {"", {{"", configured.simulated}}};
+  }
+  const std::string& folder = configured.folder.folder;
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(
+        fmt::format("folder: '{}' is not a folder, seen from {}; name yours, with *.csv or *.csv.gz match "
+                    "files: --set folder=PAIRS",
+                    folder, std::filesystem::current_path().string()));
   }
   return {"pair_scene", LoadMatchFolder(configured.folder)};
 }

@@ -15,7 +15,9 @@ namespace {
 constexpr double kSignificanceLevel = 0.05;
 constexpr double kStatedCoverage = 0.95;
 constexpr double kLeastCoverage = 0.9, kMostCoverage = 0.98;  // beyond these, a 95 % region is far off
+constexpr std::int64_t kFewestAnswers = 10;                   // a coverage of fewer is no finding
 constexpr double kManyRefusals = 0.1;                         // a greater rate of refusals is a finding
+constexpr size_t kMostFindings = 8;
 
 // Returns the labels in the order of their first row.
 template <typename Row>
@@ -93,7 +95,7 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
     double farthest = 0.0;
     int num_off = 0, num_known = 0;
     for (const SummaryRow& row : summary.rows) {
-      if (row.estimator != label || row.quantity != "nees_coverage" || row.n == 0) continue;
+      if (row.estimator != label || row.quantity != "nees_coverage" || row.n < kFewestAnswers) continue;
       ++num_known;
       const double distance = DistanceFrom(row.interval, kLeastCoverage, kMostCoverage);
       if (distance > 0.0) ++num_off;
@@ -263,21 +265,44 @@ void AddDifferencesInPopulation(const Summary& summary, const Comparison& compar
   AddByWeight(std::move(findings), sentences);
 }
 
+// At most kMostFindings: the first of each kind, then the second of each, and so on, in the order of the
+// kinds.
+std::vector<std::string> KeepFirst(const std::vector<std::vector<std::string>>& kinds) {
+  std::vector<size_t> num_kept(kinds.size(), 0);
+  size_t num_all = 0, num_left = kMostFindings;
+  for (const std::vector<std::string>& kind : kinds) num_all += kind.size();
+  for (size_t rank = 0; rank < num_all; ++rank) {
+    for (size_t k = 0; k < kinds.size(); ++k) {
+      if (rank >= kinds[k].size() || num_left == 0) continue;
+      ++num_kept[k];
+      --num_left;
+    }
+  }
+  std::vector<std::string> sentences;
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    sentences.insert(sentences.end(), kinds[k].begin(),
+                     kinds[k].begin() + static_cast<std::ptrdiff_t>(num_kept[k]));
+  }
+  if (num_all > sentences.size())
+    sentences.push_back(fmt::format("And {} more in the tables.", num_all - sentences.size()));
+  return sentences;
+}
+
 }  // namespace
 
 std::vector<std::string> ListFindings(const Summary& summary, const Comparison& comparison,
                                       const std::vector<ForecastMeasures>& forecasts) {
-  std::vector<std::string> sentences;
-  AddWrongCoverages(summary, &sentences);
+  std::vector<std::vector<std::string>> kinds(5);
+  AddWrongCoverages(summary, &kinds[0]);
   if (summary.is_of_population) {
-    AddDifferencesInPopulation(summary, comparison, &sentences);
+    AddDifferencesInPopulation(summary, comparison, &kinds[1]);
   } else {
-    AddPairedDifferences(summary, comparison, &sentences);
+    AddPairedDifferences(summary, comparison, &kinds[1]);
   }
-  AddWrongProbabilities(forecasts, &sentences);
-  AddRefusals(summary, &sentences);
-  AddRangesOfFailure(summary, &sentences);
-  return sentences;
+  AddWrongProbabilities(forecasts, &kinds[2]);
+  AddRefusals(summary, &kinds[3]);
+  AddRangesOfFailure(summary, &kinds[4]);
+  return KeepFirst(kinds);
 }
 
 }  // namespace rcme

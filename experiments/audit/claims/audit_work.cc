@@ -87,6 +87,17 @@ size_t CountBlocks(const Audit& plan, const CheckPlace& place, const TrialBlocks
   return decision.IsDone() ? num_counted : blocks.RoundEnd(num_counted);
 }
 
+constexpr double kLongSeconds = 900.0;
+
+// How to make a long audit shorter.
+std::string DescribeBounds(const AuditOptions& options) {
+  const std::string of_study =
+      options.study_identity.empty() ? "" : ", --set FACTOR=LEVEL (one level of a factor of the study)";
+  return fmt::format(
+      "To bound it: --max-time 30m (the same command goes on later), --only FAMILY (`rcme list claims`){}\n",
+      of_study);
+}
+
 }  // namespace
 
 TrialBlocks::TrialBlocks(const Check& check, Budget budget) {
@@ -114,10 +125,11 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runne
   Audit audit = PlanAudit(all, options);
   const std::vector<CheckPlace> places = ListCheckPlaces(audit);
   const std::vector<double> seconds = EstimateSeconds(audit);
+  const double all_seconds = std::accumulate(seconds.begin(), seconds.end(), 0.0);
   PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
-               audit.claims.size(), places.size(),
-               DescribeDuration(std::accumulate(seconds.begin(), seconds.end(), 0.0)),
+               audit.claims.size(), places.size(), DescribeDuration(all_seconds),
                NumThreads(options.num_threads));
+  if (all_seconds > kLongSeconds) PrintMessage("{}", DescribeBounds(options));
   const auto milliseconds = [&](const ItemPlace& item) {
     return static_cast<std::int64_t>(1000.0 * seconds[item.group]) + 1;
   };

@@ -152,6 +152,30 @@ TEST(ListFindings, RightProbabilitiesAndSmallSamplesAreNoFinding) {
   EXPECT_TRUE(ListFindings(summary, {}, {forecast}).empty());
 }
 
+TEST(ListFindings, ACoverageOfFewAnswersIsNoFinding) {
+  SummaryRow few = Rate("nees_coverage", "a", 0, 0.0, 0.0);
+  few.interval = {0.0, 0.5};
+  few.n = 9;
+  EXPECT_TRUE(ListFindings(MakeSummary({few}), {}, {}).empty());
+  few.n = 10;
+  EXPECT_EQ(ListFindings(MakeSummary({few}), {}, {}).size(), 1u);
+}
+
+// Of ten coverages and two refusals both refusals are kept.
+TEST(ListFindings, AtMostEightAreListedOfAllKinds) {
+  std::vector<SummaryRow> rows;
+  for (const std::string label : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"})
+    rows.push_back(Rate("nees_coverage", label, 0, 0.1, 0.05));
+  rows.push_back(Rate("no_candidate", "a", 0, 0.5, 0.05));
+  rows.push_back(Rate("no_candidate", "b", 0, 0.4, 0.05));
+  const std::vector<std::string> sentences = ListFindings(MakeSummary(rows), {}, {});
+  ASSERT_EQ(sentences.size(), 9u);
+  EXPECT_THAT(sentences[5], HasSubstr("Coverage"));
+  EXPECT_THAT(sentences[6], HasSubstr("Refusals: a"));
+  EXPECT_THAT(sentences[7], HasSubstr("Refusals: b"));
+  EXPECT_EQ(sentences[8], "And 4 more in the tables.");
+}
+
 TEST(ListFindings, SaysNothingOfNothing) { EXPECT_TRUE(ListFindings({}, {}, {}).empty()); }
 
 }  // namespace
