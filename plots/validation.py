@@ -76,7 +76,7 @@ def draw_ratios(axes, sets):
             lower, upper = (x if x is not None and x > 0 else test["ratio"] for x in test["ratio_interval"])
             color = COLORS.get(test["verdict"], "0.45")
             axes.plot([lower, upper], [y, y], color=color, linewidth=1.6)
-            axes.plot([test["ratio"]], [y], looks[test["test"]].marker, color=color, markersize=4.5)
+            axes.plot([test["ratio"]], [y], marker=looks[test["test"]].marker, color=color, markersize=4.5)
     number_log_axis(axes)
     axes.set_yticks(range(len(sets)), [f"{style.label_of(s['set'])} ({s['pairs']})" for s in sets])
     axes.set_ylim(len(sets) - 0.5, -0.5)
@@ -108,7 +108,7 @@ def draw_faults(axes, sets):
                                    for x in (fault["beside_others"], *fault["beside_others_interval"]))
             y = row + row_height(looks) * (number - (len(looks) - 1) / 2)
             axes.plot([lower, upper], [y, y], color=look.color, linewidth=1.2)
-            axes.plot([value], [y], look.marker, color=look.color, markersize=4,
+            axes.plot([value], [y], marker=look.marker, color=look.color, markersize=4,
                       fillstyle="none" if fault["verdict"] == "undecided" else "full")
     axes.set_xscale("symlog", linthresh=1, linscale=0.6)
     axes.set_xlim(-FARTHEST_FAULT, FARTHEST_FAULT)
