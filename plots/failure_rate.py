@@ -20,7 +20,7 @@ draws failure_rate.png and failure_rate.pdf: the failure rate and the detect-fai
   rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate_1px \\
       --where sigma_px=1 --estimators standard,rcme --quantities failure --log-y
 draws only the failure rate of two estimators at one noise level, on a logarithmic axis; there a rate of exactly zero,
-which has no place, becomes an arrow that points down from its upper bound.
+which has no place, stands on the floor of the axis, or where levels are words is an arrow down from its upper bound.
 
   rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate --width 3.3 --format pdf,tikz \\
       --no-caption --labels rcme_rank_aware=Ours --labels failure="Wrong motions"
@@ -39,11 +39,11 @@ def parse(arguments):
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")
     parser.add_argument("--log-y", action="store_true", default=None,
-                        help="logarithmic y axis (default: of a quantity whose rates are small)")
+                        help="logarithmic y axis (default: of a quantity of which the best estimator has small rates)")
     parser.add_argument("--linear-y", action="store_false", dest="log_y", help="linear y axis")
     parser.add_argument("--floor", type=float, metavar="RATE",
-                        help="where a logarithmic y axis ends; rates of exactly zero stand there, with their intervals")
-    parser.add_argument("--names", metavar="A,B", help="write the names of these estimators alone (default: of all)")
+                        help="where a logarithmic y axis ends, and rates of exactly zero stand (default: below the least rate)")
+    parser.add_argument("--names", metavar="A,B", help="write the names of these estimators alone (default: of all); grey ones are counted")
     options = parser.parse_args(arguments)
     if options.floor is not None and not 0 < options.floor < 1:
         parser.error(f"--floor {options.floor:g}: give a rate above 0 and below 1, such as 0.0002.")
