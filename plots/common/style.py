@@ -129,14 +129,15 @@ KNOWN = {
 OWNED = {KNOWN[name][1] for name in ("standard_five_point", "rcme_calibrated", "poselib", "opencv_magsac", "rcme", "prcme")}
 
 
-def slots_of(estimators):
+def slots_of(estimators, other_colors=()):
     """{name: index of SLOTS, or None where all are taken}.
 
     Those in KNOWN have theirs; each other has the first free slot of an order that depends on its label alone, so that it
     changes only where another has that slot. The slots of OWNED are the last to be lent. Colours that --style gives to an
-    estimator are no other's.
+    estimator are no other's, nor are `other_colors`, which mean something else in the figure.
     """
     given = {color.lower() for name, color in sheet.current().colors.items() if name in estimators}
+    given |= {color.lower() for color in other_colors}
     free, slots = {slot for slot, (color, *_) in enumerate(SLOTS) if color.lower() not in given}, {}
     wanted = [(name, [slot]) for name, (_, slot) in KNOWN.items()]
     wanted += [(name, slots_in_order_for(name)) for name in sorted(set(estimators))]
@@ -155,13 +156,13 @@ def slots_in_order_for(label):
     return sorted(range(len(SLOTS)), key=key)
 
 
-def looks_of(estimators):
-    """{name: Look}, in the given order. With --highlight only those named have colours.
+def looks_of(estimators, other_colors=()):
+    """{name: Look}, in the given order, in none of `other_colors`. With --highlight only those named have colours.
 
     Where estimators tie (many are at exactly 0 %), their lines coincide. So the first is drawn widest and each later
     one, on top of it, narrower: what lies below stays visible as a rim.
     """
-    looks, last, in_use, slots = {}, len(estimators) - 1, sheet.current(), slots_of(estimators)
+    looks, last, in_use, slots = {}, len(estimators) - 1, sheet.current(), slots_of(estimators, other_colors)
     for position, name in enumerate(estimators):
         slot = slots[name]
         color, marker, dashes = (REST, ".", SOLID) if slot is None else SLOTS[slot]
