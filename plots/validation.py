@@ -38,6 +38,7 @@ FAULTS = {"focal_length": "focal length", "principal_point_x": "principal point,
 FARTHEST_FAULT, EDGE = 300, 500  # of what is nominal: farther says nothing, and stands between it and the edge
 FAULT_COLOR = "0.3"
 LEGEND_SIZE, LEGEND_GAP = 7.5, 0.48  # points; inches below a panel, for its axis
+TWO_COLUMNS = 4.5  # inches of a figure whose legends have room for two
 COLORS = {"holds": style.GREEN, "too small": style.VERMILLION, "too large": style.BLUE, "undecided": "0.45"}
 SIDE_BY_SIDE = 10  # inches that the three panels need beside each other
 
@@ -65,9 +66,10 @@ def row_height(markers):
 
 
 def add_legend_below(axes, handles):
-    """A panel's own, in two columns below the name of its axis."""
+    """A panel's own, below the name of its axis."""
+    columns = 2 if axes.figure.get_figwidth() >= TWO_COLUMNS else 1
     place = axes.transAxes + ScaledTranslation(0, -LEGEND_GAP, axes.figure.dpi_scale_trans)
-    style.draw_legend(axes, handles, loc="upper left", bbox_to_anchor=(0, 0), bbox_transform=place, ncols=2, borderaxespad=0,
+    style.draw_legend(axes, handles, loc="upper left", bbox_to_anchor=(0, 0), bbox_transform=place, ncols=columns, borderaxespad=0,
                       fontsize=style.font_size(LEGEND_SIZE), handlelength=1.2, borderpad=0)
 
 

@@ -195,11 +195,11 @@ def coincide(parts, looks, quantities):
                for _, part in parts for quantity in quantities)
 
 
-def caption_of(rows, other_factors, is_numeric, notes, left_out):
+def caption_of(rows, other_factors, is_numeric, notes, left_out, per="point"):
     rates = rates_of(rows)
     kinds = ([interval_in_words(rates)] if len(rates) else []) + [
         words for kind, words in NUMBER_KINDS.items() if (rows.kind == kind).any()]
-    return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, "point"),
+    return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, per),
                       f"{'bands' if is_numeric else 'bars'}: {', '.join(kinds)} intervals"] +
                      notes +
                      [f"dashed: the stated level, {100 * level:g} %" for quantity, level in STATED_LEVELS.items()

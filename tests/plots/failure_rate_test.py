@@ -385,6 +385,32 @@ demo,b,0.0,1,standard,sd_over_crb,median,3,2,4,,390
         self.assertEqual(self.run_main("--highlight", "mine")[0], 0)
 
 
+class OneCondition(FailureRateTest):
+    MORE = TABLE + COVERAGE + """demo,"a, first",0.4,1,mine,failure_probability,score,0.2,0.15,0.25,,400
+demo,"a, first",0.4,1,mine,timed_out,rate,0,0,0.01,,400
+"""
+
+    def draw_one(self, *arguments):
+        return failure_rate.draw_for(failure_rate.parse([self.write(self.MORE), "--out", str(self.out), *arguments]))
+
+    def test_each_estimator_has_a_mark_with_its_interval_in_each_panel(self):
+        figure = self.draw_one("--where", "outlier_ratio=0.4", "--quantities", "failure,nees_coverage,failure_probability,timed_out")
+        failure, coverage, stated = figure.axes
+        self.assertEqual([label.get_text() for label in failure.get_yticklabels()], ["Standard", "mine"])
+        self.assertEqual([line_of(failure, name) for name in ("Standard", "mine")], [[(0.30, 0)], [(0.05, 1)]])
+        bars = [line.get_xydata().tolist() for line in failure.lines if line.get_label() == "_interval"]
+        self.assertEqual(bars, [[[0.10, 0], [0.50, 0]], [[0.01, 1], [0.20, 1]]])
+        self.assertEqual([line.get_xdata()[0] for line in coverage.lines if line.get_label() == "_stated"], [0.95])
+        self.assertEqual(line_of(stated, "mine"), [(0.2, 1)])
+        caption = figure.texts[0].get_text().replace("\n", " ")
+        for words in ("outlier ratio = 0.4", "n = 400 per estimator", "dashed: the stated level", "Timed out: 0 everywhere"):
+            self.assertIn(words, caption)
+
+    def test_of_several_conditions_one_has_to_be_chosen(self):
+        self.assert_refused(self.run_script(self.write(self.MORE), "--out", self.out), "3 conditions", "--x",
+                            "outlier_ratio, sigma_px", "--where condition=")
+
+
 class Refusals(FailureRateTest):
     def test_files_that_are_not_a_summary(self):
         self.assert_refused(self.run_main(path=self.folder / "nowhere.csv"), "nowhere.csv", "cannot be read")
