@@ -205,8 +205,9 @@ def level_text(level):
 
 
 def level_in_words(name, level):
-    """One level of a factor: ('sigma_px', '1') -> 'sigma = 1 px'; of a factor with a label 'the label: 1'."""
+    """One level of a factor: ('sigma_px', '1') -> 'sigma = 1 px'; of a factor with a label 'the label: 1'. A word has no unit."""
     words, unit = split_unit(name)
+    unit = unit if any(map(str.isdigit, level)) else ""
     label = sheet.current().text_of(name, "")
     return f"{label}: {level_text(level)}" if label else f"{words} = {level_text(level)} {unit}".rstrip()
 
