@@ -16,7 +16,7 @@ from reliability_figure.risk_band import risk_band
 
 MAX_DIAGRAMS = 3
 TICKS = (0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1)
-BAND = dict(color=style.SKY_BLUE, alpha=0.35, linewidth=0)
+BAND = dict(color="0.5", alpha=0.25, linewidth=0)
 RISK_BAND = dict(alpha=0.15, linewidth=0)
 RIGHT = dict(color="0.5", linewidth=0.8, linestyle=style.DOTTED)
 BARS = dict(color="0.6", linewidth=0)
