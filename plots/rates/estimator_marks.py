@@ -12,6 +12,7 @@ from rates.selection import check_no_repetition, select_rates, title_of, with_sh
 
 ROW, AROUND = 0.24, 0.95  # inches of an estimator; of title, axis and its numbers
 NAME_WIDTH, NAMES_WIDTH, PANEL_WIDTH = 1.7, 2.2, 1.9  # inches: of a name; beside the panels; of the narrowest panel, on a screen
+MOST_ABREAST = 4  # panels, on a screen; more stand in two lines
 
 
 def check_one_condition(summary, rows):
@@ -43,9 +44,11 @@ def draw_marks(axes, points, looks):
 def new_figure(count, rows):
     """(figure, axes of each panel)."""
     width = sheet.current().width
-    abreast = count if width is None else max(1, min(count, int((width - NAMES_WIDTH + 0.6) / (0.75 * PANEL_WIDTH))))
+    abreast = count if count <= MOST_ABREAST else -(-count // 2)
+    if width is not None:
+        abreast = max(1, min(count, int((width - NAMES_WIDTH + 0.6) / (0.75 * PANEL_WIDTH))))
     lines = -(-count // abreast)
-    figure = Figure(figsize=(width or NAMES_WIDTH + PANEL_WIDTH * count, lines * (AROUND + ROW * rows)), layout="constrained")
+    figure = Figure(figsize=(width or NAMES_WIDTH + PANEL_WIDTH * abreast, lines * (AROUND + ROW * rows)), layout="constrained")
     FigureCanvasAgg(figure)
     return figure, list(figure.subplots(lines, abreast, sharey=True, squeeze=False).flat)
 
