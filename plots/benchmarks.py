@@ -14,23 +14,30 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from common import sheet, style
 from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
+from common.text_size import fill
 
 LOOKS = {  # the second part of a case's name, or its group
-    "fast": dict(color=style.BLUE, marker="o"),
-    "reference": dict(color=style.VERMILLION, marker="s"),
-    "peer": dict(color=style.BLACK, marker="D"),
-    "only": dict(color=style.BLUE, marker="o"),
-}
+    "fast": dict(color=style.BLACK, marker="o"),
+    "reference": dict(color="0.6", marker="s"),
+    "peer": dict(color="0.35", marker="D"),
+    "only": dict(color=style.BLACK, marker="o"),
+}  # grey: a colour is an estimator's
 HANDLES = {"fast": "rcme", "reference": "its simple reference", "peer": "other libraries"}
 LABELS = {"opencv_ransac_200": "OpenCV RANSAC, 200", "opencv_usac_magsac": "OpenCV USAC_MAGSAC",
           "opencv_usac_accurate": "OpenCV USAC_ACCURATE", "poselib_relative_pose": "PoseLib relative pose",
+          "rcme_calibrated_half_wrong": "RCME, calibrated, half of the matches wrong",
+          "linearize_sampson_squared": "Linearize squared Sampson error",
+          "linearize_sampson_cauchy": "Linearize Sampson error, Cauchy",
           **{name: label for name, (label, _) in style.KNOWN.items()}}
+NAME_WIDTH = 1.5  # inches
 SERIES = {  # panel: x label, and its series with labels
     "n": ("Matches n", {"n": "pRCME, whole call", "n_scoring": "its scoring"}),
     "iterations": ("Hypotheses N", {"iterations": "pRCME, whole call"}),
     "trials": ("Trials of a study", {"trials": "rcme, all cores"}),
 }
-SERIES_LOOKS = (dict(color=style.BLUE, marker="o"), dict(color=style.ORANGE, marker="s"))
+PRCME = style.looks_of(["prcme"])["prcme"].color
+SERIES_LOOKS = {"n": dict(color=PRCME, marker="o"), "n_scoring": dict(color="0.6", marker="s"),
+                "iterations": dict(color=PRCME, marker="o"), "trials": dict(color=style.BLACK, marker="o")}
 
 EXAMPLE = """
 example:
@@ -72,9 +79,10 @@ def draw_times(axes, rows):
             axes.plot(time["median"], y, linestyle="none", markersize=4, markeredgecolor="white", markeredgewidth=0.4,
                       **LOOKS[variant])
     axes.set_xscale("log")
-    axes.set_yticks(range(len(rows)), rows)
+    size = style.font_size(6.5)
+    axes.set_yticks(range(len(rows)), ["\n".join(fill(label, NAME_WIDTH, size)) for label in rows])
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.tick_params(axis="y", labelsize=style.font_size(6.5), length=0)
+    axes.tick_params(axis="y", labelsize=size, length=0)
     axes.xaxis.set_major_formatter(FuncFormatter(in_time))
     axes.xaxis.set_minor_formatter(NullFormatter())
 
@@ -90,7 +98,8 @@ def in_time(microseconds, _=None):
 def draw_series(axes, content, panel):
     """Points with intervals, and the fitted slope through their middle."""
     label, series = SERIES[panel]
-    for (name, words), look in zip(series.items(), SERIES_LOOKS):
+    for name, words in series.items():
+        look = SERIES_LOOKS[name]
         points = content["series"][name]
         sizes, medians = [point["size"] for point in points], [point["median"] for point in points]
         axes.vlines(sizes, [point["lower"] for point in points], [point["upper"] for point in points],

@@ -7,6 +7,7 @@ It draws what the files say and computes nothing: shares, ratios and intervals a
 """
 
 import sys
+from dataclasses import replace
 
 import pandas
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
@@ -55,12 +56,28 @@ def read_lines(options):
     return {name: part.sort_values("images") for name, part in rows.groupby(rows.apply(name_line, axis=1), sort=False)}
 
 
+def looks_of(lines):
+    """{name of a line: (Look, what its marks have beside it)}. An estimator has its own colour; of its two lines the second has
+    open marks and dashes. Where it has more, as of many sets, each line has a colour."""
+    estimators = {name: rows.estimator.iloc[0] for name, rows in lines.items()}
+    of_each = {one: [name for name in lines if estimators[name] == one] for one in estimators.values()}
+    if max(map(len, of_each.values())) > 2:
+        return {name: (look, {}) for name, look in style.equal_looks_of(list(lines)).items()}
+    looks = {}
+    for name, look in ((name, style.equal_looks_of(list(of_each))[one]) for name, one in estimators.items()):
+        is_second = name != of_each[estimators[name]][0]
+        hollow = dict(markerfacecolor="white", markeredgecolor=look.color, markeredgewidth=0.9, linewidth=1)
+        looks[name] = (replace(look, label=name, dashes=style.DOTTED if is_second else style.SOLID), hollow if is_second else {})
+    return looks
+
+
 def draw_line(axes, points, quantity, look, aside):
+    look, more = look
     known = points[points[quantity].notna()]
     x, ends = known.images + aside, (0, 100) if quantity == "covered" else axes.far
     axes.vlines(x, known[quantity + "_lower"].fillna(ends[0]).clip(*ends), known[quantity + "_upper"].fillna(ends[1]).clip(*ends),
                 color=look.color, linewidth=1, alpha=0.6)
-    return axes.plot(x, known[quantity].clip(*ends), **look.line())[0]
+    return axes.plot(x, known[quantity].clip(*ends), **{**look.line(), **more})[0]
 
 
 def find_ends(lines):
@@ -72,7 +89,7 @@ def find_ends(lines):
 
 def draw(options):
     lines = read_lines(options)
-    looks = style.equal_looks_of(list(lines))
+    looks = looks_of(lines)
     figure, panels = style.new_figure(1, len(PANELS))
     handles = []
     for letter, axes, (quantity, label) in zip(style.letters(len(PANELS)), panels[0], PANELS.items()):

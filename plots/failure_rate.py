@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Draws rates and scores against one factor: a panel per quantity, a line with its interval band per estimator; where levels
-are words, marks and bars side by side.
+are words, marks and bars side by side. Of one condition, without --x, a mark with its interval for each estimator.
 
 It draws what the file says and computes nothing: values and interval bounds are those of `rcme summarize`.
 """
@@ -9,6 +9,7 @@ import sys
 
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import of_estimators, read_summary, where
+from rates import estimator_marks
 from rates.lines import Choices, draw
 
 EXAMPLE = """
@@ -20,18 +21,22 @@ draws failure_rate.png and failure_rate.pdf: the failure rate and the detect-fai
   rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate_1px \\
       --where sigma_px=1 --estimators standard,rcme --quantities failure --log-y
 draws only the failure rate of two estimators at one noise level, on a logarithmic axis; there a rate of exactly zero,
-which has no place, becomes an arrow that points down from its upper bound.
+which has no place, stands on the floor of the axis, or where levels are words is an arrow down from its upper bound.
 
   rcme plot failure_rate summary.csv --x outlier_ratio --out failure_rate --width 3.3 --format pdf,tikz \\
       --no-caption --labels rcme_rank_aware=Ours --labels failure="Wrong motions"
 draws it for a column of a paper, with names of your own (every kind of figure has these options).
+
+  rcme plot failure_rate summary.csv --where condition=3 --quantities failure,nees_coverage --out one_condition
+draws one condition.
 """
 
 
 def parse(arguments):
     parser = FigureParser(prog="rcme plot failure_rate", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("summary", metavar="SUMMARY.csv", help="output of 'rcme summarize RUN.sqlite --format csv'")
-    parser.add_argument("--x", required=True, metavar="FACTOR", help="the factor on the x axis; words stand side by side")
+    parser.add_argument("--x", metavar="FACTOR",
+                        help="the factor on the x axis; words stand side by side (default: of one condition, none)")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     parser.add_argument("--quantities", default="failure,no_candidate", metavar="A,B",
                         help="rates and scores to draw, one panel each (default: %(default)s)")
@@ -39,11 +44,11 @@ def parse(arguments):
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")
     parser.add_argument("--log-y", action="store_true", default=None,
-                        help="logarithmic y axis (default: of a quantity whose rates are small)")
+                        help="logarithmic y axis (default: of a quantity of which the best estimator has small rates)")
     parser.add_argument("--linear-y", action="store_false", dest="log_y", help="linear y axis")
     parser.add_argument("--floor", type=float, metavar="RATE",
-                        help="where a logarithmic y axis ends; rates of exactly zero stand there, with their intervals")
-    parser.add_argument("--names", metavar="A,B", help="write the names of these estimators alone (default: of all)")
+                        help="where a logarithmic y axis ends, and rates of exactly zero stand (default: below the least rate)")
+    parser.add_argument("--names", metavar="A,B", help="write the names of these estimators alone (default: of all); grey ones are counted")
     options = parser.parse_args(arguments)
     if options.floor is not None and not 0 < options.floor < 1:
         parser.error(f"--floor {options.floor:g}: give a rate above 0 and below 1, such as 0.0002.")
@@ -56,6 +61,8 @@ def parse(arguments):
 
 def draw_for(options):
     summary = of_estimators(where(read_summary(options.summary), options.where), options.estimators)
+    if options.x is None:
+        return estimator_marks.draw(summary, options.quantities)
     return draw(summary, options.x, options.quantities, options.log_y, Choices(options.floor, options.names))
 
 

@@ -2,7 +2,8 @@
 """Draws how stated probabilities of failure agree with what happened: per estimator the reliability curve in the band of
 right probabilities, with a histogram of the probabilities below, and beside them all risk-coverage curves.
 
-It draws what the file says and computes nothing: curves, bands, intervals and scores are those of `rcme reliability`.
+It draws what the file says: curves, bands, intervals and scores are those of `rcme reliability`. Only the intervals along the
+risk-coverage curves are computed here, from the counts.
 """
 
 import sys

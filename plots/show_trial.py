@@ -15,7 +15,7 @@ from trial_sheet.images import draw_image_pair, legend_handles
 from trial_sheet.scene import FROM_ABOVE, FROM_THE_RIGHT, draw_close_up, draw_scene, limits_of_scene, num_outside
 from trial_sheet.sheet import WIDTH, sheet_of
 from trial_sheet.trial_file import read_trial
-from trial_sheet.words import facts_of, notes_of, outcome_of, table_of, title_of
+from trial_sheet.words import facts_of, levels_of, notes_of, outcome_of, table_of, title_of
 
 GAP = 0.14  # inches, as all lengths here
 MIN_IMAGE_HEIGHT, MAX_IMAGE_HEIGHT, LABEL = 1.6, 4.2, 0.28  # LABEL: room for what stands under an image
@@ -108,7 +108,7 @@ def scene_block(trial, looks):
 def table_block(trial, looks):
     """A row per estimator of the study; those drawn have a square of their colour."""
     header, rows = table_of(trial, looks)
-    lefts = (SWATCH, 2.1, 3.3, 4.35, 5.45, 6.4, 7.15)
+    lefts = (SWATCH, 2.0, 3.45, 4.45, 5.5, 6.4, 7.15)
     drawn = {estimate.label for estimate in trial.drawn}
 
     def paint(sheet, top):
@@ -125,7 +125,10 @@ def table_block(trial, looks):
 
 def draw(trial):
     looks = style.equal_looks_of([estimate.label for estimate in trial.estimates])
-    blocks = [text_block([title_of(trial)], TITLE, fontweight="bold"), legend_block(trial, looks)]
+    blocks = [text_block([title_of(trial)], TITLE, fontweight="bold")]
+    if levels := levels_of(trial):
+        blocks.append(text_block([levels + "."], SMALL, color="0.3"))
+    blocks.append(legend_block(trial, looks))
     blocks += [images_block(trial, estimate, looks[estimate.label]) for estimate in trial.drawn]
     outside = None
     if trial.views:

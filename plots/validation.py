@@ -8,12 +8,12 @@ It draws what the file says and computes nothing: ratios, intervals and verdicts
 import json
 import math
 import sys
-from dataclasses import replace
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.transforms import ScaledTranslation
 
 from common import direct_labels, sheet, style
 from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
@@ -26,29 +26,51 @@ draws validation.png and validation.pdf.
 FORMAT = "rcme validation 3"
 PARTS = ("tests", "correlations", "camera_faults")  # tables with a column `set`
 CAPTION = ("In brackets: pairs of the scene; bars: intervals; grey: what counts as nominal; correlation of neighbouring residuals "
-           "minus that of the simulated twin; camera faults over what is nominal (below 1), linear up to there.")
+           "minus that of the simulated twin; camera faults over what is nominal (below 1), linear up to there; farther than "
+           "{farthest} at the edge.")
+SETS = {"kitti00": "KITTI 00", "kitti01": "KITTI 01", "kittiraw0928_stereo": "KITTI raw 09-28, stereo",
+        "middlebury_temple": "Middlebury Temple", "strecha_castle": "Strecha Castle", "strecha_fountain": "Strecha Fountain",
+        "tum_fr1_rpy": "TUM fr1 rpy", "tum_fr1_xyz": "TUM fr1 xyz"}  # others: their name in words
 TESTS = {"spatial_halves": "halves of the image", "random_halves": "random halves", "closure": "rotations around loops",
          "directions": "directions around three", "simulation": "simulated twins"}
 FAULTS = {"focal_length": "focal length", "principal_point_x": "principal point, x", "principal_point_y": "principal point, y",
           "image2_shift_x": "second image shifted, x", "image2_shift_y": "second image shifted, y"}  # others: their name in words
-FARTHEST_FAULT = 300  # of what is nominal: farther says nothing
+FARTHEST_FAULT, EDGE = 300, 500  # of what is nominal: farther says nothing, and stands between it and the edge
+FAULT_COLOR = "0.3"
+LEGEND_SIZE, LEGEND_GAP = 7.5, 0.48  # points; inches below a panel, for its axis
+TWO_COLUMNS = 4.5  # inches of a figure whose legends have room for two
 COLORS = {"holds": style.GREEN, "too small": style.VERMILLION, "too large": style.BLUE, "undecided": "0.45"}
 SIDE_BY_SIDE = 10  # inches that the three panels need beside each other
 
 
-def mark(label, marker, color):
-    return Line2D([], [], linestyle="none", marker=marker, color=color, label=label)
+MARKERS = ("o", "D", "^", "H", "P", "X", "v", "s", "<", ">", "d", "p", "8", "h")
 
 
-def looks_by_name(sets, key, name, words):
-    """{name: Look} of the tests or faults of all sets."""
+def mark(label, marker, color, **look):
+    return Line2D([], [], linestyle="none", marker=marker, color=color, label=label, **look)
+
+
+def name_of_set(name):
+    return sheet.current().text_of(name, SETS.get(name, name.replace("_", " ")))
+
+
+def markers_by_name(sets, key, name):
+    """{name: marker} of the tests or faults of all sets."""
     names = list(dict.fromkeys(entry[name] for one_set in sets for entry in one_set[key]))
-    return {name: replace(look, label=words.get(name, name.replace("_", " "))) for name, look in style.equal_looks_of(names).items()}
+    return {name: MARKERS[place % len(MARKERS)] for place, name in enumerate(names)}
 
 
-def row_height(looks):
+def row_height(markers):
     """Of one test or fault of a set, whose rows are 1 apart."""
-    return 0.8 / max(len(looks), 4)
+    return 0.8 / max(len(markers), 4)
+
+
+def add_legend_below(axes, handles):
+    """A panel's own, below the name of its axis."""
+    columns = 2 if axes.figure.get_figwidth() >= TWO_COLUMNS else 1
+    place = axes.transAxes + ScaledTranslation(0, -LEGEND_GAP, axes.figure.dpi_scale_trans)
+    style.draw_legend(axes, handles, loc="upper left", bbox_to_anchor=(0, 0), bbox_transform=place, ncols=columns, borderaxespad=0,
+                      fontsize=style.font_size(LEGEND_SIZE), handlelength=1.2, borderpad=0)
 
 
 def drawn_tests(one_set):
@@ -69,20 +91,30 @@ def draw_ratios(axes, sets):
     nominal = axes.nominal
     axes.axvspan(1 / nominal, nominal, color="0.92", zorder=0)
     axes.axvline(1, color="0.6", linewidth=0.8, zorder=1)
-    looks = looks_by_name(sets, "tests", "test", TESTS)
+    markers = markers_by_name(sets, "tests", "test")
     for row, one_set in enumerate(sets):
         for number, test in enumerate(drawn_tests(one_set)):
-            y = row + row_height(looks) * (number - (len(looks) - 1) / 2)
+            y = row + row_height(markers) * (number - (len(markers) - 1) / 2)
             lower, upper = (x if x is not None and x > 0 else test["ratio"] for x in test["ratio_interval"])
             color = COLORS.get(test["verdict"], "0.45")
             axes.plot([lower, upper], [y, y], color=color, linewidth=1.6)
-            axes.plot([test["ratio"]], [y], looks[test["test"]].marker, color=color, markersize=4.5)
+            axes.plot([test["ratio"]], [y], marker=markers[test["test"]], color=color, markersize=4.5)
     number_log_axis(axes)
-    axes.set_yticks(range(len(sets)), [f"{style.label_of(s['set'])} ({s['pairs']})" for s in sets])
+    axes.set_yticks(range(len(sets)), [f"{name_of_set(s['set'])} ({s['pairs']})" for s in sets])
     axes.set_ylim(len(sets) - 0.5, -0.5)
     axes.set_xlabel("covariances too small by, in variance")
-    return [mark(look.label, look.marker, "0.45") for look in looks.values()] + [
-        mark(f"covariance {verdict}" if verdict != "undecided" else verdict, "_", color) for verdict, color in COLORS.items()]
+    add_legend_below(axes, [mark(in_words(name, TESTS), marker, COLORS["undecided"]) for name, marker in markers.items()] + [
+        mark(f"covariance {verdict}" if verdict != "undecided" else verdict, "_", color, markersize=9, markeredgewidth=1.6)
+        for verdict, color in COLORS.items()])
+
+
+def in_words(name, words):
+    return words.get(name, name.replace("_", " "))
+
+
+def beyond_at_edge(multiple):
+    """Where an end of an interval is drawn."""
+    return multiple if abs(multiple) <= FARTHEST_FAULT else math.copysign(EDGE, multiple)
 
 
 def has_faults(one_set):
@@ -96,35 +128,35 @@ def is_known(fault):
 def draw_faults(axes, sets):
     """Each fault with its interval, as multiples of what is nominal; hollow where it is undecided. Sets without a fault that
     could be measured are left out."""
-    sets, looks = [one_set for one_set in sets if has_faults(one_set)], looks_by_name(sets, "camera_faults", "fault", FAULTS)
+    sets, markers = [one_set for one_set in sets if has_faults(one_set)], markers_by_name(sets, "camera_faults", "fault")
     axes.axvspan(-1, 1, color="0.92", zorder=0)
     axes.axvline(0, color="0.6", linewidth=0.8, zorder=1)
     for row, one_set in enumerate(sets):
         for number, fault in enumerate(one_set["camera_faults"]):
             if not is_known(fault):
                 continue
-            look = looks[fault["fault"]]
-            value, lower, upper = (min(max(x / fault["nominal"], -FARTHEST_FAULT), FARTHEST_FAULT)
-                                   for x in (fault["beside_others"], *fault["beside_others_interval"]))
-            y = row + row_height(looks) * (number - (len(looks) - 1) / 2)
-            axes.plot([lower, upper], [y, y], color=look.color, linewidth=1.2)
-            axes.plot([value], [y], look.marker, color=look.color, markersize=4,
-                      fillstyle="none" if fault["verdict"] == "undecided" else "full")
+            value, *ends = (x / fault["nominal"] for x in (fault["beside_others"], *fault["beside_others_interval"]))
+            y = row + row_height(markers) * (number - (len(markers) - 1) / 2)
+            axes.plot(list(map(beyond_at_edge, ends)), [y, y], color=FAULT_COLOR, linewidth=0.8)
+            axes.plot([min(max(value, -FARTHEST_FAULT), FARTHEST_FAULT)], [y], marker=markers[fault["fault"]], color=FAULT_COLOR,
+                      markersize=4.4, markeredgewidth=0.9, clip_on=False, linestyle="none",
+                      markerfacecolor="white" if fault["verdict"] == "undecided" else FAULT_COLOR)
     axes.set_xscale("symlog", linthresh=1, linscale=0.6)
-    axes.set_xlim(-FARTHEST_FAULT, FARTHEST_FAULT)
+    axes.set_xlim(-EDGE, EDGE)
     axes.set_xticks([-100, -10, -1, 0, 1, 10, 100] if sheet.current().width is None else [-100, -1, 1, 100])
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
-    axes.set_yticks(range(len(sets)), [style.label_of(s["set"]) for s in sets])
+    axes.set_yticks(range(len(sets)), [name_of_set(s["set"]) for s in sets])
     axes.set_ylim(len(sets) - 0.5, -0.5)
     axes.set_xlabel("camera faults over nominal")
-    return [mark(f"camera: {look.label}", look.marker, look.color) for look in looks.values()]
+    add_legend_below(axes, [mark(in_words(name, FAULTS), marker, FAULT_COLOR) for name, marker in markers.items()] + [
+        mark("hollow: undecided", "o", FAULT_COLOR, markerfacecolor="white")])
 
 
 def draw_correlations(axes, sets):
-    """Where the sets' lines end, for their names."""
+    """Where the sets' lines end, for their names. Their colours are no verdict's."""
     axes.axhline(0, color="0.6", linewidth=0.8)
-    looks, ends = style.looks_of([one_set["set"] for one_set in sets]), []
+    looks, ends = style.looks_of([one_set["set"] for one_set in sets], (style.GREEN, style.VERMILLION, style.BLUE)), []
     for number, one_set in enumerate(sets):
         look, known = looks[one_set["set"]], [c for c in one_set["correlations"] if c["difference_interval"][0] is not None]
         if not known:
@@ -133,7 +165,7 @@ def draw_correlations(axes, sets):
         y = [c["correlation"] - c["twin_correlation"] for c in known]
         axes.vlines(x, *zip(*(c["difference_interval"] for c in known)), color=look.color, linewidth=0.9)
         axes.plot(x, y, **{**look.line(), "linewidth": 0.9, "markersize": 4})
-        ends.append(direct_labels.End(x[-1], y[-1], look.label, look.text_color, look.is_highlighted))
+        ends.append(direct_labels.End(x[-1], y[-1], name_of_set(one_set["set"]), look.text_color, look.is_highlighted))
     number_log_axis(axes)
     axes.set_xlabel("distance of key points, px")
     axes.set_ylabel("correlation of residuals")
@@ -148,7 +180,7 @@ def sets_with_parts(validation):
 
 def draw(validation):
     sets = sets_with_parts(validation)
-    width, height = sheet.current().width or 13, 1.4 + 0.45 * len(sets)
+    width, height = sheet.current().width or 13, 2.2 + 0.45 * len(sets)
     if width < SIDE_BY_SIDE:
         figure = Figure(figsize=(width, 2 * height + 2.6), layout="constrained")
         ratios, correlations, faults = figure.subplots(3, 1, height_ratios=[height, 2.6, height])
@@ -157,12 +189,13 @@ def draw(validation):
         ratios, correlations, faults = figure.subplots(1, 3, width_ratios=[1.2, 1.2, 1.2])
     FigureCanvasAgg(figure)
     ratios.nominal = validation["nominal_variance"]
-    handles, ends = draw_ratios(ratios, sets), draw_correlations(correlations, sets)
-    handles += draw_faults(faults, sets)
+    draw_ratios(ratios, sets)
+    ends = draw_correlations(correlations, sets)
+    draw_faults(faults, sets)
     for letter, axes, title in zip(style.letters(3), (ratios, correlations, faults),
                                    ("Stated covariances", "Neighbouring residuals", "Camera")):
         axes.set_title(letter + title)
-    style.add_legend_and_caption(figure, handles, CAPTION)
+    style.add_legend_and_caption(figure, [], CAPTION.format(farthest=FARTHEST_FAULT))
     direct_labels.add(correlations, ends)
     return figure
 

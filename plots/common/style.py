@@ -1,15 +1,16 @@
 """One look for every figure of this project.
 
     figure, axes = style.new_figure(rows=1, columns=2)
-    looks = style.looks_of(["standard", "rcme"])       # colour, marker, dashes: the same in every figure
+    looks = style.looks_of(["standard", "rcme"])       # colour, marker, dashes: those of an estimator in every figure
     axes[0, 0].plot(x, y, **looks["rcme"].line())
     style.add_legend_and_caption(figure, handles, "study demo, n = 400 per point")
     style.save(figure, "failure_rate")                 # failure_rate.png and failure_rate.pdf
 
-Colours are those of Okabe and Ito (readable with every common colour-vision deficiency). Colour is never the only
-carrier: each estimator also has its own marker and dash pattern, so a grey print says the same.
+Colours can be told apart with every common colour-vision deficiency; the first seven are those of Okabe and Ito. Colour is
+never the only carrier: each estimator also has its own marker and dash pattern, so a grey print says the same.
 """
 
+import hashlib
 import itertools
 import math
 import textwrap
@@ -34,6 +35,8 @@ BLUE, VERMILLION, PURPLE = "#0072B2", "#D55E00", "#CC79A7"  # Okabe-Ito's yellow
 
 SOLID, DASHED, DOTTED, DASH_DOT, LONG_DASHED = "-", (0, (4, 1.6)), (0, (1, 1.4)), (0, (5, 1.4, 1, 1.4)), (0, (8, 2))
 
+FOUR_POINTS = (4, 1, 0)  # a star
+
 # An arrow that hangs from its point: "at most this", for a value that has no place on a logarithmic axis.
 ARROW_DOWN = Path([(0, 0), (0, -2), (-0.4, -1.5), (0, -2), (0.4, -1.5)],
                   [Path.MOVETO, Path.LINETO, Path.MOVETO, Path.LINETO, Path.LINETO])
@@ -56,7 +59,7 @@ matplotlib.rcParams.update(RC)
 
 @dataclass(frozen=True)
 class Look:
-    """How one estimator is drawn, in every figure."""
+    """How one estimator is drawn."""
 
     label: str
     color: str
@@ -92,58 +95,74 @@ class Look:
 
 
 def size_of(marker):
-    """Squares and diamonds look larger than a circle of the same nominal size; in print, thin marks are lost."""
+    """Squares and diamonds look larger than a circle of the same nominal size, stars smaller; in print, thin marks are lost."""
     in_print = {} if sheet.current().width is None else {"d": 1.15, "p": 1.1}
-    return {"s": 0.86, "D": 0.8, **in_print}.get(marker, 1)
+    return {"s": 0.86, "D": 0.8, "*": 1.4, FOUR_POINTS: 1.4, **in_print}.get(marker, 1)
 
 
 # (colour, marker, dashes) of one estimator: no two share a colour or a marker. Any two colours are at least 12 apart
-# (CIEDE2000) to the eye and in simulated protanopia and deuteranopia; where two are alike in grey their dashes differ. The
-# first seven are those of Okabe and Ito.
+# (CIEDE2000) to the eye and in simulated protanopia and deuteranopia, and at least 10 in tritanopia; where two are alike in
+# grey their dashes differ. The first seven are those of Okabe and Ito.
 SLOTS = (
     (BLACK, "o", SOLID), (BLUE, "D", SOLID), (VERMILLION, "^", DASHED), (GREEN, "H", DOTTED), (ORANGE, "P", SOLID),
-    (SKY_BLUE, "X", DASH_DOT), (PURPLE, "v", LONG_DASHED), ("#960000", "s", SOLID), ("#000069", "<", DOTTED),
-    ("#4B5A5A", ">", DASHED), ("#1E00D2", "d", DASH_DOT), ("#5A694B", "p", LONG_DASHED), ("#3C87FF", "8", SOLID),
-    ("#5A2D2D", "h", DASHED))
+    (SKY_BLUE, "X", DASH_DOT), (PURPLE, "v", LONG_DASHED), ("#A50F4B", "s", SOLID), ("#003C96", "<", DOTTED),
+    ("#005A4B", ">", DASHED), ("#1E00F0", "d", DASH_DOT), ("#694B00", "p", LONG_DASHED), ("#7878FF", "8", SOLID),
+    ("#5A0F00", "h", DASHED), ("#965A78", "*", DASH_DOT), ("#4B0F4B", FOUR_POINTS, DOTTED))
 REST = "0.66"  # the grey of estimators that are not highlighted, and of those beyond the last slot
 
-# An estimator's label in a study: (in words, the slot it takes if it is free). Those that a figure may show together have
-# different ones; where two want the same, the one further up has it.
+# An estimator's label in a study: (in words, its slot). Labels with one slot are one estimator with other names or options, or
+# estimators that no committed study has together; of those in one figure, the one further up has it.
 KNOWN = {
-    "standard": ("Standard", 0), "rcme_calibrated": ("RCME, calibrated", 1),
-    "prcme": ("pRCME", 4), "prcme_as_printed": ("pRCME, as printed", 4), "prcme_rank_aware": ("pRCME, rank-aware", 2),
-    "rcme": ("RCME", 5), "rcme_as_printed": ("RCME, as printed", 5), "rcme_rank_aware": ("RCME, rank-aware", 6),
-    "rcme_predictive": ("RCME, predictive likelihood", 3), "rcme_predictive_tuned": ("RCME, predictive, tuned", 3),
-    "poselib": ("PoseLib", 2), "opencv_magsac": ("OpenCV MAGSAC", 4), "opencv_graph_cut": ("OpenCV graph cut", 6),
-    "opencv_ransac": ("OpenCV RANSAC", 7), "opengv_ransac": ("OpenGV RANSAC", 8),
-    "standard_five_point": ("Standard, five points", 0), "standard_eight_point": ("Standard, eight points", 9),
-    "prcme_five_point": ("pRCME, five points", 4), "prcme_eight_point": ("pRCME, eight points", 2),
-    "rcme_five_point": ("RCME, five points", 5), "rcme_eight_point": ("RCME, eight points", 6),
-    "msac": ("MSAC", 10), "mlesac": ("MLESAC", 11), "lo_ransac": ("LO-RANSAC", 12), "cov_ransac": ("Cov-RANSAC", 13),
-    "m_estimator": ("M-estimator", 9), "opencv_usac": ("OpenCV USAC", 4), "opencv_lmeds": ("OpenCV LMedS", 10),
+    "standard_five_point": ("Standard, five points", 0), "rcme_calibrated": ("RCME, calibrated", 1), "poselib": ("PoseLib", 2),
+    "opencv_magsac": ("OpenCV MAGSAC", 4), "rcme": ("RCME", 5), "rcme_as_printed": ("RCME, as printed", 5),
+    "prcme": ("pRCME", 6), "prcme_as_printed": ("pRCME, as printed", 6),
+    "standard": ("Standard", 7), "standard_eight_point": ("Standard, eight points", 7),
+    "rcme_rank_aware": ("RCME, rank-aware", 8), "rcme_eight_point": ("RCME, eight points", 8),
+    "prcme_rank_aware": ("pRCME, rank-aware", 11), "prcme_eight_point": ("pRCME, eight points", 11),
+    "rcme_predictive_tuned": ("RCME, predictive, tuned", 3), "rcme_predictive": ("RCME, predictive likelihood", 9),
+    "opencv_graph_cut": ("OpenCV graph cut", 14), "opencv_ransac": ("OpenCV RANSAC", 12), "opengv_ransac": ("OpenGV RANSAC", 10),
+    "opencv_lmeds": ("OpenCV LMedS", 15), "opencv_usac": ("OpenCV USAC", 13),
+    "rcme_five_point": ("RCME, five points", 13), "prcme_five_point": ("pRCME, five points", 15),
+    "msac": ("MSAC", 13), "msac_five_point": ("MSAC, five points", 13), "mlesac": ("MLESAC", 10), "lo_ransac": ("LO-RANSAC", 12),
+    "cov_ransac": ("Cov-RANSAC", 14), "m_estimator": ("M-estimator", 9),
 }
+OWNED = {KNOWN[name][1] for name in ("standard_five_point", "rcme_calibrated", "poselib", "opencv_magsac", "rcme", "prcme")}
 
 
-def slots_of(estimators):
-    """{name: index of SLOTS, or None where all are taken}: those in KNOWN have theirs if they can, the others what is
-    left, in the given order. Colours that --style gives to an estimator are no other's."""
+def slots_of(estimators, other_colors=()):
+    """{name: index of SLOTS, or None where all are taken}.
+
+    Those in KNOWN have theirs; each other has the first free slot of an order that depends on its label alone, so that it
+    changes only where another has that slot. The slots of OWNED are the last to be lent. Colours that --style gives to an
+    estimator are no other's, nor are `other_colors`, which mean something else in the figure.
+    """
     given = {color.lower() for name, color in sheet.current().colors.items() if name in estimators}
-    free, slots = [slot for slot, (color, *_) in enumerate(SLOTS) if color.lower() not in given], {}
-    for name, (_, wanted) in KNOWN.items():
-        if name in estimators and wanted in free:
-            slots[name] = wanted
-            free.remove(wanted)
-    others = [name for name in estimators if name not in slots]
-    return {**slots, **dict(itertools.zip_longest(others, free[:len(others)]))}
+    given |= {color.lower() for color in other_colors}
+    free, slots = {slot for slot, (color, *_) in enumerate(SLOTS) if color.lower() not in given}, {}
+    wanted = [(name, [slot]) for name, (_, slot) in KNOWN.items()]
+    wanted += [(name, slots_in_order_for(name)) for name in sorted(set(estimators))]
+    for name, order in wanted:
+        slot = next((slot for slot in order if slot in free), None)
+        if name in estimators and name not in slots and slot is not None:
+            slots[name] = slot
+            free.remove(slot)
+    return {name: slots.get(name) for name in estimators}
 
 
-def looks_of(estimators):
-    """{name: Look}, in the given order. With --highlight only those named have colours.
+def slots_in_order_for(label):
+    """All slots, in an order of this label's own: those of OWNED last."""
+    def key(slot):
+        return slot in OWNED, hashlib.sha256(f"{slot} {label}".encode("utf-8", "surrogateescape")).digest()
+    return sorted(range(len(SLOTS)), key=key)
+
+
+def looks_of(estimators, other_colors=()):
+    """{name: Look}, in the given order, in none of `other_colors`. With --highlight only those named have colours.
 
     Where estimators tie (many are at exactly 0 %), their lines coincide. So the first is drawn widest and each later
     one, on top of it, narrower: what lies below stays visible as a rim.
     """
-    looks, last, in_use, slots = {}, len(estimators) - 1, sheet.current(), slots_of(estimators)
+    looks, last, in_use, slots = {}, len(estimators) - 1, sheet.current(), slots_of(estimators, other_colors)
     for position, name in enumerate(estimators):
         slot = slots[name]
         color, marker, dashes = (REST, ".", SOLID) if slot is None else SLOTS[slot]
@@ -186,8 +205,9 @@ def level_text(level):
 
 
 def level_in_words(name, level):
-    """One level of a factor: ('sigma_px', '1') -> 'sigma = 1 px'; of a factor with a label 'the label: 1'."""
+    """One level of a factor: ('sigma_px', '1') -> 'sigma = 1 px'; of a factor with a label 'the label: 1'. A word has no unit."""
     words, unit = split_unit(name)
+    unit = unit if any(map(str.isdigit, level)) else ""
     label = sheet.current().text_of(name, "")
     return f"{label}: {level_text(level)}" if label else f"{words} = {level_text(level)} {unit}".rstrip()
 

@@ -52,25 +52,50 @@ def chosen_estimators(summary, rows, wanted):
     return [name for name in present if not wanted or name in wanted]
 
 
-def grid_of(num_estimators, num_quantities, x_levels, y_levels):
-    """(figure, panels, colour bars): a row of panels per quantity, or several where one would be too wide. `panels` has
-    one list per quantity, estimators in order; `colour bars` the axes at the right of each of its rows."""
+def with_content(rows, names, quantities):
+    """({quantity: names of the estimators with a panel}, [(quantity, those without)]): all cells of a panel that is left out
+    are exactly zero. Where no panel had content the first keeps its own."""
+    shown, left_out = {}, {}
+    for quantity in quantities:
+        values = {name: rows.value[(rows.quantity == quantity) & (rows.estimator == name)] for name in names}
+        left_out[quantity] = [name for name in names if (values[name] == 0).all()]
+        shown[quantity] = [name for name in names if name not in left_out[quantity]]
+    if not any(shown.values()):
+        shown[quantities[0]], left_out[quantities[0]] = names[:1], names[1:]
+    return ({quantity: with_panel for quantity, with_panel in shown.items() if with_panel},
+            [(quantity, without) for quantity, without in left_out.items() if without])
+
+
+def without_content_in_words(rows, quantity, names, labels):
+    """'Detect-fail rate of Standard and pRCME: 0 in every cell, at most 0.9 %'. Labels stand in quotes where one has a comma."""
+    upper = rows.upper[(rows.quantity == quantity) & rows.estimator.isin(names)].max()
+    quote = '"' if any("," in labels[name] for name in names) else ""
+    texts = [f"{quote}{labels[name]}{quote}" for name in names]
+    listed = " and ".join(filter(None, [", ".join(texts[:-1]), texts[-1]]))
+    return f"{title_of(quantity)} of {listed}: 0 in every cell, at most {100 * upper:.2g} %"
+
+
+def grid_of(counts, x_levels, y_levels):
+    """(figure, panels, colour bars): a row of panels per quantity, or several where one would be too wide. `counts` has the
+    number of estimators of each quantity, `panels` one list per quantity, estimators in order; `colour bars` the axes at the
+    right of each of its rows."""
+    num_estimators = max(counts)
     paper_width = sheet.current().width
     width, height = max(1.5, CELL_WIDTH * x_levels), CELL_HEIGHT * y_levels
     columns = max(1, min(num_estimators, int((WIDEST - 1.6) // (width + 0.1))))
     if paper_width is not None:
         width, columns = fitted(paper_width, num_estimators, x_levels)
         height = (CELL_HEIGHT if has_room_for_interval(width / x_levels) else STACKED_HEIGHT) * y_levels
-    lines = -(-num_estimators // columns)
-    rows = num_quantities * lines
+    lines = [-(-count // columns) for count in counts]
+    rows, firsts = sum(lines), [sum(lines[:q]) for q in range(len(lines))]
     figure = Figure(figsize=(paper_width or 1.4 + columns * (width + 0.1),
                              (0.9 if paper_width is None else 0.25) + rows * (height + 0.6)), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns + 1, squeeze=False, gridspec_kw={"width_ratios": [width] * columns + [0.13]})
-    panels = [list(axes[q * lines:(q + 1) * lines, :-1].flat) for q in range(num_quantities)]
-    for unused in itertools.chain(*(of_quantity[num_estimators:] for of_quantity in panels)):
+    panels = [list(axes[first:first + count, :-1].flat) for first, count in zip(firsts, lines)]
+    for unused in itertools.chain(*(of_quantity[count:] for of_quantity, count in zip(panels, counts))):
         unused.set_visible(False)
-    return figure, panels, [list(axes[q * lines:(q + 1) * lines, -1]) for q in range(num_quantities)]
+    return figure, panels, [list(axes[first:first + count, -1]) for first, count in zip(firsts, lines)]
 
 
 def has_room_for_interval(cell_width):
@@ -157,24 +182,26 @@ def scale_of(rows):
 
 
 def draw(summary, x, y, quantities, estimators=()):
-    """The whole figure: a row of panels per quantity, a column per estimator."""
+    """The whole figure: a row of panels per quantity, a panel per estimator that has it anywhere."""
     rows, x_axis, y_axis = select(summary, x, y, quantities)
     names = chosen_estimators(summary, rows, estimators)
     rows = rows[rows.estimator.isin(names)].assign(x=rows[x], y=rows[y])
     if len(names) * len(quantities) > MAX_PANELS:
         raise PlotError(f"{len(names)} estimators and {len(quantities)} quantities need more than {MAX_PANELS} panels; "
                         "choose some with --estimators or --quantities.")
-    looks, letters = style.looks_of(names), style.letters(len(names) * len(quantities))
-    figure, panels, bars = grid_of(len(names), len(quantities), len(x_axis.levels), len(y_axis.levels))
+    shown, left_out = with_content(rows, names, quantities)
+    labels, counts = {name: style.label_of(name) for name in names}, list(map(len, shown.values()))
+    letters = style.letters(sum(counts))
+    figure, panels, bars = grid_of(counts, len(x_axis.levels), len(y_axis.levels))
     width = sheet.current().width
-    panel_width = None if width is None else fitted(width, len(names), len(x_axis.levels))[0]
+    panel_width = None if width is None else fitted(width, max(counts), len(x_axis.levels))[0]
     cell_width = panel_width and panel_width / len(x_axis.levels)
-    for quantity, of_quantity, bars_of_quantity in zip(quantities, panels, bars):
+    for (quantity, with_panel), of_quantity, bars_of_quantity in zip(shown.items(), panels, bars):
         drawn = rows[rows.quantity == quantity]
         scale = scale_of(drawn)
-        for axes, name in zip(of_quantity, names):
+        for axes, name in zip(of_quantity, with_panel):
             draw_panel(axes, drawn[drawn.estimator == name], x_axis, y_axis, scale, cell_width)
-            title = f"{next(letters)}{title_of(quantity)}, {looks[name].label}"
+            title = f"{next(letters)}{title_of(quantity)}, {labels[name]}"
             room = panel_width or max(1.5, CELL_WIDTH * len(x_axis.levels))
             axes.set_title("\n".join(wrap(title, room, 7.5)), fontsize=7.5)
         draw_color_bars(figure, bars_of_quantity, scale, f"{kind_in_words(drawn)} (%)")
@@ -184,7 +211,8 @@ def draw(summary, x, y, quantities, estimators=()):
         [f"Study {rows.study.iloc[0]}", *fixed_levels(rows, others), n_in_words(rows, "cell"),
          f"in each cell the {kind_in_words(rows).lower()} in %, " + (
              "below it" if cell_width is None or has_room_for_interval(cell_width) else "above and below it the ends of") +
-         f" its {interval_in_words(rows)} interval", *sharpness_in_words(summary, quantities)]) + ".")
+         f" its {interval_in_words(rows)} interval", *sharpness_in_words(summary, quantities),
+         *(without_content_in_words(rows, quantity, without, labels) for quantity, without in left_out)]) + ".")
     return figure
 
 

@@ -1,6 +1,7 @@
 """Rates and scores against one factor: a line with an interval band per estimator, or marks with bars where levels are words."""
 
 import itertools
+import math
 from dataclasses import dataclass, replace
 
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
@@ -15,15 +16,16 @@ from rates.selection import (DRAWN_KINDS, NUMBER_KINDS, check_factor, check_no_r
 SHARED = "0.35"  # a band that several estimators have
 STATED_LEVELS = {"nees_coverage": 0.95}  # what a quantity is where the covariance holds
 LEAST = {"sd_over_crb": 1}  # below it no covariance is right
-SMALL = 0.02  # where half of the rates that are not zero lie below it, a linear axis shows them all as nothing
+SMALL = 0.02  # a linear axis that ends at the worst rates shows those below it as nothing
 STATED = dict(color="0.35", linewidth=0.9, linestyle=style.DASHED, zorder=1, label="_stated")
 WANTED = ("success",)  # rates that are near one where all is well
+COUNTS = "no one two three four five six seven eight nine ten eleven twelve".split()
 
 
 @dataclass(frozen=True)
 class Choices:
-    """`floor`: where a logarithmic axis ends, and rates of zero stand; None: by the least rate. `names`: the estimators
-    that are named; None: all."""
+    """`floor`: where a logarithmic axis ends, and rates of zero stand; None: below the least rate that is not zero. `names`:
+    the estimators that are named; None: all."""
 
     floor: float = None
     names: tuple = None
@@ -49,7 +51,8 @@ def finish_line(axes, points, look, line):
 
 
 def draw_lines(axes, points, looks):
-    """All estimators' lines. Where some coincide their dashes and marks take turns; a band that several have is grey."""
+    """All estimators' lines. Where some coincide their dashes and marks take turns; a band that several have is grey. Returns
+    whether the mark of an estimator at x is drawn."""
     lines, bands = (coinciding.groups_of(points, looks, columns) for columns in (["value"], ["lower", "upper"]))
     taken, shared = coinciding.turns_of(points, lines)
     for name, look in looks.items():
@@ -70,6 +73,7 @@ def draw_lines(axes, points, looks):
     coinciding.draw_in_turns(axes, lines, looks)
     if bands:
         draw_band(axes, *coinciding.joined(sorted(bands)), SHARED, 3)
+    return lambda x, name: (x, name) not in shared or (x, name) in taken
 
 
 def draw_abreast(axes, points, look, aside):
@@ -91,14 +95,14 @@ def draw_upper_limits(axes, zeros, looks):
                 axes.plot([row.x], [row.upper], **mark, transform=axes.transData + aside, clip_on=False, zorder=4)
 
 
-def draw_zeros(axes, zeros, looks, floor):
-    """Open marks of rates that are zero on the floor of the axis, and lines up to their upper bounds."""
-    for _, at_one_x in zeros.groupby("x"):
-        for position, row in enumerate(at_one_x.itertuples()):
-            place = axes.transData + abreast(axes, position, len(at_one_x), 24)
+def draw_lines_from_floor(axes, points, looks, floor):
+    """Lines on a logarithmic axis, on whose floor rates of zero stand, with open marks."""
+    is_zero = points.value == 0
+    is_marked = draw_lines(axes, points.assign(value=points.value.clip(lower=floor), lower=points.lower.clip(lower=floor)), looks)
+    for row in points[is_zero].itertuples():
+        if is_marked(row.x, row.estimator):
             _, mark = looks[row.estimator].upper_limit()
-            axes.vlines(row.x, floor, row.upper, color=looks[row.estimator].color, linewidth=1, transform=place, zorder=4)
-            axes.plot([row.x], [floor], **mark, transform=place, clip_on=False, zorder=4)
+            axes.plot([row.x], [floor], **{**mark, "markersize": looks[row.estimator].marker_size}, clip_on=False, zorder=4)
 
 
 def are_numbers(points):
@@ -107,9 +111,10 @@ def are_numbers(points):
 
 
 def is_small(points):
-    """Whether a logarithmic axis shows what a linear one does not."""
-    positive = points.value[(points.kind == "rate") & (points.value > 0) & ~points.quantity.isin((*WANTED, *STATED_LEVELS))]
-    return len(positive) > 0 and positive.median() < SMALL
+    """Whether a logarithmic axis shows what a linear one does not: the rates of the best estimator, half of whose rates that
+    are not zero are small. An estimator that is never wrong in this way needs no axis."""
+    positive = points[(points.kind == "rate") & (points.value > 0) & ~points.quantity.isin((*WANTED, *STATED_LEVELS))]
+    return len(positive) > 0 and positive.groupby("estimator").value.median().min() < SMALL
 
 
 def draw_panel(axes, points, looks, axis, room, log_y, floor=None):
@@ -117,14 +122,14 @@ def draw_panel(axes, points, looks, axis, room, log_y, floor=None):
     points = points.sort_values("x", kind="stable")
     if log_y:
         axes.set_yscale("log", nonpositive="clip")
-        is_zero = points.value == 0
-        if floor is None:
-            draw_upper_limits(axes, points[is_zero], looks)
-        else:
-            draw_zeros(axes, points[is_zero], looks, floor)
-        points = points.assign(value=points.value.mask(is_zero), lower=points.lower.mask(is_zero))
-    if axis.is_numeric:
+    if axis.is_numeric and log_y:
+        draw_lines_from_floor(axes, points, looks, floor)
+    elif axis.is_numeric:
         draw_lines(axes, points, looks)
+    elif log_y:
+        is_zero = points.value == 0
+        draw_upper_limits(axes, points[is_zero], looks)
+        points = points.assign(value=points.value.mask(is_zero), lower=points.lower.mask(is_zero))
     for position, (estimator, look) in enumerate([] if axis.is_numeric else looks.items()):
         draw_abreast(axes, points[points.estimator == estimator], look, abreast(axes, position, len(looks), room))
     for quantity in set(points.quantity) & {*STATED_LEVELS, *LEAST}:
@@ -133,6 +138,16 @@ def draw_panel(axes, points, looks, axis, room, log_y, floor=None):
         axes.text(0.5, 0.5, "no trials (n = 0)", transform=axes.transAxes, ha="center", va="center", color="0.4")
     if not are_numbers(points):
         axes.yaxis.set_major_formatter(FuncFormatter(lambda fraction, _: f"{100 * fraction:g}"))
+
+
+def floor_of(points, axis, choices):
+    """Of a logarithmic axis: 1, 2 or 5 times a power of ten, clearly below every rate that is not zero. Marks and bars side by
+    side need none: there a zero is an arrow."""
+    if choices.floor is not None or not axis.is_numeric:
+        return choices.floor
+    most = min(points.value[points.value > 0], default=0.1) / 1.5
+    power = 10.0 ** math.floor(math.log10(most))
+    return max(digit * power for digit in (1, 2, 5) if digit * power <= most)
 
 
 def set_y_limits(column_of_axes, points, log_y, floor=None):
@@ -180,11 +195,11 @@ def coincide(parts, looks, quantities):
                for _, part in parts for quantity in quantities)
 
 
-def caption_of(rows, other_factors, is_numeric, notes, left_out):
+def caption_of(rows, other_factors, is_numeric, notes, left_out, per="point"):
     rates = rates_of(rows)
     kinds = ([interval_in_words(rates)] if len(rates) else []) + [
         words for kind, words in NUMBER_KINDS.items() if (rows.kind == kind).any()]
-    return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, "point"),
+    return "; ".join([f"Study {rows.study.iloc[0]}", *fixed_levels(rows, other_factors), n_in_words(rows, per),
                       f"{'bands' if is_numeric else 'bars'}: {', '.join(kinds)} intervals"] +
                      notes +
                      [f"dashed: the stated level, {100 * level:g} %" for quantity, level in STATED_LEVELS.items()
@@ -194,16 +209,29 @@ def caption_of(rows, other_factors, is_numeric, notes, left_out):
                      [without_content_in_words(rows, quantity) for quantity in left_out]) + "."
 
 
-def ends_of(points, looks, log_y):
+def ends_of(points, looks, floor):
     """Where each estimator's line ends, for its name."""
     ends = []
     for estimator, look in looks.items():
         known = points[(points.estimator == estimator) & points.value.notna()].sort_values("x")
         if len(known):
             last = known.iloc[-1]
-            ends.append(direct_labels.End(last.x, last.upper if log_y and last.value == 0 else last.value, look.label,
-                                          look.text_color, look.is_highlighted))
+            ends.append(direct_labels.End(last.x, max(last.value, floor) if floor else last.value, look.label, look.text_color,
+                                          look.is_highlighted))
     return ends
+
+
+def others_end(ends):
+    """One name of all grey lines, at the middle one of their ends."""
+    words = COUNTS[len(ends)] if len(ends) < len(COUNTS) else str(len(ends))
+    return replace(sorted(ends, key=lambda end: end.y)[len(ends) // 2], text=f"{words} other{'s' * (len(ends) > 1)}")
+
+
+def named_ends(points, looks, named, floor):
+    """Of the lines that have a name, and of the grey ones that have none."""
+    ends = ends_of(points, named, floor)
+    others = ends_of(points, {name: look for name, look in looks.items() if look.is_rest and name not in named}, floor)
+    return ends + ([others_end(others)] if others else [])
 
 
 def with_names(looks, choices):
@@ -232,13 +260,14 @@ def draw(summary, x, quantities, log_y=None, choices=Choices()):
     letters = style.letters(panels.size)
     drawn = {quantity: rows[rows.quantity == quantity] for quantity in quantities}
     is_log = {quantity: is_small(drawn[quantity]) if log_y is None else log_y for quantity in quantities}
+    floors = {quantity: floor_of(drawn[quantity], axis, choices) if is_log[quantity] else None for quantity in quantities}
     for (r, (levels, part)), (c, quantity) in itertools.product(enumerate(parts), enumerate(quantities)):
         draw_panel(panels[r, c], part[part.quantity == quantity], looks, axis, axis.room(len(quantities)), is_log[quantity],
-                   choices.floor)
+                   floors[quantity])
         title = next(letters) + title_of(quantity) + (f", {levels}" if levels else "")
         panels[r, c].set_title(style.title_lines(title, len(quantities)))
     for c, quantity in enumerate(quantities):
-        set_y_limits(panels[:, c], drawn[quantity], is_log[quantity], choices.floor)
+        set_y_limits(panels[:, c], drawn[quantity], is_log[quantity], floors[quantity])
     for axes in style.bottom_panels(panels):
         axis.prepare(axes, len(quantities))  # the x axis is shared by all panels
     left = style.left_panels(panels)
@@ -248,16 +277,16 @@ def draw(summary, x, quantities, log_y=None, choices=Choices()):
             axes.set_ylabel(title_of(quantities[c]) if are_numbers(points) else f"{kind_in_words(rates_of(rows))} (%)")
     named = with_names(looks, choices)
     has_names = axis.is_numeric and len(quantities) == 1 and len(parts) <= 2 and direct_labels.make_room(
-        figure, len(parts), [look.label for look in named.values()])
+        figure, len(parts), [*(look.label for look in named.values()), *["others"] * (len(named) < len(looks))])
     has_zeros = any(is_log[quantity] and (drawn[quantity].value == 0).any() for quantity in quantities)
     handles = [handle for handle in panels[0, 0].get_legend_handles_labels()[0]
                if handle.get_label() in {look.label for look in named.values()}]
     notes = [note for note, is_needed in [
-        ("arrows: rate zero, at its upper bound" if choices.floor is None else "open marks: rate zero", has_zeros),
+        ("open marks: rate zero" if axis.is_numeric else "arrows: rate zero, at its upper bound", has_zeros),
         ("coinciding lines alternate, their band is grey",
          axis.is_numeric and coincide(parts, looks, quantities))] if is_needed]
     style.add_legend_and_caption(figure, [] if has_names else handles,
                                  caption_of(rows, other_factors, axis.is_numeric, notes, left_out))
     for axes, (_, part) in zip(panels[:, 0], parts if has_names else []):
-        direct_labels.add(axes, ends_of(part[part.quantity == quantities[0]], named, is_log[quantities[0]]))
+        direct_labels.add(axes, named_ends(part[part.quantity == quantities[0]], looks, named, floors[quantities[0]]))
     return figure

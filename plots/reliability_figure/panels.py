@@ -12,11 +12,12 @@ from common import sheet, style
 from common.command_line import PlotError
 from rates.rate_bands import per_cent
 from reliability_figure.reliability_file import STATED
+from reliability_figure.risk_band import risk_band
 
 MAX_DIAGRAMS = 3
 TICKS = (0, 0.01, 0.05, 0.1, 0.25, 0.5, 0.75, 1)
-SCORES_SIZE, SCORES_HEIGHT = 6.2, 7.4  # points of the scores' text; times that, between a diagram and its title
-BAND = dict(color=style.SKY_BLUE, alpha=0.35, linewidth=0)
+BAND = dict(color="0.5", alpha=0.25, linewidth=0)
+RISK_BAND = dict(alpha=0.15, linewidth=0)
 RIGHT = dict(color="0.5", linewidth=0.8, linestyle=style.DOTTED)
 BARS = dict(color="0.6", linewidth=0)
 
@@ -61,9 +62,9 @@ def number(measured, digits):
 
 
 def scores_in_words(entry):
-    return (f"n = {entry.n}, refused {entry.refused}\nBrier {number(entry.brier, 4)}\n"
-            f"ECE {entry.calibration_error:.4f} (if right {entry.error_if_calibrated:.4f})\n"
-            f"slope {number(entry.slope, 2)}\nAUC {number(entry.auc, 3)}")
+    return (f"{title_of(entry)}: n = {entry.n}, refused {entry.refused}, Brier {number(entry.brier, 4)}, "
+            f"ECE {entry.calibration_error:.4f} (if right {entry.error_if_calibrated:.4f}), "
+            f"slope {number(entry.slope, 2)}, AUC {number(entry.auc, 3)}")
 
 
 def title_of(entry):
@@ -93,8 +94,6 @@ def draw_diagram(axes, entry, look):
                       elinewidth=0.8, clip_on=False, label="_bin")
     axes.set_ylabel("Failed (%)")
     axes.tick_params(labelbottom=False)
-    axes.text(0, 1.03, scores_in_words(entry), transform=axes.transAxes, fontsize=style.font_size(SCORES_SIZE), va="bottom",
-              linespacing=1.35)
 
 
 def draw_histogram(axes, entry, edges):
@@ -112,13 +111,17 @@ def draw_histogram(axes, entry, edges):
 
 
 def draw_risk_coverage(axes, entries, looks):
-    """Logarithmic: each curve begins with the first failure among the surest answers."""
+    """Logarithmic, from the first failure among the surest answers on."""
+    curves = {entry.estimator: [point for point in entry.risk_coverage if point[1] > 0] for entry in entries}
     for entry in entries:
-        look, curve = looks[entry.estimator], [point for point in entry.risk_coverage if point[1] > 0]
+        look, curve = looks[entry.estimator], curves[entry.estimator]
+        if band := risk_band(entry, curve):
+            axes.fill_between(*zip(*band), **RISK_BAND, color=look.color, zorder=look.zorder - 1, label="_risk_band")
         axes.plot(*(zip(*curve) if curve else ([], [])), color=look.color, linestyle=look.dashes, linewidth=1.3, label="_risk",
                   zorder=look.zorder)
-    risks = [risk for entry in entries for _, risk in entry.risk_coverage if risk > 0]
-    axes.set_xlim(0, 1)
+    risks = [risk for curve in curves.values() for _, risk in curve]
+    first = min((curve[0][0] for curve in curves.values() if curve), default=0)
+    axes.set_xlim(max(0, min(first - 0.03 * (1 - first), 0.98)), 1)
     axes.set_yscale("log")
     axes.set_ylim(0.7 * min(risks, default=0.001), min(1.0, 1.5 * max(risks, default=1)))
     axes.yaxis.set_major_locator(LogLocator(numticks=9) if max(risks, default=1) > 9 * min(risks, default=0) else LogLocator(subs=(1, 2, 5)))
@@ -136,12 +139,13 @@ def handles_of(entries, looks):
     return handles + [Patch(**BAND, label="if P were right (95 %)")]
 
 
-def caption_of(file, group):
+def caption_of(file, group, diagrams, has_band):
     parts = [f"Study {file.study}"] + ([style.level_in_words(file.by, group)] if file.by else [])
-    return "; ".join(parts + [
+    return "; ".join(parts + list(map(scores_in_words, diagrams)) + [
         "lines: isotonic regression of failures on P; dots: ten bins of equal width with exact 95 % intervals",
         "the band is pointwise", "axes of P in proportion to the square root", "risk and coverage: from the first failure "
-        "on, a refusal is the least sure and counts as a failure; AURC: area under the curve"]) + "."
+        "on, a refusal is the least sure and counts as a failure" + (", band pointwise 95 % (Wilson)" if has_band else ""),
+        "AURC: area under the curve"]) + "."
 
 
 def draw(file, names=None, group=None):
@@ -152,7 +156,7 @@ def draw(file, names=None, group=None):
     count, width = len(diagrams) + 1, sheet.current().width
     abreast = style.panels_abreast(count)
     lines = math.ceil(count / abreast)
-    figure = Figure(figsize=(2.7 * count, 4.6) if width is None else (width, 3.7 * lines), layout="constrained")
+    figure = Figure(figsize=(2.7 * count, 4.2) if width is None else (width, 3.7 * lines), layout="constrained")
     FigureCanvasAgg(figure)
     grid = figure.add_gridspec(2 * lines, abreast, height_ratios=(3.2, 1) * lines)
     letters = style.letters(count)
@@ -160,12 +164,12 @@ def draw(file, names=None, group=None):
         line, column = divmod(position, abreast)
         axes = figure.add_subplot(grid[2 * line, column])
         draw_diagram(axes, entry, looks[entry.estimator])
-        axes.set_title(style.title_lines(next(letters) + title_of(entry), count),
-                       pad=SCORES_HEIGHT * style.font_size(SCORES_SIZE))
+        axes.set_title(style.title_lines(next(letters) + title_of(entry), count))
         draw_histogram(figure.add_subplot(grid[2 * line + 1, column]), entry, file.edges)
     line, column = divmod(count - 1, abreast)
     axes = figure.add_subplot(grid[2 * line:2 * line + 2, column])
     draw_risk_coverage(axes, entries, looks)
     axes.set_title(next(letters) + "Risk and coverage")
-    style.add_legend_and_caption(figure, handles_of(entries, looks), caption_of(file, entries[0].group))
+    style.add_legend_and_caption(figure, handles_of(entries, looks), caption_of(
+        file, entries[0].group, diagrams, any(not entry.is_of_population for entry in entries)))
     return figure

@@ -55,6 +55,7 @@ class Entry:
     bins: tuple
     histogram: tuple  # numbers per bin of the file's edges
     risk_coverage: tuple  # (coverage, risk), rising coverage
+    is_of_population: bool  # its trials are of draws of a population
 
 
 @dataclass(frozen=True)
@@ -102,7 +103,8 @@ def read_entry(node, num_bins):
         tuple(tuple(point.fraction(key) for key in ("probability", "lower", "upper"))
               for point in node.nodes("band", "point")),
         tuple(map(read_bin, node.nodes("bins", "bin"))), read_histogram(node, num_bins),
-        tuple((point.fraction("coverage"), point.fraction("risk")) for point in node.nodes("risk_coverage", "point")))
+        tuple((point.fraction("coverage"), point.fraction("risk")) for point in node.nodes("risk_coverage", "point")),
+        "intervals_of" in node.value)
 
 
 def read_reliability(path):

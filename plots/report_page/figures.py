@@ -1,5 +1,5 @@
 """The figures of the report, as pictures inside the page: rates against a factor that varies alone, heat maps where
-factors vary together, and differences to the reference."""
+factors vary together, differences to the reference, and of one condition a mark for each estimator."""
 
 import itertools
 import math
@@ -10,7 +10,7 @@ from common.command_line import PlotError
 from common.summary_csv import where
 from page.html import code, element, joined
 from page.picture import picture_of
-from rates import cells, differences, lines
+from rates import cells, differences, estimator_marks, lines
 from rates.selection import title_of, with_sharpness
 from reliability_figure import panels as reliability
 
@@ -67,6 +67,14 @@ def line_figure(run, x, quantities):
                  f"{caption} A line per estimator with the band of its 95 % intervals; the numbers are in the table "
                  "of results.", caption,
                  script_command(run, "failure_rate", ["--x", x, "--quantities", ",".join(quantities)]))
+
+
+def marks_figure(run, quantities):
+    """Of a run with one condition."""
+    caption = f"{rates_in_words(quantities)} of each estimator."
+    return drawn(lambda: estimator_marks.draw(run.summary, quantities),
+                 f"{caption} A mark per estimator with its 95 % interval; the numbers are in the table of results.", caption,
+                 script_command(run, "failure_rate", ["--quantities", ",".join(quantities)]))
 
 
 def heat_map_figure(run, x, y, fixed):
@@ -127,7 +135,7 @@ def figures(run):
     rows = run.summary.rows
     varying = [factor for factor in run.summary.factors if rows[factor].nunique() > 1]
     if not varying:
-        return element("p", "The study varies nothing: there is nothing to draw against.", class_="note")
+        return marks_figure(run, quantities_of(run) + measures_of(run))
     by_levels = sorted(varying, key=lambda factor: -rows[factor].nunique())  # equal ones in the order of the study
     if len(varying) > 1 and is_full_factorial(rows, varying):
         x, y = sorted(by_levels[:2], key=varying.index)

@@ -13,6 +13,8 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from common import style
+from common.style import RC
+from common.text_size import width_of
 from surface.condition_encoder import is_there
 from surface.cross_validation import BINS
 
@@ -22,6 +24,7 @@ UNKNOWN = dict(facecolor="0.86", edgecolor="0.6", hatch="////", linewidth=0)
 BAND = dict(color=style.SKY_BLUE, alpha=0.35, linewidth=0)
 AXIS_NAME = {"failure": "Failure (%)", "coverage": "Coverage (%)", "P-y": "P \u2212 y (points)"}
 MOST_CURVES, CURVES_ABREAST = 9, 3
+MAP_WIDTH, TICK_GAP = 2.2, 0.05  # inches of a map's x axis, about, and between numbers below it
 
 
 def grid_of_axes(rows, columns, width, height):
@@ -198,8 +201,20 @@ def name_axis(axis, model, group, lookup):
     low, high = (numpy.exp(column.low), numpy.exp(column.high)) if column.is_log else (column.low, column.high)
     even = [tick for tick in MaxNLocator(5, steps=[1, 2, 5, 10]).tick_values(low, high) if low <= tick <= high]
     ticks = [tick for tick in LOG_TICKS if low <= tick <= high] if column.is_log else even
+    if axis.axis_name == "x":
+        ticks = apart(ticks, model.encoder.positions(group, [f"{tick:.12g}" for tick in ticks]))
     axis.set_ticks(model.encoder.positions(group, [f"{tick:.12g}" for tick in ticks]))
     axis.set_ticklabels([f"{tick:.3g}" for tick in ticks])
+
+
+def apart(ticks, positions):
+    """Those whose numbers do not touch below a map; where some would, powers of ten come first."""
+    chosen = []
+    for tick, place in sorted(zip(ticks, positions), key=lambda pair: (f"{pair[0]:e}"[0] != "1", pair[0])):
+        half = width_of(f"{tick:.3g}", RC["xtick.labelsize"]) / 2
+        if all(abs(place - other) * MAP_WIDTH >= half + other_half + TICK_GAP for _, other, other_half in chosen):
+            chosen.append((tick, place, half))
+    return sorted(tick for tick, _, _ in chosen)
 
 
 def places_of(model, group, lookup, levels):

@@ -1,6 +1,7 @@
 """What a picture of a trial says in words; the numbers are those of the file."""
 
 from common import style
+from common.factor_axis import is_number
 
 OUTCOMES = {"success": "within the bounds", "failure": "failure", "refusal": "refusal", "not_scored": "not scored"}
 
@@ -19,9 +20,20 @@ def per_cent(value):
 
 def title_of(trial):
     facts = trial.facts
-    levels = ", ".join(style.level_in_words(*factor) for factor in facts["factors"] if factor[1] != "-")
-    return (f"{facts['study']}, condition {facts['condition']}{' (' + levels + ')' if levels else ''}, "
-            f"trial {facts['trial']}, seed {facts['seed']}")
+    return f"{facts['study']}, condition {facts['condition']}, trial {facts['trial']}, seed {facts['seed']}"
+
+
+def levels_of(trial):
+    """Those of the condition's factors that say something, in words."""
+    return ", ".join(style.level_in_words(name, rounded(level)) for name, level in trial.facts["factors"]
+                     if level not in ("-", "none"))
+
+
+def rounded(level):
+    """'0.0447245' -> '0.0447'; whole numbers and words as they are."""
+    if level.lstrip("-").isdigit() or not is_number(level):
+        return level
+    return f"{float(level):.3g}"
 
 
 def outcome_of(trial, estimate):

@@ -26,9 +26,10 @@ FAR_SPREAD = 8  # the widest gap between levels over the narrowest; beyond, leve
 
 
 def looks_of(others):
-    """A look for each of the other estimators; one label may be there in several versions."""
+    """A look for each of the other estimators; one label may be there in several versions, of which the first has its colour."""
     labels = [other.label for other in others]
-    keys = [label if labels.count(label) == 1 else f"{label}, {other.words}" for label, other in zip(labels, others)]
+    keys = [label if label not in labels[:place] else f"{label}, {other.words}"
+            for place, (label, other) in enumerate(zip(labels, others))]
     looks = style.equal_looks_of(keys)
     return [replace(looks[key], label=other.name(), marker_size=1.35 * looks[key].marker_size)
             for key, other in zip(keys, others)]

@@ -6,6 +6,7 @@ import unittest
 from plot_test_case import PlotTestCase
 
 import closure as script
+from common import style
 
 TABLE = """set,estimator,images,shared_errors,of,loops,apart,covered,covered_lower,covered_upper,rms_over_sd,rms_over_sd_lower,rms_over_sd_upper
 hall,ours,3,allowed for,pairs,9,3,0.9,0.5,1,1.1,0.6,1.5
@@ -59,6 +60,19 @@ class Closure(PlotTestCase):
         other.write_text(TABLE.replace("hall", "yard"))
         lines = script.read_lines(script.parse([self.write(TABLE), str(other), "--out", "x", "--where", "shared_errors=ignored"]))
         self.assertEqual(list(lines), ["hall", "yard"])
+
+    def test_an_estimator_has_its_colour_and_its_second_line_open_marks(self):
+        other = self.folder / "other.csv"
+        other.write_text(TABLE.replace("ours", "standard"))
+        lines = script.read_lines(script.parse([self.write(TABLE.replace("ours", "rcme_calibrated")), str(other), "--out", "x"]))
+        looks = script.looks_of(lines)
+        self.assertEqual(len(lines), 4)
+        known = style.looks_of(["rcme_calibrated", "standard"])
+        for name, rows in lines.items():
+            self.assertEqual(looks[name][0].color, known[rows.estimator.iloc[0]].color)
+        self.assertEqual([bool(more) for _, more in looks.values()].count(True), 2)
+        many = {f"set {number}": rows for number in range(3) for rows in [next(iter(lines.values()))]}
+        self.assertEqual(len({look.color for look, _ in script.looks_of(many).values()}), 3)
 
     def test_two_rows_of_one_place_are_refused(self):
         self.assert_refused(self.run_script(self.write(TABLE), self.write(TABLE), "--out", self.folder / "figure"), "the same set")

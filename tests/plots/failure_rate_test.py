@@ -11,7 +11,7 @@ from unittest import mock
 from plot_test_case import PLOTS, PlotTestCase
 
 import failure_rate
-from common import style
+from common import sheet, style
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.lines import Line2D
 from common.summary_csv import read_summary, text_of_cell, where
@@ -32,6 +32,12 @@ demo,b,0.0,1,standard,no_candidate,rate,0,0,0.02,,390
 demo,b,0.0,1,mine,no_candidate,rate,0,0,0.02,,390
 demo,"a, first",0.4,1,standard,nees,mean,5.1,,,0.1,400
 """
+def more_estimators(*names):
+    """The rows of Standard again, by other names."""
+    return "".join(line.replace("standard", name) + "\n" for name in names for line in TABLE.splitlines()
+                   if ",standard,failure," in line)
+
+
 TWO_SIGMAS = TABLE + TABLE.split("\n", 1)[1].replace(",1,", ",2,")
 
 
@@ -200,6 +206,8 @@ class DrawnValues(FailureRateTest):
         marks = [line.get_xydata().tolist() for line in axes.lines if line.get_label() == "_marker"]
         self.assertEqual(marks, [[[0.0, 0.001]], [[0.0, 0.001]]])
         self.assertEqual((axes.get_ylim()[0], axes.get_yticklabels()[0].get_text()), (0.001, "0"))
+        self.assertEqual(line_of(axes, "mine"), [(0.0, 0.001), (0.4, 0.05)], "it begins on the floor")
+        self.assertLessEqual({(0.0, 0.001), (0.0, 0.03), (0.4, 0.01), (0.4, 0.20)}, band_of(axes, 1))
         self.assertIn("open marks: rate zero", figure.texts[0].get_text())
         self.assertEqual([text.get_text() for text in axes.texts], ["mine"], "the other line has no name")
 
@@ -209,18 +217,31 @@ class DrawnValues(FailureRateTest):
             self.assertNotEqual(code, 0)
             self.assertIn(fault, err)
 
-    def test_on_a_logarithmic_axis_a_zero_is_an_arrow_at_its_upper_bound(self):
-        figure = self.draw(log_y=True)
+    def test_without_one_the_floor_is_below_the_least_rate_that_is_not_zero(self):
+        failure, no_candidate = self.draw(log_y=True).axes
+        self.assertEqual([failure.get_ylim()[0], no_candidate.get_ylim()[0]], [0.02, 0.05])  # of 0.05 and 0.10
+        self.assertEqual(line_of(failure, "Standard"), [(0.0, 0.02), (0.4, 0.30), (0.8, 0.60)])
+
+    def test_where_levels_are_words_a_zero_is_an_arrow_at_its_upper_bound(self):
+        words = TABLE.replace(",0.4,1", ",student_t,1").replace(",0.0,1", ",gaussian,1").replace(",0.8,1", ",laplace,1")
+        figure = self.draw(words, log_y=True)
         failure = figure.axes[0]
-        self.assertEqual(line_of(failure, "Standard"), [(0.4, 0.30), (0.8, 0.60)])
+        self.assertEqual(line_of(failure, "Standard"), [(0, 0.30), (2, 0.60)])
         arrows = [line.get_xydata().tolist() for line in failure.lines if line.get_label() == "_arrow"]
-        self.assertEqual(arrows, [[[0.0, 0.02]], [[0.0, 0.03]]])
-        self.assertLess(failure.get_xlim()[0], 0)
+        self.assertEqual(arrows, [[[1.0, 0.02]], [[1.0, 0.03]]])
         self.assertLess(failure.get_ylim()[0], 0.02)
         self.assertIn("arrows: rate zero", figure.texts[0].get_text())
 
+    def test_the_grey_ones_without_a_name_have_one_together(self):
+        options = failure_rate.parse([self.write(TABLE + more_estimators("a", "b")), "--x", "outlier_ratio", "--out", str(self.out),
+                                      "--quantities", "failure", "--highlight", "mine", "--names", "mine"])
+        with sheet.use(options.sheet):
+            axes = failure_rate.draw_for(options).axes[0]
+        self.assertEqual({text.get_text() for text in axes.texts}, {"mine", "three others"})
+
     def test_a_point_without_neighbours_still_shows_its_interval(self):
-        failure = self.draw(log_y=True).axes[0]  # of "mine" only 0.4 is left: 0.0 is an arrow, 0.8 has no trials
+        alone = TABLE.replace(",0.0,1,mine,failure,rate,0,0,0.03,,390", ",0.0,1,mine,failure,rate,,0,1,,0")
+        failure = self.draw(alone).axes[0]  # of "mine" only 0.4 is left
         bars = [segment.tolist() for lines in failure.collections if isinstance(lines, LineCollection)
                 for segment in lines.get_segments()]
         self.assertEqual(bars, [[[0.4, 0.01], [0.4, 0.20]]])
@@ -340,6 +361,13 @@ demo,b,0.0,1,standard,sd_over_crb,median,3,2,4,,390
         self.assertEqual(scales, ["linear", "log"])
         self.assertEqual(self.draw(TABLE + SMALL, ["invalid_motion"], log_y=False).axes[0].get_yscale(), "linear")
 
+    def test_the_axis_is_logarithmic_where_the_best_estimator_has_small_rates(self):
+        """Though most rates of all estimators are large; one that is never wrong does not count."""
+        best = "".join(f'demo,{x},{x},1,best,failure,rate,{rate},0,0.2,,400\n' for x, rate in ((0.0, 0), (0.4, 0.004), (0.8, 0.02)))
+        self.assertEqual(self.draw(TABLE + best, ["failure"], log_y=None).axes[0].get_yscale(), "log")
+        never = best.replace("0.004", "0").replace("0.02,", "0,")
+        self.assertEqual(self.draw(TABLE + never, ["failure"], log_y=None).axes[0].get_yscale(), "linear")
+
     def test_levels_far_apart_stand_on_a_logarithmic_axis(self):
         self.assertEqual(self.draw(TABLE, ["failure"]).axes[0].get_xscale(), "linear")  # it has a zero
         far = TABLE.replace(",0.0,1,", ",0.01,1,")
@@ -355,6 +383,32 @@ demo,b,0.0,1,standard,sd_over_crb,median,3,2,4,,390
     def test_a_highlight_that_the_figure_does_not_show_is_refused(self):
         self.assert_refused(self.run_main("--highlight", "yours"), "--highlight yours", "standard, mine")
         self.assertEqual(self.run_main("--highlight", "mine")[0], 0)
+
+
+class OneCondition(FailureRateTest):
+    MORE = TABLE + COVERAGE + """demo,"a, first",0.4,1,mine,failure_probability,score,0.2,0.15,0.25,,400
+demo,"a, first",0.4,1,mine,timed_out,rate,0,0,0.01,,400
+"""
+
+    def draw_one(self, *arguments):
+        return failure_rate.draw_for(failure_rate.parse([self.write(self.MORE), "--out", str(self.out), *arguments]))
+
+    def test_each_estimator_has_a_mark_with_its_interval_in_each_panel(self):
+        figure = self.draw_one("--where", "outlier_ratio=0.4", "--quantities", "failure,nees_coverage,failure_probability,timed_out")
+        failure, coverage, stated = figure.axes
+        self.assertEqual([label.get_text() for label in failure.get_yticklabels()], ["Standard", "mine"])
+        self.assertEqual([line_of(failure, name) for name in ("Standard", "mine")], [[(0.30, 0)], [(0.05, 1)]])
+        bars = [line.get_xydata().tolist() for line in failure.lines if line.get_label() == "_interval"]
+        self.assertEqual(bars, [[[0.10, 0], [0.50, 0]], [[0.01, 1], [0.20, 1]]])
+        self.assertEqual([line.get_xdata()[0] for line in coverage.lines if line.get_label() == "_stated"], [0.95])
+        self.assertEqual(line_of(stated, "mine"), [(0.2, 1)])
+        caption = figure.texts[0].get_text().replace("\n", " ")
+        for words in ("outlier ratio = 0.4", "n = 400 per estimator", "dashed: the stated level", "Timed out: 0 everywhere"):
+            self.assertIn(words, caption)
+
+    def test_of_several_conditions_one_has_to_be_chosen(self):
+        self.assert_refused(self.run_script(self.write(self.MORE), "--out", self.out), "3 conditions", "--x",
+                            "outlier_ratio, sigma_px", "--where condition=")
 
 
 class Refusals(FailureRateTest):

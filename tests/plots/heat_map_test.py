@@ -72,8 +72,18 @@ class Drawn(HeatMapTest):
     def test_titles_name_quantity_and_estimator(self):
         titles = [axes.get_title("left") for axes in self.draw(quantities=["failure", "no_candidate"]).axes]
         self.assertEqual([title for title in titles if title],
-                         ["(a) Failure rate, Standard", "(b) Failure rate, mine",
-                          "(c) Detect-fail rate, Standard", "(d) Detect-fail rate, mine"])
+                         ["(a) Failure rate, Standard", "(b) Failure rate, mine", "(c) Detect-fail rate, mine"])
+
+    def test_a_panel_of_zeros_is_left_out_and_named(self):
+        figure = self.draw(quantities=["failure", "no_candidate"])
+        self.assertIn("Detect-fail rate of Standard: 0 in every cell, at most 2 %.", figure.texts[0].get_text().replace("\n", " "))
+        never = TABLE.replace("mine,no_candidate,rate,0.01,0.005,0.15", "mine,no_candidate,rate,0,0,0.03")
+        figure = self.draw(never, quantities=["failure", "no_candidate"])
+        self.assertEqual(len([axes for axes in figure.axes if axes.get_title("left")]), 2)
+        self.assertIn("Detect-fail rate of Standard and mine: 0 in every cell, at most 3 %.",
+                      figure.texts[0].get_text().replace("\n", " "))
+        alone = self.draw(never, quantities=["no_candidate"])
+        self.assertEqual([axes.get_title("left") for axes in alone.axes if axes.get_title("left")], ["Detect-fail rate, Standard"])
 
     def test_equal_rates_have_equal_colours_in_all_panels_and_greater_ones_are_darker(self):
         same = TABLE.replace("mine,failure,rate,0.05,0.01", "mine,failure,rate,0.07,0.01")

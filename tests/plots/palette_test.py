@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Tests of the looks of estimators in every figure; run as: /usr/bin/python3 tests/plots/palette_test.py
 
-No two estimators share a colour or a marker; colours differ to the eye, in simulated protanopia and deuteranopia and, with
-their dashes, in grey.
+No two estimators share a colour or a marker; colours differ to the eye, in simulated protanopia, deuteranopia and tritanopia
+and, with their dashes, in grey.
 """
 
 import csv
@@ -19,14 +19,16 @@ import failure_rate_test
 from common import direct_labels, sheet, style
 from matplotlib.colors import to_rgb
 
-LEAST_DIFFERENCE = 12  # CIEDE2000; about 2 can be told apart side by side
+LEAST_DIFFERENCE, LEAST_OF_TRITANOPIA = 12, 10  # CIEDE2000; about 2 can be told apart side by side
 LEAST_STEP = 4  # of lightness, 0 to 100, between greys that say something
 # Machado, Oliveira and Fernandes, "A physiologically-based model for simulation of color vision deficiency" (2009), of
 # linear RGB, at full severity.
 VISIONS = {
     "normal": numpy.eye(3),
     "protanopia": numpy.array([[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]]),
-    "deuteranopia": numpy.array([[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]])}
+    "deuteranopia": numpy.array([[0.367322, 0.860646, -0.227968], [0.280085, 0.672501, 0.047413], [-0.011820, 0.042940, 0.968881]]),
+    "tritanopia": numpy.array([[1.255528, -0.076749, -0.178779], [-0.078411, 0.930809, 0.147602], [0.004733, 0.691367, 0.303900]])}
+COMMON = ("normal", "protanopia", "deuteranopia")
 XYZ = numpy.array([[0.4124564, 0.3575761, 0.1804375], [0.2126729, 0.7151522, 0.0721750], [0.0193339, 0.1191920, 0.9503041]])
 WHITE = XYZ.sum(axis=1)
 
@@ -61,8 +63,8 @@ def difference(one, other):
     return numpy.sqrt(of_l**2 + of_c**2 + of_h**2 + rotation * of_c * of_h)
 
 
-def least_difference(colors):
-    return min(difference(lab(a, vision), lab(b, vision)) for a, b in itertools.combinations(colors, 2) for vision in VISIONS)
+def least_difference(colors, visions=COMMON):
+    return min(difference(lab(a, vision), lab(b, vision)) for a, b in itertools.combinations(colors, 2) for vision in visions)
 
 
 def estimators_of_a_study():
@@ -88,6 +90,7 @@ class Palette(unittest.TestCase):
         colors, markers, dashes = zip(*style.SLOTS)
         self.assertEqual(len(set(markers)), len(markers))
         self.assertGreaterEqual(least_difference(colors), LEAST_DIFFERENCE)
+        self.assertGreaterEqual(least_difference(colors, ["tritanopia"]), LEAST_OF_TRITANOPIA)
         for i, j in itertools.combinations(range(len(colors)), 2):
             step = abs(lab(colors[i])[0] - lab(colors[j])[0])
             self.assertTrue(step >= LEAST_STEP or dashes[i] != dashes[j], style.SLOTS[i] + style.SLOTS[j])
@@ -98,6 +101,7 @@ class Palette(unittest.TestCase):
         self.assertEqual(least_difference((style.PURPLE, style.BLUE, style.PURPLE)), 0)
         self.assertGreater(difference(lab("#808000"), lab("#B05000")), LEAST_DIFFERENCE)
         self.assertLess(least_difference(("#808000", "#B05000")), LEAST_DIFFERENCE)
+        self.assertLess(least_difference(("#4B5A5A", "#5A694B"), ["tritanopia"]), LEAST_OF_TRITANOPIA)
 
     def test_no_two_estimators_of_a_committed_table_share_a_look(self):
         lists = estimators_of_a_study()
@@ -119,11 +123,42 @@ class Palette(unittest.TestCase):
             looks = style.looks_of(more)
             self.assertEqual({name: looks[name].color for name in more if name in colors},
                              {name: colors[name] for name in more if name in colors})
-        self.assertEqual(style.looks_of(["standard"])["standard"].color, style.BLACK)
+        self.assertEqual(style.looks_of(["standard_five_point"])["standard_five_point"].color, style.BLACK)
+
+    def test_an_estimator_has_one_look_in_every_committed_table(self):
+        """But for those of a table that has more than there are slots."""
+        found = {}
+        for name, estimators in estimators_of_a_study().items():
+            for estimator, look in style.looks_of(estimators).items():
+                if estimator in style.KNOWN and len(estimators) <= len(style.SLOTS):
+                    found.setdefault(estimator, {}).setdefault((look.color, look.marker, look.dashes), name)
+        self.assertEqual({estimator: looks for estimator, looks in found.items() if len(looks) > 1}, {})
+        self.assertGreater(len(found), 20)
+
+    def test_six_estimators_have_colours_that_no_other_label_gets(self):
+        owners = {name for name, (_, slot) in style.KNOWN.items() if slot in style.OWNED}
+        self.assertEqual(owners, {"standard_five_point", "rcme_calibrated", "poselib", "opencv_magsac", "rcme", "rcme_as_printed",
+                                  "prcme", "prcme_as_printed"})
+        others = [f"other {number}" for number in range(len(style.SLOTS) - len(style.OWNED))]
+        owned = {style.SLOTS[slot][0] for slot in style.OWNED}
+        self.assertFalse(owned & {look.color for look in style.looks_of(others).values()})
+        colors = [look.color for look in style.looks_of([*others, "one more", "rcme_calibrated"]).values()]
+        self.assertEqual((len(set(colors)), len(owned & set(colors))), (len(colors), 2))  # one is lent: better than grey
+
+    def test_the_colour_of_a_stranger_depends_on_its_label(self):
+        alone = {name: style.looks_of([name])[name].color for name in ("mine", "yours", "theirs", "ours")}
+        self.assertGreater(len(set(alone.values())), 2)
+        for known in (["rcme_calibrated", "poselib"], ["standard_five_point", "opencv_magsac", "rcme"]):
+            self.assertEqual({name: style.looks_of([*known, name])[name].color for name in alone}, alone)
+        together = style.looks_of(list(alone))
+        self.assertEqual({name: look.color for name, look in style.looks_of(list(alone)[::-1]).items()},
+                         {name: look.color for name, look in together.items()})
+        self.assertEqual(len({look.color for look in together.values()}), len(alone))
 
     def test_beyond_the_last_slot_estimators_are_grey(self):
         looks = list(style.looks_of([f"other {number}" for number in range(len(style.SLOTS) + 2)]).values())
-        self.assertEqual([look.color == style.REST for look in looks], [False] * len(style.SLOTS) + [True] * 2)
+        colors = [look.color for look in looks if look.color != style.REST]
+        self.assertEqual((len(colors), len(set(colors))), (len(looks) - 2, len(style.SLOTS)))
 
     def test_a_highlight_leaves_colour_to_those_it_names(self):
         names = ["standard", "rcme_calibrated", "poselib"]
@@ -147,12 +182,12 @@ class StyleFile(PlotTestCase):
         return code, errors, *drawn
 
     def test_its_settings_are_those_of_the_figure_and_the_command_line_comes_first(self):
-        text = 'width = 3.3\ncaption = false\n[labels]\nmine = "Ours"\nother = "Not here"\n[colors]\nmine = "#000000"\n'
+        text = 'width = 3.3\ncaption = false\n[labels]\nmine = "Ours"\nother = "Not here"\n[colors]\nmine = "#A50F4B"\n'
         code, errors, figure = self.draw(text)
         self.assertEqual((code, errors, figure.get_figwidth(), figure.texts), (0, "", 3.3, []))
         colors = {line.get_label(): line.get_color() for line in figure.axes[0].lines}
-        self.assertEqual(colors["Ours"], style.BLACK)
-        self.assertNotEqual(colors["Standard"], style.BLACK)  # which is taken
+        self.assertEqual(colors["Ours"], "#A50F4B")
+        self.assertNotEqual(colors["Standard"], "#A50F4B")  # which is taken
         self.assertEqual(self.draw(text, "--width", "7")[2].get_figwidth(), 7)
 
     def test_the_highlight_is_in_colour(self):

@@ -86,6 +86,8 @@ def cases(folder):
         ("gate", [written("gate.json", gate_test.content())], False),
         ("conform", [written("report.json", conform_test.content())], False),
         ("validation", [written("validation.json", validation_test.fake())], False),
+        ("failure_rate", [str(peers / "peers_uniform.csv"), "--where", "outlier_ratio=0.4", "--quantities",
+                          "failure,nees_coverage,failure_probability"], False),
         ("audit_power", [written("power.csv", POWER)], False),
         ("closure", [written("closure.csv", closure_test.TABLE)], False),
         ("benchmarks", [written("benchmarks.json", benchmarks())], False),

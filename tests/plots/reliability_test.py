@@ -10,6 +10,7 @@ import reliability as script
 from common.command_line import PlotError
 from fake_reliability import content, entry, measured
 from reliability_figure.panels import draw
+from reliability_figure.risk_band import wilson
 from reliability_figure.reliability_file import read_reliability
 
 
@@ -29,13 +30,41 @@ class ReliabilityTest(PlotTestCase):
         self.assertIn((0.5, 0.4), {tuple(point) for point in band})
         dots = {tuple(line.get_xydata()[0]) for line in diagram.lines if len(line.get_xydata()) == 1}
         self.assertEqual(dots, {(0.02, 0.0125), (0.7, 0.6)})
-        text = diagram.texts[0].get_text()
-        for words in ("n = 100, refused 7", "Brier 0.0310 [0.0200, 0.0500]", "slope not defined", "AUC 0.910"):
+        text = figure.texts[0].get_text().replace("\n", " ")
+        for words in ("RCME, calibrated: n = 100, refused 7", "Brier 0.0310 [0.0200, 0.0500]", "slope not defined", "AUC 0.910"):
             self.assertIn(words, text)
+        self.assertEqual(len(diagram.texts), 0, "so that all panels begin at one height")
         self.assertEqual(list(histogram.patches[0].get_data().values), [80, 0, 5, 15])
         self.assertEqual([tuple(point) for point in risk.lines[0].get_xydata()], [(1, 0.18)])  # zero has no place
         self.assertEqual(risk.get_yscale(), "log")
         self.assertEqual(len(risk.lines), 2, "all estimators, also those without a diagram")
+
+    def test_risk_is_drawn_from_the_first_failure_on_with_its_interval(self):
+        curve = [{"probability": None, "coverage": coverage, "risk": risk} for coverage, risk in
+                 ((0.5, 0.0), (0.8, 0.01), (0.9, 0.05), (1, 0.18))]
+        figure = draw(self.read(entry(risk_coverage=curve), entry("poselib", risk_coverage=curve[:1] + curve[2:])))
+        risk = figure.axes[-1]
+        self.assertTrue(0.75 < risk.get_xlim()[0] < 0.8)
+        bands = [band.get_paths()[0].vertices for band in risk.collections if band.get_label() == "_risk_band"]
+        self.assertEqual(len(bands), 2)
+        # Wilson's interval of 5 among 100: R, prop.test(5, 100, correct = FALSE)
+        lower, upper = (bound(y for x, y in bands[0] if x == 1) for bound in (min, max))
+        self.assertTrue(lower < 0.18 < upper)
+        for bound, known in zip(wilson(0.05, 100), (0.02154336, 0.11175047)):
+            self.assertAlmostEqual(bound, known, places=6)
+        self.assertIn("band pointwise 95 % (Wilson)", figure.texts[0].get_text().replace("\n", " "))
+
+    def test_draws_of_a_population_have_no_band_of_independent_trials(self):
+        figure = draw(self.read(entry(intervals_of="population")))
+        self.assertFalse([band for band in figure.axes[-1].collections if band.get_label() == "_risk_band"])
+        self.assertNotIn("Wilson", figure.texts[0].get_text())
+
+    def test_panels_begin_at_one_height_and_the_last_one_ends_with_the_histogram(self):
+        figure = draw(self.read(entry()))
+        figure.draw_without_rendering()
+        diagram, histogram, risk = (axes.get_position() for axes in figure.axes)
+        self.assertAlmostEqual(diagram.y1, risk.y1, places=3)
+        self.assertAlmostEqual(histogram.y0, risk.y0, places=3)
 
     def test_those_that_state_probabilities_come_first(self):
         file = self.read(entry("standard", source="inlier_share"), entry())
@@ -46,7 +75,7 @@ class ReliabilityTest(PlotTestCase):
 
     def test_a_group_is_drawn_alone(self):
         file = self.read(entry(group="0.1"), entry(group="0.3", n=55), by="outlier_ratio")
-        self.assertIn("n = 55", draw(file, group="0.3").axes[0].texts[0].get_text())
+        self.assertIn("n = 55", draw(file, group="0.3").texts[0].get_text().replace("\n", " "))
         self.assertIn("outlier ratio = 0.3", draw(file, group="0.3").texts[0].get_text().replace("\n", " "))
         with self.assertRaisesRegex(PlotError, "no group 'x'; expected one of '0.1', '0.3'"):
             draw(file, group="x")

@@ -254,8 +254,11 @@ class Figures(ReportTest):
         structure = Structure(self.page())
         return [picture["alt"] for picture in structure.of("img")], "".join(structure.text)
 
-    def test_nothing_varies_nothing_is_drawn(self):
-        self.assertEqual(self.drawn([], [()])[0], [])
+    def test_of_one_condition_each_estimator_has_a_mark(self):
+        alts, text = self.drawn([], [()])
+        self.assertEqual(len(alts), 1)
+        self.assertIn("A mark per estimator with its 95 % interval", alts[0])
+        self.assertIn("rcme plot failure_rate summary.csv --quantities failure,no_candidate", text)
 
     def test_two_factors_give_a_heat_map(self):
         alts, text = self.drawn(["noise", "sigma_px"], [(a, b) for a in ("gaussian", "laplace") for b in ("1", "2", "3")])

@@ -190,7 +190,7 @@ class Scene(unittest.TestCase):
 class Words(unittest.TestCase):
     def test_what_trial_it_is_and_how_hard(self):
         words = words_of(drawn())
-        for part in ("demo, condition 2 (sigma = 0.5 px, motion = forward), trial 17, seed 7", "6 matches: 3 true, 3 wrong",
+        for part in ("demo, condition 2, trial 17, seed 7", "sigma = 0.5 px, motion = forward.", "6 matches: 3 true, 3 wrong",
                      "87.6 %", "4.32\u00b0", "3.5 %", "Scene corridor, cameras kitti.",
                      "Baseline: 0.5 m", "Gaussian bound: 0.0123\u00b0 in"):
             self.assertIn(part, words)
@@ -243,6 +243,16 @@ class Words(unittest.TestCase):
             self.assertIn("0 matches", words_of(figure))
             self.assertIn("refusal (too_few_matches)", words_of(figure))
             self.assertTrue({"Image 1", "Image 2"} <= set(panels_of(figure)))
+
+    def test_the_title_is_short_and_levels_are_small_rounded_and_those_that_say_something(self):
+        figure = drawn(factors=[["baseline_m", "0.0447245"], ["parallax_deg", "none"], ["draw", "146"], ["num_matches", "12345"],
+                                ["assumed_sigma_px", "true"], ["motion", "forward"], ["rest", "-"]])
+        title, levels = figure.texts[:2]
+        self.assertEqual((title.get_text(), title.get_fontweight()), ("demo, condition 2, trial 17, seed 7", "bold"))
+        self.assertEqual(levels.get_text(), "baseline = 0.0447 m, draw = 146, num matches = 12345, assumed sigma = true, "
+                                            "motion = forward.")
+        self.assertLess(levels.get_fontsize(), 7)
+        self.assertNotIn("()", words_of(drawn(factors=[])))
 
     def test_names_are_only_text_and_long_ones_are_broken(self):
         figure = drawn(study="$x_{1}$ " + "very_long_name" * 20)

@@ -15,7 +15,7 @@ import surface_report as script
 import yaml
 from known_surface import conditions, crossed_conditions, events, surface_file
 from scipy import special, stats
-from surface import memory
+from surface import memory, panels
 from surface.cross_validation import (assign_folds, count_masses, cross_validate, exact_interval, interval_over_draws, score_count,
                                       standard_error_of_mean, transform_histogram)
 from surface.effects import WIDEST_BAND, measure_effects
@@ -176,6 +176,17 @@ def known_mean(levels, ratio):
     log_sigma, dof = np.log(levels.sigma_px.astype(float)), levels.student_dof.replace("-", "6").astype(float)
     logit = -1 + 1.2 * log_sigma + (3 + 1.5 * log_sigma) * (ratio - 0.4) + (levels.noise == "student_t") * (1 - 0.2 * (dof - 6))
     return (1 / (1 + np.exp(-logit.to_numpy()[:, None] - 0.4 * stats.norm.ppf((np.arange(20) + 0.5) / 20)))).mean()
+
+
+class MapTicksTest(unittest.TestCase):
+    def test_numbers_below_a_map_do_not_touch(self):
+        ticks = (0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10)
+        places = [np.log10(tick / 0.01) / np.log10(15 / 0.01) for tick in ticks]
+        chosen = panels.apart(ticks, places)
+        self.assertLessEqual({0.1, 1, 10}, set(chosen))
+        self.assertNotIn(0.05, chosen)
+        self.assertGreater(len(chosen), 5)
+        self.assertEqual(panels.apart((1, 2, 5), (0, 0.5, 1)), [1, 2, 5])
 
 
 class ProposalTest(SurfaceTestCase):

@@ -54,6 +54,44 @@ class Validation(PlotTestCase):
         faults = script.draw(fake()).axes[2]
         self.assertEqual([line.get_xdata()[0] for line in faults.lines if line.get_marker() == "o"], [2.0])
 
+    def test_what_is_far_from_nominal_is_not_cut_at_the_frame(self):
+        content = fake()
+        content["camera_faults"][0] |= {"beside_others": 2.0, "beside_others_interval": [-3.0, 0.1]}
+        faults = script.draw(content).axes[2]
+        mark, = (line for line in faults.lines if line.get_marker() == "o")
+        bar, = (line for line in faults.lines if list(line.get_xdata()) == [-script.EDGE, 50])
+        self.assertEqual((mark.get_xdata()[0], mark.get_clip_on()), (script.FARTHEST_FAULT, False))
+        self.assertEqual(faults.get_xlim(), (-script.EDGE, script.EDGE))
+        self.assertLess(mark.get_xdata()[0], script.EDGE)
+        self.assertEqual(bar.get_color(), mark.get_color())
+
+    def test_a_colour_has_one_meaning(self):
+        """Verdicts in (a) have colours, sets in (b) have others, faults in (c) are grey."""
+        content = fake()
+        content["sets"] += [{"set": f"set {number}", "pairs": 5} for number in range(10)]
+        content["correlations"] += [{**content["correlations"][0], "set": f"set {number}"} for number in range(10)]
+        content["camera_faults"].append({**content["camera_faults"][0], "fault": "distortion"})
+        figure = script.draw(content)
+        colors = {line.get_color() for line in figure.axes[1].lines if len(line.get_xdata()) and line.get_label()[0] != "_"}
+        self.assertEqual(len(colors), 12)
+        self.assertFalse(colors & set(script.COLORS.values()))
+        faults = [line for line in figure.axes[2].lines if line.get_marker() in script.MARKERS]
+        self.assertEqual({line.get_color() for line in faults}, {script.FAULT_COLOR})
+        self.assertEqual(len({line.get_marker() for line in faults}), 2)
+
+    def test_each_panel_has_its_own_legend_and_names_are_words(self):
+        content = fake()
+        for part in ("sets", "camera_faults", "tests", "correlations"):
+            for row in content[part]:
+                row["set"] = row["set"].replace("hall", "kitti00").replace("street", "my_street")
+        figure = script.draw(content)
+        self.assertEqual(figure.legends, [])
+        texts = [[text.get_text() for text in axes.get_legend().get_texts()] for axes in (figure.axes[0], figure.axes[2])]
+        self.assertIn("covariance holds", texts[0])
+        self.assertEqual(texts[1], ["focal length", "hollow: undecided"])
+        self.assertEqual([label.get_text() for label in figure.axes[0].get_yticklabels()], ["KITTI 00 (12)", "my street (3)"])
+        self.assertIn("KITTI 00", [text.get_text() for text in figure.axes[1].texts])
+
     def test_sets_without_a_fault_that_could_be_measured_are_left_out_of_its_panel(self):
         ratios, _, faults = script.draw(fake()).axes
         self.assertEqual([label.get_text() for label in ratios.get_yticklabels()], ["hall (12)", "street (3)"])
@@ -63,8 +101,9 @@ class Validation(PlotTestCase):
         content = fake()
         content["tests"].append(test_of("hall", "new_test", 1.2, "holds"))
         content["camera_faults"].append({**content["camera_faults"][0], "fault": "new_fault"})
-        names = [text.get_text() for text in script.draw(content).legends[0].get_texts()]
-        self.assertLessEqual({"new test", "camera: new fault"}, set(names))
+        ratios, _, faults = script.draw(content).axes
+        for axes, name in ((ratios, "new test"), (faults, "new fault")):
+            self.assertIn(name, [text.get_text() for text in axes.get_legend().get_texts()])
 
     def test_what_is_no_validation_is_refused(self):
         for content in ("{", "[]", {"format": "rcme summary 1", "sets": [1]}, {**fake(), "sets": []}):
