@@ -75,6 +75,17 @@ TEST_F(MatchFolderTest, EachMatchsOwnSigmaIsPassedOnAndPartOfTheIdentity) {
   EXPECT_NE(Describe(MakePlan(FolderStudy())).identity, Describe(plan).identity);
 }
 
+TEST_F(MatchFolderTest, ScoresArePassedOnAndPartOfTheIdentity) {
+  const std::string text = "# scene: c\n# better_score: lower\n" + MatchHeader() + "x1,y1,x2,y2,score\n";
+  folder_.Write("c_000.csv", text + "1,2,3,4,0.5\n5,6,7,8,0.25\n");
+  const StudyPlan plan = MakePlan(FolderStudy());
+  EXPECT_TRUE(plan.conditions[0].source->Make({1, 0, 0, 0}).problem.match_quality.empty());
+  EXPECT_EQ(plan.conditions[2].source->Make({1, 0, 0, 0}).problem.match_quality,
+            (std::vector<double>{-0.5, -0.25}));
+  folder_.Write("c_000.csv", text + "1,2,3,4,0.5\n5,6,7,8,0.75\n");
+  EXPECT_NE(Describe(MakePlan(FolderStudy())).identity, Describe(plan).identity);
+}
+
 // A study without sigma_px takes the noise of each file, and the usual one where a file states none.
 TEST_F(MatchFolderTest, TheNoiseOfAFileIsThatOfAStudyWithoutOne) {
   const auto sigmas_of = [](const Study& study) {

@@ -140,6 +140,7 @@ TEST(DescribePairs, SeesWhateverIsAsked) {
   EXPECT_TRUE(changed([](NamedPair* pair) { pair->problem.camera2.cx += 1.0; }));
   EXPECT_TRUE(changed([](NamedPair* pair) { pair->problem.matches[3].x2_px.y() += 1e-9; }));
   EXPECT_TRUE(changed([](NamedPair* pair) { pair->problem.noise_scale.assign(80, 1.0); }));
+  EXPECT_TRUE(changed([](NamedPair* pair) { pair->problem.match_quality.assign(80, 1.0); }));
 }
 
 }  // namespace
