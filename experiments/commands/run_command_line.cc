@@ -12,7 +12,6 @@
 #include <iostream>
 #include <memory>
 #include <new>
-#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -27,6 +26,7 @@
 #include "experiments/core/work/stop_request.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
@@ -85,8 +85,7 @@ class NarrowHelp : public CLI::Formatter {
     const auto end_paragraph = [&] {
       if (!paragraph.empty()) text += FormatParagraph(std::exchange(paragraph, ""));
     };
-    std::istringstream lines(app->get_footer());
-    for (std::string line; std::getline(lines, line);) {
+    for (const std::string& line : SplitText(app->get_footer(), '\n')) {
       if (!line.empty() && line.front() != ' ') {
         paragraph += line + " ";
         continue;

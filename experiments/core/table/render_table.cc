@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <string_view>
 #include <unordered_map>
 
@@ -285,8 +284,8 @@ std::string RenderLatexRow(const Table& table, const std::vector<Value>& row, bo
   return fmt::format("{} \\\\\n", fmt::join(cells, " & "));
 }
 
-// The levels that the first one determines, such as those of the draws of a population, which are numbered,
-// if the keys together take more than half of `width`.
+// The levels that the first one determines, the last column first, such as those of the draws of a
+// population, which are numbered, if the keys together take more than half of `width`.
 std::vector<size_t> FindImpliedLevels(const std::vector<Column>& columns, const Cells& cells, size_t width) {
   std::vector<size_t> levels, implied;
   size_t keys_width = 0;
@@ -294,8 +293,8 @@ std::vector<size_t> FindImpliedLevels(const std::vector<Column>& columns, const 
     if (columns[c].is_key) keys_width += FindWidth(cells, c) + kGap;
     if (columns[c].is_key && columns[c].group == "levels") levels.push_back(c);
   }
-  if (keys_width <= width / 2) return {};
-  for (size_t k = 1; k < levels.size(); ++k) {
+  if (keys_width <= width / 2 || levels.empty()) return {};
+  for (size_t k = levels.size() - 1; k > 0; --k) {
     std::unordered_map<std::string_view, std::string_view> level_of;  // by that of the first
     const bool is_implied = std::all_of(cells.begin() + 1, cells.end(), [&](const auto& row) {
       return level_of.try_emplace(row[levels[0]], row[levels[k]]).first->second == row[levels[k]];
@@ -326,7 +325,7 @@ void AppendCells(const Table& rows, Cells* cells) {
 
 std::string RenderCells(std::vector<Column> columns, Cells cells, size_t width) {
   const std::vector<size_t> implied = FindImpliedLevels(columns, cells, width);
-  for (const size_t c : std::views::reverse(implied)) {
+  for (const size_t c : implied) {
     columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(c));
     for (std::vector<std::string>& row : cells) row.erase(row.begin() + static_cast<std::ptrdiff_t>(c));
   }

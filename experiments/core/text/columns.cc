@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
-#include <sstream>
+
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
@@ -49,10 +50,11 @@ std::string FormatStacked(const std::vector<std::vector<std::string>>& rows, siz
   std::vector<std::vector<std::string>> heads;
   for (const std::vector<std::string>& row : rows)
     heads.emplace_back(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(num_columns));
-  std::istringstream lines(FormatColumns(heads));
-  std::string text, line;
+  const std::vector<std::string> lines =
+      SplitText(FormatColumns(heads), '\n');  // the second underlines the heading
+  std::string text;
   for (size_t r = 0; r < rows.size(); ++r) {
-    for (int i = r == 0 ? 2 : 1; i > 0 && std::getline(lines, line); --i) text += line + "\n";
+    text += (r == 0 ? lines[0] + "\n" + lines[1] : lines[r + 1]) + "\n";
     for (size_t c = num_columns; r > 0 && c < rows[r].size(); ++c) {
       if (IsBlank(rows[r][c])) continue;
       const bool is_last = c + 1 == rows[r].size();
