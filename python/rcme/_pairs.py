@@ -7,7 +7,7 @@ import pathlib
 from collections.abc import Iterable, Mapping
 from typing import Any, Union
 
-from rcme import _check
+from rcme import _check, _rcme
 
 
 def write_pairs(folder: Union[str, "os.PathLike[str]"], pairs: Iterable[Mapping[str, Any]]) -> str:
@@ -38,7 +38,7 @@ def write_pairs(folder: Union[str, "os.PathLike[str]"], pairs: Iterable[Mapping[
     if any(path.iterdir()):
         raise ValueError(f"folder: {path} holds something; give a new folder")
     for number, pair in enumerate(pairs):
-        (path / f"{number:06d}.csv").write_text(_match_file(f"pairs[{number}]", pair), encoding="utf-8")
+        _rcme.write_file(str(path / f"{number:06d}.csv"), _match_file(f"pairs[{number}]", pair))
     return str(path)
 
 
