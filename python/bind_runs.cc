@@ -13,7 +13,7 @@
 #include "experiments/statistics/trial_table.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/trial/trial_columns.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
 #include "python/bindings.h"
 #include "python/stoppable.h"
