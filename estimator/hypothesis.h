@@ -1,7 +1,6 @@
 // A hypothesis of the loop: the model of a minimal sample, its motion and the covariance of that motion.
 #pragma once
 
-#include <array>
 #include <optional>
 
 #include "estimator/motion_problem.h"

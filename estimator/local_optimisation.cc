@@ -1,8 +1,6 @@
 #include "estimator/local_optimisation.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 #include <optional>
 #include <utility>
 

@@ -19,6 +19,9 @@ struct MotionProblem {
   std::vector<double> noise_scale = {};
   // Prior knowledge of the motion; only rcme_calibrated uses it.
   std::optional<MotionPrior> prior = {};
+  // Quality of each match, finite; greater is better. Empty: not known. Only samplers that take the best
+  // matches first use it (opencv_usac).
+  std::vector<double> match_quality = {};
 };
 
 }  // namespace rcme

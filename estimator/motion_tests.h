@@ -3,7 +3,6 @@
 #pragma once
 
 #include "estimator/motion_estimate.h"
-#include "estimator/motion_problem.h"
 #include "estimator/observability.h"
 #include "estimator/ransac_options.h"
 

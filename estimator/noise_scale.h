@@ -27,6 +27,7 @@ MotionProblem SelectPart(const MotionProblem& problem, const Indices& which) {
     const auto i = static_cast<size_t>(index);
     part.matches.push_back(problem.matches[i]);
     if (!problem.noise_scale.empty()) part.noise_scale.push_back(problem.noise_scale[i]);
+    if (!problem.match_quality.empty()) part.match_quality.push_back(problem.match_quality[i]);
   }
   return part;
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/geometry/essential_matrix.h"
 #include "estimator/match_whitening.h"
 #include "estimator/motion_chance.h"
 #include "estimator/refinement/fit_set.h"

@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
-#include <numbers>
 
 namespace rcme {
 namespace {

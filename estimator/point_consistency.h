@@ -14,7 +14,6 @@
 #include <optional>
 
 #include "estimator/geometry/sampson.h"
-#include "estimator/motion_problem.h"
 
 namespace rcme {
 

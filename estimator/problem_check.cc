@@ -65,6 +65,24 @@ std::optional<MotionEstimate> RefuseNoiseScale(const MotionProblem& problem) {
   return std::nullopt;
 }
 
+std::optional<MotionEstimate> RefuseMatchQuality(const MotionProblem& problem) {
+  const std::vector<double>& qualities = problem.match_quality;
+  if (qualities.empty()) return std::nullopt;
+  if (qualities.size() != problem.matches.size()) {
+    return Refusal(
+        MotionStatus::kInvalidInput,
+        fmt::format("match_quality has {} entries for {} matches; one for each, or none, is allowed",
+                    qualities.size(), problem.matches.size()));
+  }
+  for (size_t i = 0; i < qualities.size(); ++i) {
+    if (std::isfinite(qualities[i])) continue;
+    return Refusal(
+        MotionStatus::kInvalidInput,
+        fmt::format("the match_quality of match {} is {}; a finite number is allowed", i, qualities[i]));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int min_matches) {
@@ -85,6 +103,7 @@ std::optional<MotionEstimate> RefuseUnsolvable(const MotionProblem& problem, int
     }
   }
   if (std::optional<MotionEstimate> refusal = RefuseNoiseScale(problem)) return refusal;
+  if (std::optional<MotionEstimate> refusal = RefuseMatchQuality(problem)) return refusal;
   if (const std::string fault = problem.prior ? FindPriorFault(*problem.prior) : ""; !fault.empty())
     return Refusal(MotionStatus::kInvalidInput, fault);
   const int num_distinct = CountDistinct(problem.matches, min_matches);

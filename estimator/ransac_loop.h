@@ -2,7 +2,7 @@
 //
 // The loop has three parts. A solver draws samples and makes hypotheses from them, a scorer scores each over
 // all matches, a decision accepts or refuses it and chooses the winner. Standard RANSAC accepts every inlier
-// set and chooses the largest (estimator/estimators/inlier_count.h):
+// set and chooses the largest (estimator/estimators/standard.h):
 //
 //   struct InlierCountDecision {
 //     using PointTest = KnownPoseTest;

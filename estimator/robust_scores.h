@@ -2,7 +2,6 @@
 // squared Sampson distances over sigma^2, to a cost; the smallest cost wins.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <span>

@@ -43,6 +43,7 @@ UndistortedProblem UndistortProblem(const Lens& lens1, const Lens& lens2, Motion
     problem.matches.push_back(found->match);
     undistorted.kept.push_back(i);
     ratios.push_back(NoiseScaleAt(distorted, i) * found->noise_ratio);
+    if (!distorted.match_quality.empty()) problem.match_quality.push_back(distorted.match_quality[i]);
   }
   problem.sigma_px = distorted.sigma_px * (ratios.empty() ? 1.0 : ComputeMedian(ratios));
   problem.noise_scale = ComputeNoiseScale(std::move(ratios));

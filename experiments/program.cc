@@ -4,7 +4,6 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/run_command_line.h"
-#include "experiments/commands/twin_commands.h"
 
 namespace rcme {
 namespace {

@@ -1,6 +1,10 @@
 // OpenCV's USAC for the essential matrix, with the camera matrices of both images.
+#include <algorithm>
+#include <functional>
+#include <numeric>
 #include <opencv2/calib3d.hpp>
 
+#include "estimator/noise_scale.h"
 #include "peers/peers.h"
 #include "peers/recover_pose.h"
 
@@ -36,15 +40,39 @@ double ThresholdPx(const UsacOptions& options, double sigma_px) {
   return 2.0 * options.threshold_sigma * sigma_px;
 }
 
+// Whether the sampler takes the first matches to be the best.
+bool TakesBestFirst(cv::SamplingMethod sampler) {
+  return sampler == cv::SAMPLING_PROSAC || sampler == cv::SAMPLING_PROGRESSIVE_NAPSAC;
+}
+
+// Returns the indices of the matches, greatest quality first; equal ones keep their order.
+std::vector<int> OrderByQuality(const MotionProblem& problem) {
+  std::vector<int> order(problem.matches.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::stable_sort(order, std::ranges::greater(),
+                           [&](int i) { return problem.match_quality[static_cast<size_t>(i)]; });
+  return order;
+}
+
 class OpenCvUsac : public MotionEstimator {
  public:
   explicit OpenCvUsac(const UsacOptions& options) : options_(options) {}
 
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
-    return CallPeer(problem, 5, "OpenCV", [&] { return Ask(problem, rng); });
+    return CallPeer(problem, 5, "OpenCV", [&] { return AskBestFirst(problem, rng); });
   }
 
  private:
+  // The inliers of the answer have the indices of the problem.
+  std::optional<PeerAnswer> AskBestFirst(const MotionProblem& problem, RandomStream& rng) const {
+    if (problem.match_quality.empty() || !TakesBestFirst(options_.sampler)) return Ask(problem, rng);
+    const std::vector<int> order = OrderByQuality(problem);
+    std::optional<PeerAnswer> answer = Ask(SelectPart(problem, order), rng);
+    if (!answer) return std::nullopt;
+    for (int& i : answer->inliers) i = order[static_cast<size_t>(i)];
+    return answer;
+  }
+
   std::optional<PeerAnswer> Ask(const MotionProblem& problem, RandomStream& rng) const {
     cv::UsacParams params;
     params.score = options_.score;
@@ -85,13 +113,15 @@ class UsacModel : public EstimatorModel {
                            {"graph_cut", cv::LOCAL_OPTIM_GC},
                            {"sigma", cv::LOCAL_OPTIM_SIGMA}},
                           "what is done to a hypothesis that is better than those before; sigma: MAGSAC++"),
-        Parameter::Choice("sampler", &o.sampler,
-                          {{"uniform", cv::SAMPLING_UNIFORM},
-                           {"prosac", cv::SAMPLING_PROSAC},
-                           {"napsac", cv::SAMPLING_NAPSAC},
-                           {"progressive_napsac", cv::SAMPLING_PROGRESSIVE_NAPSAC}},
-                          "how samples are drawn; prosac and progressive_napsac hold the first matches to be "
-                          "the best, but a simulation lists them in random order"),
+        Parameter::Choice(
+            "sampler", &o.sampler,
+            {{"uniform", cv::SAMPLING_UNIFORM},
+             {"prosac", cv::SAMPLING_PROSAC},
+             {"napsac", cv::SAMPLING_NAPSAC},
+             {"progressive_napsac", cv::SAMPLING_PROGRESSIVE_NAPSAC}},
+            "how samples are drawn; prosac and progressive_napsac take the best matches first: by "
+            "the column score of a match file, else as listed, which is a random order in a "
+            "simulation"),
         Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
                         "a match is an inlier up to so many standard deviations of its distance; magsac "
                         "looks up to 3.2 times as far"),

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "estimator/problem_check.h"
 #include "parameters/plain_text.h"

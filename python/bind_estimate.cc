@@ -1,10 +1,7 @@
-#include "python/bind_estimate.h"
-
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -22,6 +19,7 @@
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
 #include "peers/outside_answer.h"
+#include "python/bindings.h"
 #include "python/function_estimator.h"
 #include "python/stoppable.h"
 #include "python/study_source.h"

@@ -1,5 +1,3 @@
-#include "python/bind_methods.h"
-
 #include <pybind11/stl.h>
 
 #include <cstdint>
@@ -20,11 +18,12 @@
 #include "experiments/conform/conform_words.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "experiments/tuning/tune_json.h"
 #include "experiments/tuning/tune_output.h"
 #include "experiments/tuning/tuning_work.h"
 #include "parameters/input_error.h"
+#include "python/bindings.h"
 #include "python/stoppable.h"
 #include "python/study_source.h"
 

@@ -1,5 +1,3 @@
-#include "python/bind_simulation.h"
-
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
@@ -7,8 +5,8 @@
 #include <cstdint>
 
 #include "experiments/trial/severity_columns.h"
-#include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
+#include "python/bindings.h"
 #include "python/function_estimator.h"
 #include "python/study_source.h"
 

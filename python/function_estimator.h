@@ -4,7 +4,6 @@
 #include <pybind11/pybind11.h>
 
 #include <map>
-#include <memory>
 #include <string>
 
 #include "estimator/geometry/camera.h"

@@ -13,10 +13,7 @@
 #include "experiments/core/text/program_name.h"
 #include "parameters/input_error.h"
 #include "peers/peer_registry.h"
-#include "python/bind_estimate.h"
-#include "python/bind_methods.h"
-#include "python/bind_runs.h"
-#include "python/bind_simulation.h"
+#include "python/bindings.h"
 #include "python/function_estimator.h"
 #include "python/study_source.h"
 

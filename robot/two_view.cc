@@ -11,7 +11,6 @@
 #include "estimator/estimator_registry.h"
 #include "estimator/geometry/triangulation.h"
 #include "estimator/noise_scale.h"
-#include "estimator/problem_check.h"
 #include "estimator/protection_level.h"
 #include "stats/random.h"
 

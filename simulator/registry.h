@@ -21,13 +21,19 @@ struct RegistryEntry {
   std::function<std::unique_ptr<Model>()> make;  // with default parameters
 };
 
+template <typename Entry>
+std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
+  std::vector<std::string> names;
+  for (const Entry& entry : registry) names.push_back(entry.name);
+  return names;
+}
+
 // The entry called `name`. Throws InputError that names `key` and lists the known names.
 template <typename Entry>
 const Entry& FindEntry(const std::vector<Entry>& registry, const std::string& key, const std::string& name) {
   const auto entry = std::ranges::find(registry, name, &Entry::name);
   if (entry != registry.end()) return *entry;
-  std::vector<std::string> names;
-  for (const Entry& known : registry) names.push_back(known.name);
+  const std::vector<std::string> names = ListNames(registry);
   throw InputError(fmt::format("{}: '{}' is not allowed{}; give one of: {}", key, name,
                                DidYouMean(name, names), fmt::join(names, ", ")));
 }

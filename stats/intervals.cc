@@ -1,8 +1,6 @@
 #include "stats/intervals.h"
 
-#include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
-#include <cmath>
 #include <tuple>
 
 #include "stats/constants.h"

@@ -1,7 +1,6 @@
 #include "stats/sparsification.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <vector>
 

@@ -23,7 +23,6 @@
 #include <cmath>
 #include <concepts>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 

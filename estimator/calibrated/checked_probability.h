@@ -2,10 +2,10 @@
 //
 //   logit P = b_0 + max(b_1 + sum_k c_k h_k(x), 0.02) l + b_2 p + sum_m d_m h_m(x),   l = logit p
 //
-// Here p is the probability of failure according to the modes and x the indicators (check_signs.h), each
-// clipped to its range in the trials of the fit. A term h is a hinge max(s (x_i - t), 0) with s = 1 or -1, or
-// the product of two hinges: multivariate adaptive regression splines (Friedman 1991, Annals of Statistics
-// 19:1).
+// Here p is the probability of failure according to the modes and x the indicators (kCheckSigns in the .cc),
+// each clipped to its range in the trials of the fit. A term h is a hinge max(s (x_i - t), 0) with s = 1 or
+// -1, or the product of two hinges: multivariate adaptive regression splines (Friedman 1991, Annals of
+// Statistics 19:1).
 //
 // The first sum tempers the log-odds: if the errors of matches depend on each other, or if a few matches
 // decide the motion, evidence is worth less than its nats. The other terms describe errors that the modes

@@ -1,7 +1,6 @@
 #include "estimator/calibrated/failure_probability.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <cmath>
 
 namespace rcme {

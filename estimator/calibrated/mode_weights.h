@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <vector>
 
 #include "estimator/calibrated/contrast.h"
 #include "estimator/calibrated/mode.h"

@@ -10,7 +10,6 @@
 #include <optional>
 #include <vector>
 
-#include "estimator/calibrated/explanation.h"
 #include "estimator/motion_problem.h"
 
 namespace rcme {

@@ -1,6 +1,5 @@
 #include "estimator/estimators/m_estimator.h"
 
-#include <cmath>
 #include <vector>
 
 #include "estimator/estimators/ransac_model.h"
@@ -10,7 +9,6 @@
 #include "estimator/reference_matches.h"
 #include "estimator/refine_winner.h"
 #include "estimator/refinement/m_estimation.h"
-#include "estimator/refinement/sampson_equations.h"
 
 namespace rcme {
 namespace {

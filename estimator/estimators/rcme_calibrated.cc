@@ -25,7 +25,6 @@
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
 #include "parameters/probability_text.h"
-#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -280,11 +279,14 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       RobustCovarianceOptions robust = options_.robust;
       robust.calibration = options_.calibration;
       const Mode& answer = modes[weights.answer].mode;
-      MakeCovarianceRobust(problem, robust,
-                           prior.motion ? OwnCovarianceOfMatches(matches, prior, answer) : verdict.pose_cov,
-                           &estimate);
-      if (estimate.status == MotionStatus::kOk)
-        estimate.pose_cov = BoundByUniformMotion(CovarianceWithPrior(estimate.pose_cov, answer, prior));
+      const Matrix5d own = prior.motion ? OwnCovarianceOfMatches(matches, prior, answer) : verdict.pose_cov;
+      MakeCovarianceRobust(problem, robust, own, &estimate);
+      if (estimate.status == MotionStatus::kOk) {
+        const Matrix5d of_matches =
+            is_checked ? ComputeLeastUpperBound(CovarianceFactor(check) * own, estimate.pose_cov)
+                       : estimate.pose_cov;
+        estimate.pose_cov = BoundByUniformMotion(CovarianceWithPrior(of_matches, answer, prior));
+      }
     }
     if (posterior != nullptr)
       *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, weak_direction.has_value(), estimate);

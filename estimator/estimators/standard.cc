@@ -1,6 +1,5 @@
 #include "estimator/estimators/standard.h"
 
-#include "estimator/estimators/inlier_count.h"
 #include "estimator/estimators/loop_estimator.h"
 #include "estimator/estimators/ransac_model.h"
 

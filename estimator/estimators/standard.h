@@ -3,9 +3,22 @@
 #include <memory>
 
 #include "estimator/estimator_model.h"
+#include "estimator/inlier_quality.h"
+#include "estimator/point_consistency.h"
 #include "estimator/ransac_options.h"
+#include "estimator/thresholds.h"
 
 namespace rcme {
+
+// RANSAC (Fischler & Bolles 1981): takes each motion as exact, tests neither samples nor inlier sets, and
+// selects the motion with the most inliers.
+struct InlierCountDecision {
+  using PointTest = KnownPoseTest;
+  static constexpr bool kTestsSample = false;
+  InlierCountDecision(const RansacOptions&, const Thresholds&) {}
+  bool AcceptsInlierSet(double) const { return true; }
+  DecidingScore deciding_score() const { return DecidingScore::kNumInliers; }
+};
 
 // The paper's "Standard": RANSAC by inlier count with the noise-only threshold, then the Gold Standard
 // refinement. It has no entropies and does not test its samples, so it lacks the options mu, quality_test,

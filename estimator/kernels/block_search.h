@@ -6,7 +6,6 @@
 
 #include "estimator/kernels/block_source.h"
 #include "estimator/kernels/score.h"
-#include "estimator/point_consistency.h"
 #include "estimator/ransac_loop.h"
 #include "estimator/reference_search.h"
 

@@ -1,14 +1,12 @@
 #include "estimator/model_choice/two_view_models.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "estimator/estimators/standard.h"
 #include "estimator/geometry/sampson.h"
 #include "estimator/model_choice/homography.h"
-#include "estimator/ransac_loop.h"
 #include "estimator/reference_matches.h"
 #include "estimator/refinement/rotation_mle.h"
 #include "estimator/solvers/solver_list.h"

@@ -4,7 +4,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 
 #include "estimator/kernels/correlated_pairs.h"

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <functional>
-#include <vector>
 
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"

@@ -5,20 +5,51 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
-#include "experiments/ask/inlier_threshold.h"
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/readable_run.h"
 #include "experiments/statistics/summarize.h"
 #include "parameters/input_error.h"
+#include "parameters/parameter.h"
+#include "stats/distributions.h"
 #include "stats/equivalence.h"
 #include "stats/paired_sample_size.h"
 
 namespace rcme {
 namespace {
+
+// MSAC compares the squared Sampson distance with sigma^2 chi2_1 (estimator/point_consistency.h).
+std::string DescribeSampson(double level, double sigma_px) {
+  const double num_sigma = std::sqrt(ChiSquareQuantile(1, 1.0 - level));
+  return fmt::format("{:.3g} px of Sampson distance ({:.3g} sigma: keeps {:g} % of the true matches)",
+                     num_sigma * sigma_px, num_sigma, 100.0 * (1.0 - level));
+}
+
+// RCME's test widens with the uncertainty of each hypothesis.
+std::string DescribeTestOfHypothesis(double level, double sigma_px) {
+  return fmt::format(
+      "none in px: a test that keeps {:g} % of the true matches, given sigma = {:g} px and each hypothesis' "
+      "covariance",
+      100.0 * (1.0 - level), sigma_px);
+}
+
+std::string DescribeCalibrated(const std::string& sigma, double sigma_px) {
+  const std::string known = sigma == "estimated" ? fmt::format("estimated, from {:g} px on", sigma_px)
+                                                 : fmt::format("taken as {:g} px", sigma_px);
+  return fmt::format("none: each match has a weight, by its distance and by sigma ({})", known);
+}
+
+// The rules to try; fixed before any trial.
+constexpr double kProbabilities[] = {0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.3, 0.5, 1.0};
+
+// The level for one rule of one estimator.
+double ComputeDelta(int num_estimators) {
+  return 0.05 / (static_cast<double>(std::size(kProbabilities)) * num_estimators);
+}
 
 constexpr const char* kErrorMeasure = "max_error_median_deg";
 
@@ -177,6 +208,26 @@ CoverageVerdict JudgeChosenCoverage(const Estimate& coverage, const Answer& answ
 
 }  // namespace
 
+std::optional<AcceptRule> CertifyAcceptRule(const std::vector<StatedAnswer>& answers, std::int64_t num_trials,
+                                            double at_most, int num_estimators) {
+  std::optional<AcceptRule> greatest;
+  for (const double probability : kProbabilities) {
+    ErrorCount accepted;
+    for (const StatedAnswer& answer : answers) {
+      if (answer.failure_probability > probability) continue;
+      ++accepted.n;
+      accepted.errors += answer.has_failed;
+    }
+    if (ExcessPValue(accepted, at_most) <= ComputeDelta(num_estimators))
+      greatest = AcceptRule{probability, accepted, num_trials};
+  }
+  return greatest;
+}
+
+std::int64_t FewestCertifyingAnswers(double at_most, int num_estimators) {
+  return FewestCertifyingTrials(at_most, ComputeDelta(num_estimators));
+}
+
 void RankEstimators(std::vector<AskedEstimator>* estimators, const HasGreaterError& has_greater_error) {
   const auto last_if_nan = [](double value) {
     return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
@@ -236,6 +287,25 @@ Answer AnswerQuestion(const ResultStore& run, const Question& question, double a
   answer.coverage = WidenForChoice(FindEstimate(summary, best, "nees_coverage"), answer.num_estimators);
   answer.coverage_verdict = JudgeChosenCoverage(answer.coverage, answer);
   return answer;
+}
+
+std::string DescribeInlierThreshold(const std::string& name, const Settings& options, double sigma_px) {
+  if (name == "rcme_calibrated")
+    return DescribeCalibrated(FindSetting(options, "sigma").value_or(""), sigma_px);
+  double level = 0.0, num_sigma = 0.0;
+  const bool has_level = ParseReal(FindSetting(options, "significance_level").value_or(""), &level);
+  const bool has_sigma = ParseReal(FindSetting(options, "threshold_sigma").value_or(""), &num_sigma);
+  if (name == "msac" && has_level) return DescribeSampson(level, sigma_px);
+  if (name == "rcme" && has_level) return DescribeTestOfHypothesis(level, sigma_px);
+  if (name == "opencv_usac" && has_sigma) {
+    // OpenCV's distance has the standard deviation 2 sigma (peers/opencv_usac.cc).
+    return fmt::format("{:.3g} px as OpenCV takes it ({:g} standard deviations of its distance)",
+                       2.0 * num_sigma * sigma_px, num_sigma);
+  }
+  if (name == "opengv_ransac" && has_sigma)
+    return fmt::format("{:.3g} px of reprojection error in both images together ({:g} sigma)",
+                       num_sigma * sigma_px, num_sigma);
+  return {};
 }
 
 }  // namespace rcme

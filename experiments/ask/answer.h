@@ -8,16 +8,41 @@
 #include <string>
 #include <vector>
 
-#include "experiments/ask/accept_rule.h"
 #include "experiments/ask/question.h"
 #include "experiments/core/table/table.h"
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/coverage_verdict.h"
 #include "experiments/statistics/stated_sharpness.h"
 #include "experiments/study/study.h"
+#include "parameters/settings.h"
 #include "stats/constants.h"
+#include "stats/risk_control.h"
 
 namespace rcme {
+
+// The stated probability of failure above which an answer is refused, so that accepted answers rarely fail:
+// accepts the answers that state at most greatest_probability.
+struct AcceptRule {
+  double greatest_probability = 0.0;
+  ErrorCount accepted;          // failures among the accepted answers
+  std::int64_t num_trials = 0;  // all trials, with and without an accepted answer
+};
+
+struct StatedAnswer {
+  double failure_probability = 0.0;
+  bool has_failed = false;
+};
+
+// Tries the rules of a fixed list of probabilities and returns the certified one with the greatest. A rule is
+// certified if ExcessPValue rejects "its accepted answers fail at a rate above at_most". The probability of
+// any wrong certificate is at most 0.05 over all rules of the list and all `num_estimators` together
+// (Bonferroni). The estimator of `answers` may therefore be chosen by the same `num_trials` trials. Returns
+// std::nullopt if no rule is certified.
+std::optional<AcceptRule> CertifyAcceptRule(const std::vector<StatedAnswer>& answers, std::int64_t num_trials,
+                                            double at_most, int num_estimators);
+
+// The least number of accepted answers that certifies a rule if none of them failed.
+std::int64_t FewestCertifyingAnswers(double at_most, int num_estimators);
 
 struct AskedEstimator {
   std::string label;
@@ -73,5 +98,10 @@ void RankEstimators(std::vector<AskedEstimator>* estimators, const HasGreaterErr
 
 // Throws InputError if the run has several conditions or a damaged trial.
 Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most);
+
+// Describes in words, with units, which matches the built-in estimator `name` takes for inliers with these
+// options, for noise of sigma_px: "1.37 px of Sampson distance (1.96 sigma: ...)", "none in px: ...". Empty
+// if it is unknown.
+std::string DescribeInlierThreshold(const std::string& name, const Settings& options, double sigma_px);
 
 }  // namespace rcme

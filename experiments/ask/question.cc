@@ -61,8 +61,7 @@ void ReadSize(const std::string& text, int* width, int* height) {
 template <typename Entry>
 std::string ReadName(const char* option, const char* kind, const std::vector<Entry>& registry,
                      const std::string& text) {
-  std::vector<std::string> names;
-  for (const Entry& entry : registry) names.push_back(entry.name);
+  const std::vector<std::string> names = ListNames(registry);
   if (std::ranges::count(names, text) > 0) return text;
   throw InputError(fmt::format("{}: {} is not {}{}; give one of: {}", option, Quoted(text), kind,
                                DidYouMean(text, names), fmt::join(names, ", ")));

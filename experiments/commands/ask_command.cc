@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -10,8 +11,6 @@
 #include "experiments/ask/question.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/duration.h"
 #include "experiments/core/text/message.h"
@@ -38,13 +37,6 @@ struct AskArguments {
   int threads = 0;
 };
 
-template <typename Entry>
-std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
-  std::vector<std::string> names;
-  for (const Entry& entry : registry) names.push_back(entry.name);
-  return names;
-}
-
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
 
 // Throws InputError if the simulator cannot make the question's problems, before anything is written.
@@ -67,16 +59,14 @@ RunReport RunAskedTrials(const AskArguments& arguments, int trials) {
   return RunStudy(plan, arguments.threads, &store);
 }
 
-// The greatest of a few round numbers of trials for which the time suffices, by the time of the pilot trials;
-// the smallest if the pilot ran none now. It does not depend on any outcome, so the intervals stay valid.
+// As many trials, to two digits, as the time suffices for by the time of the pilot trials; the fewest if the
+// pilot ran none now. It does not depend on any outcome, so the intervals stay valid.
 int ChooseTrials(const RunReport& pilot, double seconds) {
   if (pilot.num_run_now == 0) return kFewestTrials;
   const double seconds_per_trial = pilot.seconds / static_cast<double>(pilot.num_run_now);
-  int chosen = kFewestTrials;
-  for (const int trials : {100, 150, 200, 300, 500, 700, 1000, 1500, 2000, 3000, 5000}) {
-    if (seconds_per_trial * trials <= 0.8 * seconds) chosen = trials;
-  }
-  return chosen;
+  const double trials = std::clamp(0.85 * seconds / seconds_per_trial, 1.0 * kFewestTrials, 5000.0);
+  const double step = trials < 100.0 ? 1.0 : trials < 1000.0 ? 10.0 : 100.0;
+  return static_cast<int>(step * std::floor(trials / step));
 }
 
 // The number of trials that the existing result file holds, and at least that which was last requested for

@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <memory>
 #include <utility>
@@ -13,13 +12,9 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/plan_of_cases.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/stop_request.h"
@@ -161,10 +156,11 @@ code 75 (docs/many_machines.md):
                    "ids of claims or families, separated by commas (`rcme list claims`)")
       ->delimiter(',');
   command
-      ->add_option("--budget", arguments->budget,
-                   "quick (all claims of the paper: minutes) or full (hours). A study takes longer the more "
-                   "conditions "
-                   "and slow estimators it has; the greatest time is printed first")
+      ->add_option(
+          "--budget", arguments->budget,
+          "quick: minutes for the claims of the paper; full: hours. With a study the time grows with its "
+          "conditions times its estimators, also to hours; the greatest is printed first. --max-time, "
+          "--only and --set FACTOR=LEVEL bound it")
       ->check(MakeChoiceValidator({"quick", "full"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->out,

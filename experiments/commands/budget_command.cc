@@ -3,13 +3,11 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/table/table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/progress.h"
@@ -117,7 +115,7 @@ that file compares the same thing. If an estimator cannot reach the time, it get
 nearest effort and the table says why. `rcme summarize` prints the effort of each.
 
 Examples:
-  rcme budget studies/peers_uniform.yaml --time-ms 10 --out peers_10ms.yaml
+  rcme budget peers_uniform --time-ms 10 --out peers_10ms.yaml
   rcme run peers_10ms.yaml --out run.sqlite)");
   auto arguments = std::make_shared<BudgetArguments>();
   command

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"

@@ -8,7 +8,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/text/shell_word.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"

@@ -1,14 +1,11 @@
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 
+#include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/failure_bounds_option.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/twin_commands.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/real/truth_check/truth_check_output.h"
@@ -65,7 +62,7 @@ score them.
 Examples:
   rcme check-truth PAIRS --out checked
   rcme check-truth pairs/sift pairs/orb --bounds 1,5 --out checked
-  rcme run studies/real_pairs.yaml --set folder=PAIRS \
+  rcme run real_pairs --set folder=PAIRS \
       --set truth_in_doubt=checked/truth_in_doubt.csv --out run.sqlite)");
   auto arguments = std::make_shared<CheckTruthArguments>();
   command->add_option("pairs", arguments->folders, "folders of match files, one per front end")->required();

@@ -25,7 +25,7 @@ std::vector<const CLI::App*> ListSubcommands(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-// "{a,b,c}" as MakeChoiceValidator (number_option.h) describes what it allows; empty: something else.
+// "{a,b,c}" as MakeChoiceValidator (common_options.h) describes what it allows; empty: something else.
 std::vector<std::string> WordsIn(const std::string& allowed) {
   std::vector<std::string> words;
   if (!allowed.starts_with('{') || !allowed.ends_with('}')) return words;
@@ -76,8 +76,36 @@ std::vector<std::string> QuantityNames() {
   return names;
 }
 
-std::vector<std::string> ListOptionValues(const CLI::Option& option) {
+// What `solve --over` takes: a key of --set without its "=".
+std::vector<std::string> KeyNames() {
+  std::vector<std::string> names = SettingNames();
+  for (std::string& name : names) name.pop_back();
+  return names;
+}
+
+std::vector<std::string> SceneNames() {
+  std::vector<std::string> names;
+  for (const SceneEntry& entry : SceneRegistry()) names.push_back(entry.name);
+  return names;
+}
+
+bool TakesFiles(const CLI::Option& option) {
   const std::string name = option.get_single_name();
+  return name == "estimator-file" || name == "add-estimator" || name == "study";
+}
+
+// Whether the option names an estimator of a result file, which has labels of its own.
+bool TakesLabels(const CLI::App& command, const CLI::Option& option) {
+  const std::string name = option.get_single_name();
+  const bool reads_run = command.get_option_no_throw("run") != nullptr || command.get_name() == "show";
+  return reads_run && (name == "estimators" || name == "estimator" || name == "against");
+}
+
+std::vector<std::string> ListOptionValues(const CLI::App& command, const CLI::Option& option) {
+  const std::string name = option.get_single_name();
+  if (command.get_name() == "ask" && name == "scene") return SceneNames();
+  if (command.get_name() == "solve" && name == "over") return KeyNames();
+  if (TakesLabels(command, option)) return EstimatorNames();
   if (name == "set") return SettingNames();
   if (name == "shard") return {"1/2", "auto", "auto/8"};
   if (name == "estimators") return EstimatorNames();
@@ -92,7 +120,7 @@ std::vector<std::string> ListOptionValues(const CLI::Option& option) {
   return {};
 }
 
-DescribedOption DescribeOption(const CLI::Option& option) {
+DescribedOption DescribeOption(const CLI::App& command, const CLI::Option& option) {
   DescribedOption described;
   for (const std::string& name : option.get_snames()) described.names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) described.names.push_back("--" + name);
@@ -102,7 +130,9 @@ DescribedOption DescribeOption(const CLI::Option& option) {
   described.default_value = option.get_default_str();
   described.is_required = option.get_required();
   described.takes_value = option.get_items_expected_max() > 0;
-  if (described.takes_value) described.values = ListOptionValues(option);
+  if (described.takes_value) described.values = ListOptionValues(command, option);
+  described.takes_files = described.values.empty() || TakesFiles(option);
+  described.is_label = TakesLabels(command, option);
   return described;
 }
 
@@ -120,7 +150,7 @@ DescribedCommand Described(const CLI::App& command) {
   DescribedCommand described{
       command.get_parent() ? command.get_name() : "", command.get_description(), command.get_footer(), {}};
   for (const CLI::Option* option : command.get_options())
-    described.options.push_back(DescribeOption(*option));
+    described.options.push_back(DescribeOption(command, *option));
   std::stable_partition(described.options.begin(), described.options.end(),
                         [](const DescribedOption& o) { return o.is_positional; });
   return described;

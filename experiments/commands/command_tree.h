@@ -15,6 +15,8 @@ struct DescribedOption {
   bool is_required = false;
   bool takes_value = true;
   std::vector<std::string> values;  // candidate values, if there is a list of them
+  bool takes_files = true;          // a file is a value as well
+  bool is_label = false;            // of an estimator of the result file on the line
 };
 
 struct DescribedCommand {

@@ -45,6 +45,9 @@ void AddWorstCommand(CLI::App& app);
 void AddModelChoiceCommand(CLI::App& app);
 void AddValidateCommand(CLI::App& app);
 void AddCalibrateNoiseCommand(CLI::App& app);
+void AddTwinCommand(CLI::App& app);
+void AddCheckTruthCommand(CLI::App& app);
+void AddPaperTableCommand(CLI::App& app);
 void AddCheckEstimatorCommand(CLI::App& app);
 void AddListCommand(CLI::App& app);
 // These three describe the commands added before them.

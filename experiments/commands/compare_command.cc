@@ -6,11 +6,9 @@
 #include <vector>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/core/files/file_output.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/statistics/comparison_output.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

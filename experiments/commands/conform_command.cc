@@ -6,12 +6,9 @@
 
 #include "estimator/conform/conform_estimator.h"
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_run_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/conform/calibration_work.h"
 #include "experiments/conform/conform_output.h"
 #include "experiments/conform/conform_words.h"

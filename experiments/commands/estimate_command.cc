@@ -11,12 +11,9 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/failure_bounds_option.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
-#include "experiments/core/work/make_in_order.h"
+#include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/colmap_camera.h"
@@ -24,7 +21,6 @@
 #include "experiments/data/match_folder.h"
 #include "experiments/real/answer/answer_report.h"
 #include "experiments/real/camera_noise/apply_noise.h"
-#include "experiments/trial/answer_check.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -348,11 +344,7 @@ matches, all matches on a line).)");
       ->allow_extra_args(false);
   AddEstimatorOptions(command, &arguments->estimator);
   AddSigmaOption(command, &arguments->sigma_px);
-  command
-      ->add_option("--noise", arguments->noise,
-                   "a file of `rcme calibrate-noise`: its sigma in place of --sigma, its corrections of the "
-                   "camera, and covariances for what it says is shared")
-      ->excludes("--sigma");
+  AddNoiseFileOption(command, &arguments->noise);
   AddSeedOption(command, &arguments->seed);
   command
       ->add_option("--bounds", arguments->bounds,

@@ -1,8 +1,6 @@
 #include "experiments/commands/estimator_run_options.h"
 
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
 
 namespace rcme {
 

@@ -24,7 +24,7 @@ CLI::Option* AddStudyAndEstimator(CLI::App* command, EstimatorRunArguments* argu
 
 void AddTrialsOption(CLI::App* command, EstimatorRunArguments* arguments);
 
-// Adds the options of study_source.h, shard_options.h and process_option.h, then --threads.
+// Adds the options of study_source.h and shard_options.h, --allow-process and --threads.
 void AddRunOptions(CLI::App* command, EstimatorRunArguments* arguments);
 
 }  // namespace rcme

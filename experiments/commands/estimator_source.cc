@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "estimator/conform/conform_estimator.h"
-#include "experiments/commands/process_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 

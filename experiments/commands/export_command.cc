@@ -11,15 +11,13 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/lock_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
-#include "experiments/core/work/make_in_order.h"
+#include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/match_file.h"
-#include "experiments/study/study_file.h"
 #include "experiments/trial/simulate_draw.h"
 #include "parameters/input_error.h"
 #include "peers/answer_json.h"
@@ -177,7 +175,7 @@ void AddExportCommand(CLI::App& app) {
   FOLDER/study.lock       its lock, if it has one (`rcme lock`)
 
 Examples:
-  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
+  rcme export failure_vs_outliers --trials 100 --out problems
   python3 mine.py < problems/problems.jsonl > answers.jsonl
   rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite)");
   auto arguments = std::make_shared<ExportArguments>();

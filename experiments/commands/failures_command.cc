@@ -1,13 +1,9 @@
-#include <fmt/format.h>
 
 #include <limits>
 #include <memory>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/core/files/file_output.h"
 #include "experiments/statistics/failing_trials.h"
 #include "experiments/trial/trial_event.h"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 
 namespace rcme {
 
@@ -26,6 +26,9 @@ void AddFrontEndOptions(CLI::App* command, DetectorOptions* detector, MatcherOpt
                    "number of strongest key points to keep per image; 0: all of sift and akaze, 2,000 of orb")
       ->transform(WholeNumberIn(0, 1'000'000))
       ->capture_default_str();
+  command->add_flag(
+      "--subpixel", detector->refines_corners,
+      "with orb: move key points of the two finest scales to the corner nearby, by parts of a pixel");
   command
       ->add_option("--ratio", matcher->max_ratio,
                    "keep a match if nearest / second nearest is below this; 1: no such test")

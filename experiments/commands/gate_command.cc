@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/stop_request.h"
@@ -19,7 +14,7 @@
 #include "experiments/gate/gate_output.h"
 #include "experiments/gate/gate_terms.h"
 #include "experiments/run/run_study.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -72,10 +67,8 @@ size_t FindInFile(const RunDescription& run, const std::string& label, const std
                   const std::string& path) {
   if (!label.empty()) return FindEstimator(run.estimators, label, fmt::format("{}: {}", option, path));
   if (run.estimators.size() == 1) return 0;
-  std::vector<std::string> labels;
-  for (const DescribedEstimator& estimator : run.estimators) labels.push_back(estimator.label);
   throw InputError(fmt::format("{}: holds several estimators; choose one with {}: {}", path, option,
-                               fmt::join(labels, ", ")));
+                               fmt::join(ListLabels(run.estimators), ", ")));
 }
 
 GateReport BeginReport(const ReadableRun& run, const std::vector<GateTest>& tests, bool has_old) {

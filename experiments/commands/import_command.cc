@@ -9,7 +9,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/lock_option.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"
@@ -130,7 +129,7 @@ problem without an answer gets the status no_answer; an answer that cannot be re
 unreadable_answer.
 
 Examples:
-  rcme export studies/failure_vs_outliers.yaml --trials 100 --out problems
+  rcme export failure_vs_outliers --trials 100 --out problems
   python3 mine.py < problems/problems.jsonl > answers.jsonl
   rcme import answers.jsonl --study problems/study.yaml --label mine --out run.sqlite
   rcme compare run.sqlite --against mine)");

@@ -1,14 +1,11 @@
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_run_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/integrity/integrity_output.h"

@@ -9,7 +9,7 @@
 #include "estimator/estimator_registry.h"
 #include "experiments/audit/claims/claim_table.h"
 #include "experiments/commands/commands.h"
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/files/shared_files.h"
 #include "experiments/core/files/yaml_input.h"
 #include "experiments/core/text/columns.h"
@@ -186,29 +186,55 @@ void AddAsJson(const std::string& name, const Rows& rows, nlohmann::ordered_json
   }
 }
 
+struct List {
+  std::string name, doc;
+  std::function<Rows()> make;
+  bool is_of_files = false;  // of those that come with the program
+};
+
+const std::vector<List>& Lists() {
+  static const std::vector<List> lists = {
+      {"estimators", "estimators of a study, and of --estimator", ListEstimators},
+      {"options", "options of each estimator: `options` of a study, --set", ListOptions},
+      {"scenes", "scenes that are simulated", ListScenes},
+      {"cameras", "pairs of cameras", ListCameras},
+      {"motions", "motions of the camera", ListMotions},
+      {"noise", "laws of the noise of points", ListNoise},
+      {"outliers", "laws of the wrong matches", ListOutliers},
+      {"keys", "keys of a study file", ListKeys},
+      {"settings", "keys of its block `data`, and of --set", ListSettings},
+      {"quantities", "what is summarized, compared and plotted", ListQuantities},
+      {"claims", "claims of the paper that `rcme audit` checks", ListClaims},
+      {"studies", "studies that come with the program", ListStudies, true},
+      {"populations", "populations of conditions that a study can draw from", ListPopulations, true},
+      {"estimator_files", "estimators with options, for --add-estimator", ListEstimatorFiles, true}};
+  return lists;
+}
+
+void PrintLists() {
+  Rows rows = {{"list", "entries", "what it lists"}};
+  for (const List& list : Lists())
+    rows.push_back({list.name, fmt::format("{:7}", list.make().size() - 1), list.doc});
+  fmt::print("{}\nPrint one with: rcme list NAME\n", FormatNarrowColumns(rows));
+}
+
 }  // namespace
 
 void AddListCommand(CLI::App& app) {
-  using Lister = std::function<Rows()>;
-  static const std::vector<std::pair<std::string, Lister>> kLists = {
-      {"estimators", ListEstimators},   {"options", ListOptions},
-      {"scenes", ListScenes},           {"cameras", ListCameras},
-      {"motions", ListMotions},         {"noise", ListNoise},
-      {"outliers", ListOutliers},       {"keys", ListKeys},
-      {"settings", ListSettings},       {"quantities", ListQuantities},
-      {"claims", ListClaims},           {"studies", ListStudies},
-      {"populations", ListPopulations}, {"estimator_files", ListEstimatorFiles}};
   std::vector<std::string> names;
-  for (const auto& [name, lister] : kLists) names.push_back(name);
+  for (const List& list : Lists()) names.push_back(list.name);
   CLI::App* command = app.add_subcommand(
       "list",
       "List what you can name: estimators, options, scenes, study keys, quantities, claims, studies, ...");
   auto what = std::make_shared<std::string>();
   auto format = std::make_shared<std::string>("table");
   command
-      ->add_option("what", *what, "which list; default: all except studies, populations and estimator_files")
+      ->add_option("what", *what,
+                   "which list; default: what lists there are; as markdown or json: all of them except "
+                   "studies, populations and estimator_files")
       ->check(MakeChoiceValidator(names));
   command->footer(R"(Examples:
+  rcme list                             what lists there are
   rcme list studies
   rcme list settings
   rcme list estimators --format json)");
@@ -218,16 +244,16 @@ void AddListCommand(CLI::App& app) {
       ->check(MakeChoiceValidator({"table", "markdown", "json"}))
       ->capture_default_str();
   command->callback([what, format] {
+    if (what->empty() && *format == "table") return PrintLists();
     nlohmann::ordered_json json = nlohmann::ordered_json::object();
-    for (const auto& [name, lister] : kLists) {
-      const bool is_of_files = name == "studies" || name == "populations" || name == "estimator_files";
-      if (what->empty() ? is_of_files : name != *what) continue;
+    for (const List& list : Lists()) {
+      if (what->empty() ? list.is_of_files : list.name != *what) continue;
       if (*format == "json") {
-        AddAsJson(name, lister(), &json);
+        AddAsJson(list.name, list.make(), &json);
         continue;
       }
-      fmt::print("{}\n", *format == "table" ? FormatColumns(lister()) : FormatMarkdown(lister()));
-      if (*format == "table" && name == "estimators") fmt::print("{}", DescribeLeftOut());
+      fmt::print("{}\n", *format == "table" ? FormatNarrowColumns(list.make()) : FormatMarkdown(list.make()));
+      if (*format == "table" && list.name == "estimators") fmt::print("{}", DescribeLeftOut());
     }
     if (*format == "json") fmt::print("{}", JsonText(kListFormat, json));
   });

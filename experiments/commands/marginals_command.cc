@@ -1,12 +1,8 @@
-#include <fmt/format.h>
 
 #include <memory>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/core/files/file_output.h"
 #include "experiments/statistics/marginals_output.h"
 
 namespace rcme {

@@ -1,11 +1,9 @@
-#include <fmt/format.h>
 
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/front_end_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"

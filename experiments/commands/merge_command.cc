@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"

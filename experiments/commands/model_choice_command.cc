@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
@@ -6,11 +5,8 @@
 #include "experiments/audit/model_choice/choice_output.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 
@@ -61,8 +57,8 @@ If the command is stopped or killed, run it again: finished work is kept in
 OUT/unfinished.part.
 
 Examples:
-  rcme model-choice studies/model_choice.yaml --out choice
-  rcme model-choice studies/model_choice.yaml --by outlier_ratio --out choice
+  rcme model-choice model_choice --out choice
+  rcme model-choice model_choice --by outlier_ratio --out choice
   rcme plot heat_map choice/model_choice.csv --x verdict --y truth --quantities share \
       --where outlier_ratio=0.2 --out matrix)");
   auto arguments = std::make_shared<ModelChoiceArguments>();

@@ -7,9 +7,8 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/front_end_options.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/real/sequences/layouts.h"
@@ -73,6 +72,7 @@ void CheckApplies(const PairsArguments& arguments) {
   refuse("--every", arguments.pairs.every > 1, images);
   refuse("--neighbours", arguments.pairs.neighbours > 1, images);
   refuse("--scores", arguments.pairs.has_scores, images);
+  refuse("--subpixel", arguments.pairs.detector.refines_corners, images);
   refuse("--window", arguments.pairs.window > 0, images);
   if (arguments.pairs.window > 0 && arguments.pairs.neighbours > 1)
     throw InputError("--neighbours: does not apply with --window, which pairs all images near each other");
@@ -87,13 +87,14 @@ std::string DescribePairsIdentity(const PairsArguments& arguments) {
   return fmt::format(
       "{} {} | sequences {} | name {} | K {} | {} {} | model {} | frames {} | detector {} {} | ratio {} {} | "
       "gate {} {} "
-      "{} {} | every {} | neighbours {} | truth_sd {}{}{}",
+      "{} {} | every {} | neighbours {} | truth_sd {}{}{}{}",
       arguments.layout, std::filesystem::weakly_canonical(d.folder).string(), fmt::join(d.only, " "), d.name,
       fmt::join(d.K, " "), arguments.lens, fmt::join(d.distortion, " "), d.model, d.max_frames,
       static_cast<int>(p.detector.detector), p.detector.max_features, p.matcher.max_ratio,
       p.matcher.is_mutual, arguments.gate, p.gate.least_matches, p.gate.least_parallax_deg, p.gate.sigma_px,
       p.every, p.neighbours, fmt::join(arguments.truth_sd, " "), p.has_scores ? " | scores" : "",
-      p.window > 0 ? fmt::format(" | window {}", p.window) : "");
+      p.window > 0 ? fmt::format(" | window {}", p.window) : "",
+      p.detector.refines_corners ? " | subpixel" : "");
 }
 
 // The command to suggest next: a study needs true motions; without them motions are estimated and covariances
@@ -102,7 +103,7 @@ std::string NameNextCommand(const std::vector<PairRow>& rows, const std::string&
   const auto is_kept = [](const PairRow& row) { return row.reason == kKeptPair; };
   const bool has_truth = std::ranges::any_of(
       rows, [&](const PairRow& row) { return is_kept(row) && !std::isnan(row.rotation_deg); });
-  if (has_truth) return fmt::format("rcme run studies/real_pairs.yaml --set folder={} --out run.sqlite", out);
+  if (has_truth) return fmt::format("rcme run real_pairs --set folder={} --out run.sqlite", out);
   const auto first = std::ranges::find_if(rows, is_kept);
   return fmt::format("rcme estimate {} (one motion), or rcme validate {} (are the covariances right?)",
                      (std::filesystem::path(out) / (first->pair_id + ".csv")).string(), out);

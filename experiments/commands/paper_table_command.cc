@@ -1,12 +1,9 @@
-#include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
 #include <memory>
 
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/twin_commands.h"
+#include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/real/paper_table/paper_table_output.h"
 
@@ -49,7 +46,7 @@ whose truth is in doubt (truth_in_doubt of the study) are counted apart. The pap
 printed figures follow, with intervals.
 
 Examples:
-  rcme run studies/paper_table.yaml --set folder=PAIRS --out run.sqlite
+  rcme run paper_table --set folder=PAIRS --out run.sqlite
   rcme paper-table run.sqlite --out table
   rcme paper-table run.sqlite --bound 5 --bound 10      outcomes at 5 and at 10 degrees
   rcme paper-table run.sqlite --group indoor='MH_*,V1_*,office' --group outdoor='kitti*')");

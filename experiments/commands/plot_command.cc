@@ -5,6 +5,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/plot_options.h"
+#include "experiments/core/text/columns.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"
@@ -94,8 +95,13 @@ void AddPlotCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "plot", "Draw a figure from a table, as PNG, PDF, SVG or TikZ: rcme plot KIND FILE [OPTIONS]");
   std::string kinds;
-  for (const Kind& kind : Kinds())
-    kinds += fmt::format("  {:<18} {:<16} {}\n", kind.name, kind.input, kind.doc);
+  for (const Kind& kind : Kinds()) {
+    std::string head = fmt::format("  {:<20} {:<16}", kind.name, kind.input);
+    for (const std::string& line : BreakLines(kind.doc, kTextWidth - 40)) {
+      kinds += fmt::format("{:<39} {}\n", head, line);
+      head.clear();
+    }
+  }
   command->footer("Kinds, their input, and what they show:\n" + kinds + R"(
 Every kind takes --width INCHES (3.3 for a column, with text of 7 to 9 points), --labels NAME=TEXT,
 --highlight A,B (the others grey), --no-caption, --format png,pdf,svg,tikz, and --style FILE.toml with

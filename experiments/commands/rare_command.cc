@@ -5,12 +5,8 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/rare/rare_output.h"
@@ -98,7 +94,7 @@ cannot be trusted is marked, with the reason. If the command is stopped or kille
 again: finished work is kept in OUT/unfinished.part.
 
 Examples:
-  rcme rare studies/rare_noise.yaml --out rare
+  rcme rare rare_noise --out rare
   rcme rare STUDY --set sigma_px=0.25 --replicates 40 --out rare
   rcme rare STUDY --event misleading_direction --risk 1e-5 --out misleading
   rcme rare STUDY --method stratified --trials 1000000 --out strata)");

@@ -4,9 +4,7 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/core/files/file_output.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/statistics/forecast_output.h"
 
 namespace rcme {

@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
@@ -14,8 +12,9 @@
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/trial_output.h"
 #include "experiments/statistics/trial_program.h"
+#include "experiments/study/absent_python.h"
 #include "experiments/trial/trial_columns.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "stats/constants.h"
@@ -49,6 +48,15 @@ void PrintData(const StudyPlan& plan, const Condition& condition, std::uint32_t 
     fmt::print("True motion\n{}", PoseText(*data.truth.cam2_from_cam1_true));
 }
 
+void PrintNumbers(const TrialRecord& record) {
+  VisitColumns(record, [](const StoredColumn& column, const auto& field) {
+    if constexpr (!std::is_same_v<std::decay_t<decltype(field)>, MotionStatus>) {
+      if (column.role != StoredColumn::Role::kKey)
+        fmt::print("  {:<26}{}\n", column.name, FormatField(field));
+    }
+  });
+}
+
 void PrintEstimate(const std::string& label, const MotionEstimate& estimate, const TrialRecord& record,
                    const FailureBounds& bounds) {
   fmt::print("\n{}: {} ({})\n  {}\n", label, StatusName(estimate.status),
@@ -58,24 +66,16 @@ void PrintEstimate(const std::string& label, const MotionEstimate& estimate, con
     fmt::print("{}  standard deviations [rotation, direction] (deg)\n{}", PoseText(estimate.cam2_from_cam1),
                MatrixText(kDegPerRad * estimate.pose_cov.diagonal().cwiseSqrt().transpose()));
   }
-  VisitColumns(record, [](const StoredColumn& column, const auto& field) {
-    if constexpr (!std::is_same_v<std::decay_t<decltype(field)>, MotionStatus>) {
-      if (column.role != StoredColumn::Role::kKey)
-        fmt::print("  {:<26}{}\n", column.name, FormatField(field));
-    }
-  });
+  PrintNumbers(record);
 }
 
-// Whether two records agree in every field but the time.
-bool AreEqual(const TrialRecord& a, const TrialRecord& b) {
-  const auto text_of = [](const TrialRecord& record) {
-    std::string text;
-    VisitColumns(record, [&](const StoredColumn& column, const auto& field) {
-      if (column.role != StoredColumn::Role::kTime) text += FormatField(field) + " ";
-    });
-    return text;
-  };
-  return text_of(a) == text_of(b);
+// Of a function of Python: what the file says.
+void PrintStored(const std::string& label, const MotionEstimate& absent, const TrialRecord* stored,
+                 const FailureBounds& bounds) {
+  fmt::print("\n{}: {}\n", label, absent.message);
+  if (stored == nullptr) return fmt::print("  not run yet\n");
+  fmt::print("  its record in the file: {}\n", OutcomeInFull(*stored, bounds));
+  PrintNumbers(*stored);
 }
 
 struct ReplayArguments {
@@ -92,10 +92,8 @@ void EmitCpp(const StudyPlan& plan, const Condition& condition, const TrialResul
   if (!arguments.estimator.empty())
     chosen = std::ranges::find(specs, arguments.estimator, &EstimatorSpec::label);
   if (chosen == specs.end()) {
-    std::vector<std::string> labels;
-    for (const EstimatorSpec& spec : specs) labels.push_back(spec.label);
     throw InputError(fmt::format("--estimator: {} is not an estimator of the run; it has: {}",
-                                 Quoted(arguments.estimator), fmt::join(labels, ", ")));
+                                 Quoted(arguments.estimator), fmt::join(ListLabels(specs), ", ")));
   }
   WriteFileWhole(arguments.cpp,
                  TrialAsCpp(plan, condition, result, static_cast<size_t>(chosen - specs.begin())));
@@ -118,11 +116,17 @@ void Replay(const ReplayArguments& arguments) {
   const TrialResult result = RunTrial(plan, condition, trial);
   PrintData(plan, condition, trial, result.data);
   for (size_t e = 0; e < result.records.size(); ++e) {
-    PrintEstimate(plan.study.estimators[e].label, result.estimates[e], result.records[e], plan.study.failure);
-    const bool is_stored = e < stored.size();
-    fmt::print("  the record in the file:   {}\n", !is_stored                               ? "not run yet"
-                                                   : AreEqual(stored[e], result.records[e]) ? "the same"
-                                                                                            : "DIFFERENT");
+    const EstimatorSpec& spec = plan.study.estimators[e];
+    const TrialRecord* in_file = e < stored.size() ? &stored[e] : nullptr;
+    if (spec.name == kPythonEstimator) {
+      PrintStored(spec.label, result.estimates[e], in_file, plan.study.failure);
+      continue;
+    }
+    PrintEstimate(spec.label, result.estimates[e], result.records[e], plan.study.failure);
+    const char* verdict = in_file == nullptr                                ? "not run yet"
+                          : AreEqualButForTime(*in_file, result.records[e]) ? "the same"
+                                                                            : "DIFFERENT";
+    fmt::print("  the record in the file:   {}\n", verdict);
   }
   fmt::print("{}", WhyAsText(plan, result));
   if (!arguments.cpp.empty()) EmitCpp(plan, condition, result, arguments);
@@ -145,13 +149,7 @@ Examples:
   rcme replay run.sqlite --condition 6 --trial 17 --emit-cpp trial.cc --estimator standard)");
   auto arguments = std::make_shared<ReplayArguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
-  command
-      ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
-      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
-      ->required();
-  command->add_option("--trial", arguments->trial, "trial, from 0")
-      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
-      ->required();
+  AddTrialChoice(command, &arguments->condition, &arguments->trial);
   CLI::Option* cpp =
       command->add_option("--emit-cpp", arguments->cpp, "also write a C++ program of one estimator's call");
   command

@@ -10,13 +10,17 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <new>
+#include <sstream>
 #include <string_view>
+#include <utility>
 
 #include "experiments/commands/command_tree.h"
 #include "experiments/commands/commands.h"
 #include "experiments/core/files/scratch_folder.h"
 #include "experiments/core/files/shared_files.h"
+#include "experiments/core/text/columns.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/text/program_name.h"
 #include "experiments/core/work/runner.h"
@@ -65,6 +69,69 @@ bool IsOfUnexpectedWords(const CLI::App& app, const CLI::ParseError& error) {
   std::abort();
 }
 
+// Help in lines of kTextWidth: an option's names and what it allows, then what it does, in a column.
+class NarrowHelp : public CLI::Formatter {
+ public:
+  std::string make_option(const CLI::Option* option, bool is_positional) const override {
+    return FormatEntry(make_option_name(option, is_positional) + make_option_opts(option),
+                       make_option_desc(option));
+  }
+  std::string make_subcommand(const CLI::App* command) const override {
+    return FormatEntry(command->get_display_name(true), command->get_description());
+  }
+  // Indented and empty lines are kept; other lines are set as paragraphs.
+  std::string make_footer(const CLI::App* app) const override {
+    std::string text, paragraph;
+    const auto end_paragraph = [&] {
+      if (!paragraph.empty()) text += FormatParagraph(std::exchange(paragraph, ""));
+    };
+    std::istringstream lines(app->get_footer());
+    for (std::string line; std::getline(lines, line);) {
+      if (!line.empty() && line.front() != ' ') {
+        paragraph += line + " ";
+        continue;
+      }
+      end_paragraph();
+      text += line + "\n";
+    }
+    end_paragraph();
+    return text;
+  }
+
+ private:
+  // Long lists of allowed words are broken after a comma.
+  static std::string BreakName(const std::string& name) {
+    std::string text, line = " ", word;
+    for (size_t i = 0; i < name.size(); ++i) {
+      word += name[i];
+      if (i + 1 < name.size() && name[i] != ',' && name[i + 1] != ' ') continue;
+      if (line.size() + word.size() > kTextWidth) {
+        text += line + "\n";
+        line = std::string(6, ' ');
+      }
+      line += (line == " " ? " " : "") + std::exchange(word, "");
+    }
+    return text + line;
+  }
+
+  std::string FormatEntry(const std::string& name, const std::string& description) const {
+    const size_t column = get_column_width();
+    std::string text = BreakName(name);
+    if (description.empty()) return text + "\n";
+    const bool is_beside = text.size() < column;
+    if (is_beside)
+      text.resize(column, ' ');
+    else
+      text += '\n';
+    std::string indent(is_beside ? 0 : column, ' ');
+    for (const std::string& line : BreakLines(description, kTextWidth - column)) {
+      text += indent + line + "\n";
+      indent.assign(column, ' ');
+    }
+    return text;
+  }
+};
+
 }  // namespace
 
 int RunCommandLine(int argc, const char* const* argv, const CommandSet& commands,
@@ -82,7 +149,8 @@ int RunCommandLine(int argc, const char* const* argv, const CommandSet& commands
                   commands.first_session),
       "rcme"};
   app.set_version_flag("--version", "rcme " RCME_VERSION);
-  app.get_formatter()->column_width(34);
+  app.formatter(std::make_shared<NarrowHelp>());
+  app.get_formatter()->column_width(30);
   app.failure_message([](const CLI::App* parsed, const CLI::Error& error) {
     return "rcme: " + CLI::FailureMessage::simple(parsed, error);
   });

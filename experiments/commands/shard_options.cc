@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "experiments/commands/time_limit.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/text/message.h"
 
 namespace rcme {

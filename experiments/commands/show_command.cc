@@ -7,8 +7,6 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_name.h"
 #include "experiments/core/files/file_output.h"
@@ -18,7 +16,6 @@
 #include "experiments/run/store/result_store.h"
 #include "experiments/statistics/trial_output.h"
 #include "parameters/input_error.h"
-#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -47,14 +44,8 @@ StudyPlan PlanFrom(const ShowArguments& arguments) {
 std::vector<size_t> NumbersOfEstimators(const Study& study, const std::vector<std::string>& labels) {
   std::vector<size_t> chosen;
   for (const std::string& label : labels) {
-    const auto spec = std::ranges::find(study.estimators, label, &EstimatorSpec::label);
-    if (spec == study.estimators.end()) {
-      std::vector<std::string> allowed;
-      for (const EstimatorSpec& other : study.estimators) allowed.push_back(other.label);
-      throw InputError(fmt::format("--estimators: study '{}' has no estimator '{}'{}; allowed: {}",
-                                   study.name, label, DidYouMean(label, allowed), fmt::join(allowed, ", ")));
-    }
-    const auto e = static_cast<size_t>(spec - study.estimators.begin());
+    const size_t e =
+        FindEstimator(study.estimators, label, fmt::format("--estimators: study '{}'", study.name));
     if (std::ranges::count(chosen, e) == 0) chosen.push_back(e);
   }
   return chosen;
@@ -121,7 +112,7 @@ the answer, by the estimator's own score, then the search failed and more sample
 Otherwise the model cannot distinguish them and more samples do not help.
 
 Examples:
-  rcme show studies/failure_vs_outliers.yaml --condition 6 --trial 17
+  rcme show failure_vs_outliers --condition 6 --trial 17
   rcme show run.sqlite --condition 6 --trial 17 --estimators standard,rcme_rank_aware
   rcme show study.yaml --condition 0 --trial 3 --seed 5 --set outlier_ratio=0.4
 `rcme report` names the first failure and refusal of every condition.)");
@@ -129,13 +120,7 @@ Examples:
   command
       ->add_option("study", arguments->study, "study file (YAML) or its name, or result file of `rcme run`")
       ->required();
-  command
-      ->add_option("--condition", arguments->condition, "condition, from 0 (column condition of the summary)")
-      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
-      ->required();
-  command->add_option("--trial", arguments->trial, "trial, from 0")
-      ->transform(WholeNumberIn(0, std::numeric_limits<std::uint32_t>::max()))
-      ->required();
+  AddTrialChoice(command, &arguments->condition, &arguments->trial);
   AddEstimatorsOption(command, &arguments->estimators,
                       "labels a,b,... of the estimators to draw, a row of images each");
   CLI::Option* out = command->add_option("-o,--out", arguments->out,

@@ -7,16 +7,12 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/commands/study_source.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/search/crossing_output.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "parameters/input_error.h"
 
 namespace rcme {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <string_view>
 
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
+#include "experiments/commands/common_options.h"
+#include "experiments/study/absent_python.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -68,6 +68,7 @@ bool IsResultFile(const std::string& path) {
 }
 
 StudyPlan PlanOfStored(const ResultStore& store, bool allow_process) {
+  AddAbsentPython(store.Description().study_yaml);
   Study study = store.StoredStudy();
   if (allow_process) AllowAndSay(&study.estimators);
   return store.Plan(study);

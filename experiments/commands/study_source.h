@@ -15,7 +15,7 @@ struct StudyChanges {
   std::vector<std::string> overrides;   // key=value each
   std::vector<std::string> estimators;  // estimator files to add
   std::int64_t seed = -1;               // negative: the study's own
-  bool allow_process = false;           // allow the commands that the files name (process_option.h)
+  bool allow_process = false;           // allow the commands that the files name (--allow-process)
 
   bool AreAny() const { return !overrides.empty() || !estimators.empty() || seed >= 0; }
 };

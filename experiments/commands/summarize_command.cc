@@ -4,8 +4,7 @@
 #include <utility>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/message.h"
@@ -37,7 +36,7 @@ std::string Tables(const ResultStore& store, const Summary& summary) {
 }
 
 struct Arguments {
-  std::string run, format = "table", raw, fifths_of, out;
+  std::string run, format = "table", raw, fifths_of, by, out;
   std::vector<std::string> quantities;  // empty: the usual ones of the format
   std::vector<std::string> labels;      // of a table for a paper
   bool with_times = false, is_pooled = false, is_by_strata = false;
@@ -124,6 +123,7 @@ Examples:
                  --labels standard=RANSAC
   rcme summarize run.sqlite --fifths-of crb_direction_deg
   rcme summarize run.sqlite --by-strata
+  rcme summarize run.sqlite --pooled --by opencv_magsac.threshold_sigma --format csv
   rcme summarize run.sqlite --raw csv --out trials.csv)");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("run", arguments->run, "result file of `rcme run`")->required();
@@ -173,6 +173,8 @@ Examples:
     if (arguments->is_by_strata) return PrintStrata(*arguments);
     const Pooling pooling = arguments->is_pooled ? Pooling::kPooled : Pooling::kPerCondition;
     if (arguments->raw.empty() && KeepsCounts(arguments->run)) {
+      if (!arguments->by.empty())
+        throw InputError(arguments->run + ": --by needs all trials, not counts (rcme run --keep all)");
       if (!arguments->fifths_of.empty())
         throw InputError(arguments->run + ": --fifths-of needs all trials, not counts (rcme run --keep all)");
       const RunCounts counts = OpenCounts(arguments->run);
@@ -183,9 +185,12 @@ Examples:
     }
     const ResultStore store = ResultStore::OpenForReading(arguments->run);
     if (!arguments->raw.empty()) return WriteTrials(store, arguments->with_times, arguments->out);
-    Summary summary = arguments->fifths_of.empty() ? Summarize(store, arguments->with_times, pooling)
-                                                   : Summarize(ReadRun(store), arguments->with_times,
-                                                               GroupByFifth(store, arguments->fifths_of));
+    const auto summarize = [&] {
+      if (!arguments->by.empty()) return SummarizeBy(ReadRun(store), arguments->with_times, arguments->by);
+      if (arguments->fifths_of.empty()) return Summarize(store, arguments->with_times, pooling);
+      return Summarize(ReadRun(store), arguments->with_times, GroupByFifth(store, arguments->fifths_of));
+    };
+    Summary summary = summarize();
     summary.preregistration = DecidePreregistered(store, arguments->run);
     WarnOfRefusals(summary);
     if (arguments->format == "table" && arguments->quantities.empty())

@@ -1,13 +1,11 @@
-#include <fmt/format.h>
 
 #include <filesystem>
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
-#include "experiments/commands/format_option.h"
 #include "experiments/commands/shard_options.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/commands/tuning_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
@@ -68,8 +66,8 @@ If the command is stopped or killed, run it again: finished work is kept in
 OUT/unfinished.part until the end.
 
 Examples:
-  rcme transfer studies/transfer_mu.yaml --out transfer
-  rcme transfer studies/tune_mu_lambda.yaml --by scene --out by_scene
+  rcme transfer transfer_mu --out transfer
+  rcme transfer tune_mu_lambda --by scene --out by_scene
   rcme transfer STUDY --shard 3/64 --out parts/3.json       the share of one machine
   rcme transfer STUDY --merge parts/*.json --out transfer   the bytes of a single run)");
   auto arguments = std::make_shared<TransferArguments>();

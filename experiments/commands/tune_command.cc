@@ -4,11 +4,9 @@
 #include <memory>
 
 #include "experiments/commands/commands.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/commands/tuning_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
@@ -154,7 +152,7 @@ choice of the first. The merged parts have the bytes of a single tuning
   rcme tune STUDY --merge parts/*.json --out tuned.yaml
 
 Examples:
-  rcme tune studies/tune_mu_lambda.yaml --out tuned.yaml --figures tuned
+  rcme tune tune_mu_lambda --out tuned.yaml --figures tuned
   rcme tune STUDY --out tuned.yaml --tune target=false_refusal --tune at_most=0.02
   rcme tune STUDY --repeat 200       checks the guarantee by 200 tunings with fresh seeds
   rcme run STUDY --seed 2 --add-estimator tuned.yaml --out run.sqlite   fresh trials

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include "experiments/commands/common_options.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/tuning_file.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 
@@ -34,7 +33,7 @@ StudyPlan MakeTuningPlan(const TuningArguments& arguments) {
   if (!study.tuning) {
     throw InputError(
         fmt::format("{}: has no block 'tune' (estimator, target, options); see "
-                    "studies/tune_mu_lambda.yaml",
+                    "the study tune_mu_lambda",
                     arguments.study));
   }
   if (study.repeats_per_scene > 1) {

@@ -5,13 +5,10 @@
 #include <optional>
 #include <set>
 
+#include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
-#include "experiments/commands/time_limit.h"
-#include "experiments/commands/twin_commands.h"
 #include "experiments/core/files/file_name.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"

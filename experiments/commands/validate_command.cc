@@ -8,10 +8,7 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/estimator_source.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
 #include "experiments/commands/shard_options.h"
-#include "experiments/commands/time_limit.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/work/stop_request.h"
@@ -25,9 +22,9 @@
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/study/study_file.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {
@@ -209,8 +206,8 @@ OUT/unfinished.part until the end.
 Examples:
   rcme validate PAIRS --out validation
   rcme validate PAIRS --set covariance=robust --scene kitti00
-  rcme validate studies/indoor_like.yaml --data noise=correlated --trials 40
-  rcme validate studies/indoor_like.yaml --images 8 --loops 8 --trials 20 --no-advice
+  rcme validate indoor_like --data noise=correlated --trials 40
+  rcme validate indoor_like --images 8 --loops 8 --trials 20 --no-advice
   rcme validate PAIRS --plant focal_length=0.01 --no-advice   would these pairs show it?)");
   auto arguments = std::make_shared<ValidateArguments>();
   command->add_option("pairs", arguments->pairs, "folders of match files, or study files (YAML)")->required();
@@ -220,11 +217,7 @@ Examples:
   AddFormatOption(command, &arguments->format);
   command->add_option("--scene", arguments->scene, "only this scene, or this condition of a study");
   AddSigmaOption(command, &arguments->sigma_px);
-  command
-      ->add_option("--noise", arguments->noise,
-                   "a file of `rcme calibrate-noise`: its sigma in place of --sigma, its corrections of the "
-                   "camera, and covariances for what it says is shared")
-      ->excludes("--sigma");
+  AddNoiseFileOption(command, &arguments->noise);
   command->add_option("--data", arguments->data, "key=value, repeatable: a setting of the study's data block")
       ->allow_extra_args(false);
   command->add_option("--trials", arguments->trials, "trials per condition of a study; default: the study's")

@@ -1,21 +1,17 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
-#include "experiments/commands/format_option.h"
-#include "experiments/commands/number_option.h"
-#include "experiments/commands/process_option.h"
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/files/yaml_input.h"
 #include "experiments/core/table/read_csv_table.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "experiments/study/population.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"

@@ -1,7 +1,5 @@
 #include "experiments/conform/calibration_work.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,8 @@
 #include "experiments/conform/conform_strata.h"
 
 #include <cmath>
-#include <string>
 
-#include "experiments/conform/region_kinds.h"
+#include "experiments/conform/conform_tables.h"
 #include "stats/constants.h"
 
 namespace rcme {

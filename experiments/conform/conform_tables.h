@@ -2,13 +2,28 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "experiments/conform/conform_report.h"
-#include "experiments/conform/region_kinds.h"
+#include "experiments/conform/cross_validate.h"
 #include "experiments/core/table/table.h"
 
 namespace rcme {
+
+// Upper limit of a region's size, deg: the region has all motions.
+inline constexpr double kWholeSpaceDeg = 180.0;
+
+// One of the regions that a report compares: the stated one, the conformed one and baselines. A region around
+// each answer is an ellipsoid of the scaled stated covariance, or a ball.
+struct RegionKind {
+  std::string name;
+  std::function<bool(const JudgedAnswer&)> covers;
+  std::function<double(const JudgedAnswer&)> size_deg;  // geometric mean of the semi-axes
+};
+
+// "stated" first and "conformed" last. A check has these two only; a calibration has baselines between them.
+std::vector<RegionKind> ListRegionKinds(bool is_check);
 
 // The share of answers for which `holds` is true, with an interval by groups. `more`: the groups of further
 // problems, which count as false.

@@ -11,7 +11,6 @@
 #include "experiments/core/text/columns.h"
 #include "experiments/trial/truth_error.h"
 #include "stats/conformal.h"
-#include "stats/distributions.h"
 #include "stats/risk_control.h"
 
 namespace rcme {

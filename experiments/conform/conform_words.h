@@ -1,7 +1,6 @@
 // The sentences of a conform report and of a conform file.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 

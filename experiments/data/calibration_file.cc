@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "experiments/data/match_file.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
+#include "parameters/settings.h"
 #include "simulator/camera_registry.h"
 
 namespace rcme {

@@ -1,8 +1,6 @@
 // Cameras from a file, for simulated pairs: the choice `cameras: from_file` and the key `calibration`.
 #pragma once
 
-#include <string>
-
 #include "experiments/data/settings.h"
 
 namespace rcme {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {

@@ -10,6 +10,7 @@
 
 #include "estimator/geometry/camera.h"
 #include "estimator/geometry/correspondence.h"
+#include "estimator/motion_problem.h"
 
 namespace rcme {
 
@@ -52,5 +53,13 @@ class CameraWarnings {
   };
   std::vector<Warning> warnings_;
 };
+
+// Estimates the size of an image from the camera's intrinsics and some points: width and height in px. It is
+// twice the principal point, or more if that does not contain all points. `x_px` selects the point in this
+// image.
+std::array<int, 2> LikelySize(const Camera& camera, const std::vector<Correspondence>& matches,
+                              Eigen::Vector2d Correspondence::*x_px);
+
+inline constexpr double kMaxImageLength = 1e6;  // px
 
 }  // namespace rcme

@@ -3,14 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/camera_noise.h"
 #include "experiments/data/match_folder.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "parameters/suggestion.h"
 #include "simulator/camera_registry.h"
 #include "simulator/motion_registry.h"
@@ -176,6 +177,13 @@ DataSources MakeDataSources(const Settings& settings, BaselineTiming search) {
   if (configured.simulated) {
     if (search == BaselineTiming::kNow) configured.simulated->FixBaseline();
     return {"", {{"", configured.simulated}}};
+  }
+  const std::string& folder = configured.folder.folder;
+  if (!std::filesystem::is_directory(folder)) {
+    throw InputError(
+        fmt::format("folder: '{}' is not a folder, seen from {}; name yours, with *.csv or *.csv.gz match "
+                    "files: --set folder=PAIRS",
+                    folder, std::filesystem::current_path().string()));
   }
   return {"pair_scene", LoadMatchFolder(configured.folder)};
 }

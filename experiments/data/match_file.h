@@ -105,8 +105,8 @@ MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given = std
 MatchFile ReadMatchesFromInput(const GivenCameras& given = std::nullopt);
 
 // Returns the problem for estimators: the matches and cameras of a file, the noise level assumed for the
-// images as they were taken (`sigma_px`, or else that of the file, or else kUsualSigmaPx), and each match's
-// sigma_px relative to the median (noise_scale).
+// images as they were taken (`sigma_px`, or else that of the file, or else kUsualSigmaPx), each match's
+// sigma_px relative to the median (noise_scale), and its score, negated if lower is better (match_quality).
 MotionProblem MakeMotionProblem(MatchFile file, std::optional<double> sigma_px);
 
 // Writes the same format, not compressed. Throws InputError if the path cannot be written; never leaves a

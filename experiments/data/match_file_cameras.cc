@@ -5,9 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "estimator/problem_check.h"
+#include "experiments/data/camera_plausibility.h"
 #include "experiments/data/colmap_camera.h"
-#include "experiments/data/likely_size.h"
 
 namespace rcme {
 namespace {

@@ -1,7 +1,6 @@
 // The cameras of a match file, from its header or given separately.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "estimator/geometry/lens.h"

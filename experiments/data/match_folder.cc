@@ -211,6 +211,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
     data.truth.sd = file.truth_sd;
     AddNumbers(file, data.truth.is_direction_known, &group.digest);
     if (file.assumed_sigma_px && !settings.sigma_px) group.digest.Add(*file.assumed_sigma_px);
+    for (const double score : file.scores) group.digest.Add(score);
     Fnv1a digest;
     AddMatches(file.matches, &digest);
     group.digests.push_back(digest.value());

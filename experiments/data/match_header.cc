@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "estimator/geometry/pose.h"
 
 namespace rcme {

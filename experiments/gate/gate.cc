@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "experiments/statistics/scenes_of_run.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 #include "stats/moments.h"

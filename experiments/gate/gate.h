@@ -75,7 +75,7 @@ std::int64_t CountRounds(const ReadableRun& run);
 // A trial with different outcomes for the two versions.
 struct ChangedTrial {
   std::uint32_t condition = 0, trial = 0;
-  std::string of_old, of_new;  // outcomes (trial_outcome.h)
+  std::string of_old, of_new;  // outcomes (trial_event.h)
   bool is_for_worse = false;   // success became refusal or failure, or refusal became failure
 };
 // Trials that changed for the worse come first.

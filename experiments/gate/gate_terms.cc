@@ -11,9 +11,9 @@
 #include <string_view>
 
 #include "experiments/study/command_permission.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "stats/fnv1a.h"
 
 namespace rcme {

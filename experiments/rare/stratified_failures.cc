@@ -9,7 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "experiments/audit/claims/cramer_rao.h"
+#include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/rare/failing_motion.h"
 #include "experiments/trial/simulate_draw.h"

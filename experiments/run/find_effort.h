@@ -3,11 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "experiments/study/study_plan.h"
-#include "stats/intervals.h"
 #include "stats/moments.h"
 
 namespace rcme {

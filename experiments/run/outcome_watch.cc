@@ -2,15 +2,24 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "experiments/core/text/message.h"
 
 namespace rcme {
+namespace {
+
+constexpr size_t kMostReasons = 5;
+
+}  // namespace
 
 void OutcomeWatch::Add(const TrialResult& result) {
   const std::lock_guard lock(mutex_);
   no_answers_.resize(result.records.size());
   if (!result.why_not_simulated.empty()) {
     ++num_not_simulated_;
+    ++reasons_[result.why_not_simulated.substr(0, result.why_not_simulated.find(':'))];
     NotSimulatedTrials& of_condition = not_simulated_[result.problem.condition];
     const std::uint32_t trial = result.problem.trial;
     if (of_condition.count == 0 || trial < of_condition.first)
@@ -53,6 +62,22 @@ void OutcomeWatch::WarnOfNoAnswers(const StudyPlan& plan) const {
   }
 }
 
+// "parallax_deg 200, num_boxes 12"
+std::string OutcomeWatch::ListReasons() const {
+  std::vector<std::pair<std::string, std::int64_t>> reasons(reasons_.begin(), reasons_.end());
+  std::ranges::stable_sort(reasons, std::ranges::greater(), [](const auto& one) { return one.second; });
+  std::vector<std::string> texts;
+  std::int64_t num_others = 0;
+  for (const auto& [reason, count] : reasons) {
+    if (texts.size() < kMostReasons)
+      texts.push_back(fmt::format("{} {}", reason, count));
+    else
+      num_others += count;
+  }
+  if (num_others > 0) texts.push_back(fmt::format("other reasons {}", num_others));
+  return fmt::format("{}", fmt::join(texts, ", "));
+}
+
 void OutcomeWatch::WarnOfNotSimulated(const StudyPlan& plan) const {
   if (not_simulated_.empty()) return;
   size_t num_whole = 0;
@@ -61,10 +86,11 @@ void OutcomeWatch::WarnOfNotSimulated(const StudyPlan& plan) const {
   const auto& [condition, example] = *not_simulated_.begin();
   PrintMessage(
       "warning: {} of the {} trials run now could not be simulated: in {} of {} conditions, in {} of them "
-      "all. "
-      "They are kept as {}, and no other rate counts them. Condition {}, trial {}: {}\n",
+      "all. Trials by reason: {}. They are kept as {}, and no other rate counts them. Condition {}, trial "
+      "{}: {}\n",
       num_not_simulated_, num_not_simulated_ + num_simulated_, not_simulated_.size(), plan.conditions.size(),
-      num_whole, StatusName(MotionStatus::kNotSimulated), condition, example.first, example.why);
+      num_whole, ListReasons(), StatusName(MotionStatus::kNotSimulated), condition, example.first,
+      example.why);
 }
 
 }  // namespace rcme

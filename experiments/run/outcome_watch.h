@@ -17,12 +17,14 @@ class OutcomeWatch {
  public:
   void Add(const TrialResult& result);
   // Prints to standard error: a warning for each estimator of the plan whose answers are all refusals or
-  // invalid, and one with the number of trials that were not simulated and the reason of the first.
+  // invalid, and one with the number of trials that were not simulated, the most frequent reasons, and the
+  // message of the first.
   void Warn(const StudyPlan& plan) const;
 
  private:
   void WarnOfNoAnswers(const StudyPlan& plan) const;
   void WarnOfNotSimulated(const StudyPlan& plan) const;
+  std::string ListReasons() const;
 
   // The trials of one condition that were not simulated.
   struct NotSimulatedTrials {
@@ -36,6 +38,8 @@ class OutcomeWatch {
   // By estimator: the number of each status except ok.
   std::vector<std::map<MotionStatus, std::int64_t>> no_answers_;
   std::map<std::uint32_t, NotSimulatedTrials> not_simulated_;  // by condition
+  // Number of trials by the reason: the message up to its first colon, such as "parallax_deg".
+  std::map<std::string, std::int64_t> reasons_;
 };
 
 }  // namespace rcme

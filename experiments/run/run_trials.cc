@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/core/text/message.h"
+#include "experiments/core/work/for_each_index.h"
 #include "experiments/run/outcome_watch.h"
 #include "experiments/run/store/result_store.h"
 
@@ -70,6 +71,17 @@ RunReport RunTrials(const StudyPlan& plan, const Shard& shard, int num_threads, 
   outcomes.Warn(plan);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   return {trials.num_trials(), trials.num_missing(), elapsed.count()};
+}
+
+void ForEachTrial(const StudyPlan& plan, TrialRange trials, const TrialWork& work, int num_threads) {
+  const std::int64_t per_condition = trials.end - trials.first, num_conditions = std::ssize(plan.conditions);
+  const bool is_by_condition = NumThreads(num_threads) == 1;
+  ForEachIndex(per_condition * num_conditions, num_threads, [&](std::int64_t i) {
+    const std::int64_t condition = is_by_condition ? i / per_condition : i % num_conditions;
+    const std::int64_t place = is_by_condition ? i % per_condition : i / num_conditions;
+    work(plan.conditions[static_cast<size_t>(condition)], trials.first + static_cast<std::uint32_t>(place),
+         condition * per_condition + place);
+  });
 }
 
 }  // namespace rcme

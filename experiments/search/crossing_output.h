@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "experiments/core/table/command_result.h"
 #include "experiments/search/rate_crossing.h"
 

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -16,7 +15,6 @@
 #include "experiments/study/study_file.h"
 #include "experiments/trial/trial.h"
 #include "parameters/input_error.h"
-#include "stats/constants.h"
 #include "stats/fnv1a.h"
 
 namespace rcme {

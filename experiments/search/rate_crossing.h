@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "experiments/core/work/kept_steps.h"
-#include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_event.h"
 #include "stats/level_crossing.h"
 

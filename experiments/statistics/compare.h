@@ -40,7 +40,7 @@ struct ComparisonRow {
   ComparedKind kind = ComparedKind::kEvent;
   std::string event;  // name of the event, score or error
   bool is_anytime_valid = false;
-  bool is_of_population = false;  // interval and p are those of the population (compared_pairs.h)
+  bool is_of_population = false;  // interval and p are those of the population
   bool is_of_scenes = false;      // scenes are repeated: n counts scenes, `counts` their trials
   std::int64_t n = 0;             // trials that count for both estimators
   PairedCounts counts;            // of events; first: the estimator, second: the reference
@@ -63,7 +63,7 @@ struct Comparison {
 // Compares in one pass over the raw trials, in memory that does not grow with them. `reference` is a label
 // of the study; empty: its first estimator. Pooled, all trials of all conditions count as those of one
 // condition without levels; if the conditions are a sample of a population, intervals and p-values are those
-// of the population (compared_pairs.h). Throws InputError if the study does not have the label, or as
+// of the population (stats/population_rate.h). Throws InputError if the study does not have the label, or as
 // ComparedByName does.
 Comparison Compare(const ReadableRun& run, const std::string& reference, const CompareOptions& options = {});
 Comparison Compare(const ResultStore& store, const std::string& reference,

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <set>
 
 #include "experiments/statistics/coverage_verdict.h"
 #include "experiments/statistics/failure_forecasts.h"
-#include "experiments/statistics/share_of_clusters.h"
 #include "experiments/statistics/trial_groups.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
+#include "stats/clustered_estimate.h"
 #include "stats/confidence_sequence.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
@@ -135,6 +136,20 @@ std::vector<VisibleAnswers> CollectAnswers(const ResultStore& store, const RunDe
 }
 
 }  // namespace
+
+ClusteredShare MeasureShareOfClusters(const std::vector<bool>& holds,
+                                      const std::vector<std::int64_t>& clusters) {
+  const std::set<std::int64_t> different(clusters.begin(), clusters.end());
+  ClusteredShare share;
+  share.n = std::ssize(holds);
+  share.count = std::ranges::count(holds, true);
+  share.has_shared_clusters = std::ssize(different) < share.n;
+  const std::vector<double> numbers(holds.begin(), holds.end());
+  share.interval = share.has_shared_clusters
+                       ? MeasureBoundedClusteredMean(numbers, {0.0, 1.0}, clusters).interval
+                       : ExactBinomialInterval(share.count, share.n);
+  return share;
+}
 
 std::vector<CoverageStratum> MeasureCoverageStrata(const VisibleAnswers& answers, StrataIntervals intervals) {
   std::vector<CoverageStratum> strata;

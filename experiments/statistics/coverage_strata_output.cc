@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/table/table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
 

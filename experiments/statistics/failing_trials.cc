@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "experiments/trial/trial_event.h"
-#include "experiments/trial/trial_outcome.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 #include "parameters/suggestion.h"

@@ -15,7 +15,7 @@ struct FailingTrial {
   std::uint32_t condition = 0;
   std::vector<std::string> levels;  // one level per factor
   std::uint32_t trial = 0;
-  std::string estimator, outcome;  // label; outcome of trial_outcome.h
+  std::string estimator, outcome;  // label; outcome of trial_event.h
   double rotation_error_deg = 0.0, direction_error_deg = 0.0, failure_probability = 0.0;  // NaN: not known
 };
 

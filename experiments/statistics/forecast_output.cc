@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/table/table.h"
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 

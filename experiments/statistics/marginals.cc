@@ -10,8 +10,9 @@
 #include <utility>
 
 #include "experiments/statistics/failure_forecasts.h"
+#include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/trial_groups.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
@@ -177,8 +178,11 @@ bool IsShare(MarginalQuantity quantity) {
 // Measures the share of failures minus the mean stated probability. If fewer than kLeastConditions
 // conditions had a failure, or fewer had a non-failure, the spread between conditions does not show how many
 // failures may have been missed. The interval is then extended by that of the failure rate. For instance, an
-// estimator that states P = 0.001 and did not fail in 100 trials is not too cautious.
-PopulationMean MeasureDifference(const std::vector<ConditionValues>& conditions, double confidence) {
+// estimator that states P = 0.001 and did not fail in 100 trials is not too cautious. For these very
+// conditions the trials take the place of the conditions: Student's law needs kLeastEvents of both kinds.
+PopulationMean MeasureDifference(const std::vector<ConditionValues>& conditions, bool is_of_these,
+                                 double confidence) {
+  constexpr std::int64_t kLeastEvents = 50;
   std::vector<Moments> moments;
   std::vector<ConditionCount> failures;
   size_t num_with_failures = 0, num_with_others = 0;
@@ -189,16 +193,20 @@ PopulationMean MeasureDifference(const std::vector<ConditionValues>& conditions,
     num_with_others += one.num_failed < one.moments.n();
   }
   PopulationMean mean = MeasurePopulationMean(moments, ConditionWeights::kByTrials, confidence);
-  if (std::min(num_with_failures, num_with_others) < kLeastConditions) {
-    const PopulationRate rate = MeasurePopulationRate(failures, ConditionWeights::kByTrials, confidence);
+  const PopulationRate rate = MeasurePopulationRate(failures, ConditionWeights::kByTrials, confidence);
+  if (is_of_these) mean.interval = mean.of_these_conditions;
+  const bool has_few = is_of_these ? std::min(rate.num_events, rate.n - rate.num_events) < kLeastEvents
+                                   : std::min(num_with_failures, num_with_others) < kLeastConditions;
+  if (has_few) {
+    const Interval& of_rate = is_of_these ? rate.of_these_conditions : rate.interval;
     const double stated = rate.value - mean.value;
-    mean.interval.lower = std::min(mean.interval.lower, rate.interval.lower - stated);
-    mean.interval.upper = std::max(mean.interval.upper, rate.interval.upper - stated);
+    mean.interval.lower = std::min(mean.interval.lower, of_rate.lower - stated);
+    mean.interval.upper = std::max(mean.interval.upper, of_rate.upper - stated);
   }
   return mean;
 }
 
-Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantity quantity,
+Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantity quantity, bool is_of_these,
                  double confidence) {
   Marginal marginal;
   marginal.quantity = quantity;
@@ -212,9 +220,10 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
     }
     if (log_sd_over_crb.n() > 0) marginal.sd_over_crb = std::exp(log_sd_over_crb.mean());
     const PopulationRate rate = MeasurePopulationRate(counts, ConditionWeights::kByTrials, confidence);
-    marginal.value = rate.value, marginal.interval = rate.interval, marginal.n = rate.n;
+    marginal.value = rate.value, marginal.n = rate.n;
+    marginal.interval = is_of_these ? rate.of_these_conditions : rate.interval;
   } else {
-    const PopulationMean mean = MeasureDifference(conditions, confidence);
+    const PopulationMean mean = MeasureDifference(conditions, is_of_these, confidence);
     marginal.value = mean.value, marginal.interval = mean.interval, marginal.n = mean.n;
   }
   marginal.num_conditions = std::ssize(conditions);
@@ -222,6 +231,19 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
       std::max({0.0, marginal.interval.lower - marginal.claimed, marginal.claimed - marginal.interval.upper});
   if (beyond > 0.0) marginal.excess = beyond / (0.5 * (marginal.interval.upper - marginal.interval.lower));
   return marginal;
+}
+
+// Intervals for these very conditions need trials that do not depend on each other.
+void CheckTrialsAreIndependent(const RunDescription& run) {
+  const char* why = HasCommonScenes(run)         ? "share their scenes (common_scenes: true)"
+                    : run.repeats_per_scene != 1 ? "repeat their scenes (repeats_per_scene)"
+                    : !run.stopping_rule.empty() ? "ended by a stopping rule (--until)"
+                                                 : nullptr;
+  if (why == nullptr) return;
+  throw InputError(fmt::format(
+      "marginals: the conditions are chosen draws, no sample of a population, and {}, which intervals for "
+      "these very conditions do not allow; run the study without this",
+      why));
 }
 
 std::vector<size_t> ChooseEstimators(const RunDescription& run, const std::vector<std::string>& labels) {
@@ -288,6 +310,9 @@ Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& option
   if (description.conditions.size() < kLeastConditions)
     throw InputError(fmt::format("marginals: the run has {} conditions; at least {} are needed",
                                  description.conditions.size(), kLeastConditions));
+  Marginals marginals;
+  marginals.is_of_these_conditions = HasChosenDraws(description.identity);
+  if (marginals.is_of_these_conditions) CheckTrialsAreIndependent(description);
   const Values values = CollectValues(run, description);
   const std::vector<size_t> draws = NumberDraws(description);
   const std::vector<Regime> regimes = ListRegimes(description, options.with_pairs);
@@ -306,11 +331,11 @@ Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& option
       }
     }
   }
-  Marginals marginals;
   marginals.num_intervals = questions.size();
   const double confidence = 1.0 - (1.0 - marginals.confidence) / static_cast<double>(questions.size());
   for (const Question& question : questions) {
-    Marginal row = Measure(question.conditions, kMarginalQuantities[question.quantity], confidence);
+    Marginal row = Measure(question.conditions, kMarginalQuantities[question.quantity],
+                           marginals.is_of_these_conditions, confidence);
     row.estimator = description.estimators[question.estimator].label;
     row.regime = question.regime->text;
     marginals.rows.push_back(std::move(row));

@@ -1,6 +1,7 @@
 // Measures how an estimator performs in each regime of a run: conditions in which one factor, or each of
 // two, has a certain level. Conditions count as a random sample of a population (stats/population_rate.h),
-// so each regime is a population of its own.
+// so each regime is a population of its own. Chosen draws (Population::draws) are no sample: their intervals
+// are for these very conditions with infinitely many trials each.
 //
 // The intervals are simultaneous (Bonferroni): all of them, over estimators, regimes and quantities, hold
 // together with the stated confidence. It is therefore allowed to search for the worst regime.
@@ -58,7 +59,8 @@ struct Marginal {
 };
 
 struct Marginals {
-  double confidence = 0.95;  // of all intervals together
+  double confidence = 0.95;             // of all intervals together
+  bool is_of_these_conditions = false;  // the conditions are chosen draws
   size_t num_intervals = 0;
   std::vector<Marginal> rows;  // greatest excess first, then by regime as listed
 };
@@ -76,8 +78,8 @@ struct MarginalOptions {
   std::vector<std::string> estimators;  // labels; empty: all
 };
 
-// Throws InputError for weighted trials, a run with fewer than kLeastConditions conditions, and an unknown
-// label.
+// Throws InputError for weighted trials, a run with fewer than kLeastConditions conditions, an unknown label,
+// and chosen draws with common or repeated scenes or a stopping rule.
 Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& options);
 
 }  // namespace rcme

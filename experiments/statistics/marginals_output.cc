@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "experiments/core/table/render_table.h"
@@ -21,7 +20,8 @@ Column Heading(Column column, const std::string& heading) {
   return column;
 }
 
-MarginalColumns ListColumns(bool for_people) {
+// `is_of_these_conditions`: see Marginals.
+MarginalColumns ListColumns(bool for_people, bool is_of_these_conditions) {
   MarginalColumns columns = {
       {Column::Key("estimator"), [](const Marginal& one) { return one.estimator; }},
       {Column::Key("regime"), [](const Marginal& one) { return one.regime.empty() ? "all" : one.regime; }},
@@ -42,7 +42,12 @@ MarginalColumns ListColumns(bool for_people) {
     columns.push_back({Column::Number("excess"), [](const Marginal& one) { return one.excess; }});
   columns.push_back({Heading(Column::Count("num_conditions"), "conditions"),
                      [](const Marginal& one) { return one.num_conditions; }});
-  if (!for_people) columns.push_back({Column::Count("n"), [](const Marginal& one) { return one.n; }});
+  if (!for_people) {
+    columns.push_back({Column::Count("n"), [](const Marginal& one) { return one.n; }});
+    columns.push_back({{.name = "interval", .json_name = "interval_kind"}, [=](const Marginal&) {
+                         return is_of_these_conditions ? "these_conditions" : "population";
+                       }});
+  }
   return columns;
 }
 
@@ -61,23 +66,30 @@ std::string MarginalsAsTable(const std::string& study, const Marginals& marginal
       FormatParagraph(fmt::format("Study {}: every estimator over all conditions, then the regimes in which "
                                   "it is farthest from what is claimed",
                                   study));
-  text += "\n" + RenderText(MakeTable(ListColumns(true), whole)) + "\n";
+  const MarginalColumns columns = ListColumns(true, marginals.is_of_these_conditions);
+  text += "\n" + RenderText(MakeTable(columns, whole)) + "\n";
   text += num_wrong == 0 ? FormatParagraph("In no regime does an interval exclude what is claimed.")
-                         : RenderText(MakeTable(ListColumns(true), worst));
+                         : RenderText(MakeTable(columns, worst));
+  const char* population =
+      marginals.is_of_these_conditions
+          ? "(Bonferroni). The conditions are chosen draws, which are no sample of a population: the intervals "
+            "hold for these very conditions only."
+          : "(Bonferroni), if the conditions are a random sample of a population.";
   text += "\n" +
           FormatParagraph(fmt::format("{} of {} regimes and quantities differ from what is claimed; {} are "
-                                      "shown. The {} intervals hold together with {:.0f} % "
-                                      "(Bonferroni), if the conditions are a random sample of a population. "
+                                      "shown. The {} intervals hold together with {:.0f} % {} "
                                       "sd_over_crb: how sharp the regions of a coverage are, the stated sd "
                                       "over its Cramer-Rao bound (geometric mean).",
                                       num_wrong, marginals.rows.size() - whole.size(), worst.size(),
-                                      marginals.num_intervals, 100.0 * marginals.confidence));
+                                      marginals.num_intervals, 100.0 * marginals.confidence, population));
   return text;
 }
 
 }  // namespace
 
-Table MakeMarginalsTable(const Marginals& marginals) { return MakeTable(ListColumns(false), marginals.rows); }
+Table MakeMarginalsTable(const Marginals& marginals) {
+  return MakeTable(ListColumns(false, marginals.is_of_these_conditions), marginals.rows);
+}
 
 CommandResult MakeMarginalsResult(const std::string& study, const Marginals& marginals, size_t num_shown) {
   const Table rows = MakeMarginalsTable(marginals);

@@ -9,7 +9,7 @@
 #include "experiments/core/files/checksum.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/store/counts_tables.h"
-#include "experiments/run/store/new_result_file.h"
+#include "experiments/run/store/new_trials.h"
 #include "experiments/statistics/run_counts.h"
 #include "experiments/statistics/summary_quantities.h"
 #include "parameters/input_error.h"

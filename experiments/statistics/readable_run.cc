@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "experiments/core/files/first_difference.h"
 #include "experiments/trial/trial_columns.h"
@@ -113,6 +112,19 @@ void TellApart(std::string* old_label, std::string* new_label) {
   if (*old_label != *new_label) return;
   *old_label += "_old";
   *new_label += "_new";
+}
+
+ReadableRun SelectLevel(const ReadableRun& run, const std::string& factor, const std::string& level) {
+  const std::vector<std::string>& factors = run.description.factors;
+  const auto index = static_cast<size_t>(std::ranges::find(factors, factor) - factors.begin());
+  std::vector<bool> is_kept;  // by condition
+  for (const DescribedCondition& condition : run.description.conditions)
+    is_kept.push_back(condition.levels.at(index) == level);
+  return {run.description, [whole = run.for_each_trial, is_kept](const VisitTrial& visit) {
+            whole([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+              if (is_kept[problem.condition]) visit(problem, records);
+            });
+          }};
 }
 
 ReadableRun JoinRuns(const ResultStore& first, const std::vector<size_t>& of_first, const ResultStore& second,

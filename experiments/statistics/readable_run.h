@@ -2,7 +2,6 @@
 // estimators have answered the same problems.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -22,6 +21,9 @@ struct ReadableRun {
 
 // The store must outlive the result.
 ReadableRun ReadRun(const ResultStore& store);
+
+// The same run with only the trials of the conditions with this level of a factor of the run.
+ReadableRun SelectLevel(const ReadableRun& run, const std::string& factor, const std::string& level);
 
 // Joins some estimators of two stores, which must outlive the result, in the trials that both hold: first
 // those of `first`, then those of `second`. A label that occurs in both gets "_old" and "_new". Throws

@@ -15,7 +15,9 @@ namespace {
 constexpr double kSignificanceLevel = 0.05;
 constexpr double kStatedCoverage = 0.95;
 constexpr double kLeastCoverage = 0.9, kMostCoverage = 0.98;  // beyond these, a 95 % region is far off
+constexpr std::int64_t kFewestAnswers = 10;                   // a coverage of fewer is no finding
 constexpr double kManyRefusals = 0.1;                         // a greater rate of refusals is a finding
+constexpr size_t kMostFindings = 8;
 
 // Returns the labels in the order of their first row.
 template <typename Row>
@@ -45,6 +47,11 @@ std::string FormatPlace(const std::vector<std::string>& levels,
 std::string RateAt(const Summary& summary, const SummaryRow& row) {
   return PercentWithInterval(row.value, row.interval) +
          FormatPlace(summary.levels.at(row.condition), summary.factor_names);
+}
+
+// Formats " over the population of study any_room"; empty if the numbers are not of a population.
+std::string FormatOverPopulation(const Summary& summary) {
+  return summary.is_of_population ? " over the population of study " + summary.study : "";
 }
 
 // Returns the distance of an interval from a range; 0 if they overlap.
@@ -88,7 +95,7 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
     double farthest = 0.0;
     int num_off = 0, num_known = 0;
     for (const SummaryRow& row : summary.rows) {
-      if (row.estimator != label || row.quantity != "nees_coverage" || row.n == 0) continue;
+      if (row.estimator != label || row.quantity != "nees_coverage" || row.n < kFewestAnswers) continue;
       ++num_known;
       const double distance = DistanceFrom(row.interval, kLeastCoverage, kMostCoverage);
       if (distance > 0.0) ++num_off;
@@ -99,7 +106,7 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
         {farthest,
          fmt::format(
              "Coverage: the 95 % regions that {} states contain the truth in {}{}{}: they are too {}{}.",
-             label, RateAt(summary, *worst), summary.is_of_population ? " over the population" : "",
+             label, RateAt(summary, *worst), FormatOverPopulation(summary),
              DescribeSharpness(summary, *worst), worst->value < kStatedCoverage ? "small" : "large",
              num_known > 1 ? fmt::format(", and far off in {} of {} conditions", num_off, num_known) : "")});
   }
@@ -140,9 +147,10 @@ void AddRefusals(const Summary& summary, std::vector<std::string>* sentences) {
       if (!most || row.value > most->value) most = &row;
     }
     if (!most || most->interval.lower < kManyRefusals) continue;
-    findings.push_back({most->value, fmt::format("Refusals: {} refuses {}{} ({}).", label,
-                                                 summary.is_of_population ? "" : "up to ",
-                                                 RateAt(summary, *most), most->quantity.text())});
+    findings.push_back(
+        {most->value,
+         fmt::format("Refusals: {} refuses {}{}{} ({}).", label, summary.is_of_population ? "" : "up to ",
+                     RateAt(summary, *most), FormatOverPopulation(summary), most->quantity.text())});
   }
   AddByWeight(std::move(findings), sentences);
 }
@@ -158,8 +166,8 @@ void AddRangesOfFailure(const Summary& summary, std::vector<std::string>* senten
     if (!least) continue;
     const std::string range =
         least->value == most->value
-            ? fmt::format("{} {}", PercentWithInterval(least->value, least->interval),
-                          summary.is_of_population ? "over the population" : "throughout")
+            ? PercentWithInterval(least->value, least->interval) +
+                  (summary.is_of_population ? FormatOverPopulation(summary) : " throughout")
             : fmt::format("from {} to {}", RateAt(summary, *least), RateAt(summary, *most));
     sentences->push_back(fmt::format("Failure rate of {}: {}.", label, range));
   }
@@ -239,7 +247,8 @@ void AddPairedDifferences(const Summary& summary, const Comparison& comparison,
 }
 
 // The farthest ahead of the reference comes first.
-void AddDifferencesInPopulation(const Comparison& comparison, std::vector<std::string>* sentences) {
+void AddDifferencesInPopulation(const Summary& summary, const Comparison& comparison,
+                                std::vector<std::string>* sentences) {
   std::vector<Finding> findings;
   for (const ComparisonRow& row : comparison.rows) {
     if (row.event != "failure_or_refusal" || row.n == 0) continue;
@@ -247,30 +256,53 @@ void AddDifferencesInPopulation(const Comparison& comparison, std::vector<std::s
     findings.push_back(
         {-row.difference,
          fmt::format(
-             "Over the population {} fails or refuses {:+.2f} points [{:+.2f}, {:+.2f}] against {} on the "
-             "same trials{}.",
-             row.estimator, 100.0 * row.difference, 100.0 * row.interval.lower, 100.0 * row.interval.upper,
-             comparison.reference,
+             "Over the population of study {} {} fails or refuses {:+.2f} points [{:+.2f}, {:+.2f}] against {} "
+             "on the same trials{}.",
+             summary.study, row.estimator, 100.0 * row.difference, 100.0 * row.interval.lower,
+             100.0 * row.interval.upper, comparison.reference,
              is_decided ? fmt::format(" (Holm-adjusted p < {})", kSignificanceLevel) : "")});
   }
   AddByWeight(std::move(findings), sentences);
+}
+
+// At most kMostFindings: the first of each kind, then the second of each, and so on, in the order of the
+// kinds.
+std::vector<std::string> KeepFirst(const std::vector<std::vector<std::string>>& kinds) {
+  std::vector<size_t> num_kept(kinds.size(), 0);
+  size_t num_all = 0, num_left = kMostFindings;
+  for (const std::vector<std::string>& kind : kinds) num_all += kind.size();
+  for (size_t rank = 0; rank < num_all; ++rank) {
+    for (size_t k = 0; k < kinds.size(); ++k) {
+      if (rank >= kinds[k].size() || num_left == 0) continue;
+      ++num_kept[k];
+      --num_left;
+    }
+  }
+  std::vector<std::string> sentences;
+  for (size_t k = 0; k < kinds.size(); ++k) {
+    sentences.insert(sentences.end(), kinds[k].begin(),
+                     kinds[k].begin() + static_cast<std::ptrdiff_t>(num_kept[k]));
+  }
+  if (num_all > sentences.size())
+    sentences.push_back(fmt::format("And {} more in the tables.", num_all - sentences.size()));
+  return sentences;
 }
 
 }  // namespace
 
 std::vector<std::string> ListFindings(const Summary& summary, const Comparison& comparison,
                                       const std::vector<ForecastMeasures>& forecasts) {
-  std::vector<std::string> sentences;
-  AddWrongCoverages(summary, &sentences);
+  std::vector<std::vector<std::string>> kinds(5);
+  AddWrongCoverages(summary, &kinds[0]);
   if (summary.is_of_population) {
-    AddDifferencesInPopulation(comparison, &sentences);
+    AddDifferencesInPopulation(summary, comparison, &kinds[1]);
   } else {
-    AddPairedDifferences(summary, comparison, &sentences);
+    AddPairedDifferences(summary, comparison, &kinds[1]);
   }
-  AddWrongProbabilities(forecasts, &sentences);
-  AddRefusals(summary, &sentences);
-  AddRangesOfFailure(summary, &sentences);
-  return sentences;
+  AddWrongProbabilities(forecasts, &kinds[2]);
+  AddRefusals(summary, &kinds[3]);
+  AddRangesOfFailure(summary, &kinds[4]);
+  return KeepFirst(kinds);
 }
 
 }  // namespace rcme

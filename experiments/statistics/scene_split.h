@@ -2,7 +2,6 @@
 // part within them, for runs with repeats per scene (stats/variance_split.h).
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "experiments/statistics/summarize.h"

@@ -1,5 +1,8 @@
 #include "experiments/statistics/summarize.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <map>
 
@@ -9,6 +12,8 @@
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/summary_cell.h"
 #include "experiments/statistics/summary_quantities.h"
+#include "parameters/input_error.h"
+#include "parameters/plain_text.h"
 
 namespace rcme {
 namespace {
@@ -32,7 +37,44 @@ std::vector<SummaryCell> CollectDraws(const ReadableRun& run) {
   return draws;
 }
 
+// Notes which conditions have a trial, and one that was simulated.
+class ConditionWatch {
+ public:
+  explicit ConditionWatch(size_t num_conditions)
+      : has_trial_(num_conditions), is_simulated_(num_conditions) {}
+
+  // Returns a run that also notes what its readers visit. The watch and the run must outlive it.
+  ReadableRun Watch(const ReadableRun& run) {
+    return {run.description, [this, &run](const VisitTrial& visit) {
+              run.for_each_trial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+                has_trial_[problem.condition] = true;
+                if (WasSimulated(records.front())) is_simulated_[problem.condition] = true;
+                visit(problem, records);
+              });
+            }};
+  }
+
+  void Report(Summary* summary) const {
+    for (size_t c = 0; c < has_trial_.size(); ++c) {
+      summary->num_conditions_with_trials += has_trial_[c];
+      summary->num_conditions_not_simulated += has_trial_[c] && !is_simulated_[c];
+    }
+  }
+
+ private:
+  std::vector<bool> has_trial_, is_simulated_;
+};
+
 bool IsWeighted(const SummaryCell& cell) { return cell.of_problems().is_weighted; }
+
+Summary SummarizePooled(const ReadableRun& run, bool with_times) {
+  if (HasPopulationIntervals(run.description)) {
+    const std::vector<SummaryCell> draws = CollectDraws(run);
+    if (std::ranges::none_of(draws, IsWeighted))
+      return SummarizePopulation(run.description, draws, with_times);
+  }
+  return Summarize(run, with_times, OneGroup());
+}
 
 }  // namespace
 
@@ -73,16 +115,44 @@ std::string KindName(SummaryRow::Kind kind) {
 
 Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling) {
   const RunDescription& description = run.description;
-  if (pooling == Pooling::kPooled) CheckMayBePooled(description);
-  if (pooling == Pooling::kPooled && HasPopulationIntervals(description)) {
-    const std::vector<SummaryCell> draws = CollectDraws(run);
-    if (std::ranges::none_of(draws, IsWeighted)) return SummarizePopulation(description, draws, with_times);
-  }
-  return Summarize(run, with_times, pooling == Pooling::kPooled ? OneGroup() : GroupByCondition(description));
+  if (pooling == Pooling::kPerCondition) return Summarize(run, with_times, GroupByCondition(description));
+  CheckMayBePooled(description);
+  ConditionWatch watch(description.conditions.size());
+  Summary summary = SummarizePooled(watch.Watch(run), with_times);
+  watch.Report(&summary);
+  return summary;
 }
 
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling) {
   return Summarize(ReadRun(store), with_times, pooling);
+}
+
+Summary SummarizeBy(const ReadableRun& run, bool with_times, const std::string& factor) {
+  const std::vector<std::string>& factors = run.description.factors;
+  const auto found = std::ranges::find(factors, factor);
+  if (found == factors.end())
+    throw InputError(fmt::format("--by: {} is not a factor of the run; it has: {}", Quoted(factor),
+                                 factors.empty() ? "none" : fmt::format("{}", fmt::join(factors, ", "))));
+  std::vector<std::string> levels;
+  for (const DescribedCondition& condition : run.description.conditions) {
+    const std::string& level = condition.levels.at(static_cast<size_t>(found - factors.begin()));
+    if (std::ranges::count(levels, level) == 0) levels.push_back(level);
+  }
+  Summary all;
+  for (const std::string& level : levels) {
+    Summary part = Summarize(SelectLevel(run, factor, level), with_times, Pooling::kPooled);
+    for (SummaryRow& row : part.rows) row.condition = static_cast<std::uint32_t>(all.levels.size());
+    if (all.levels.empty()) {
+      all = std::move(part);
+      all.factor_names = {factor};
+      all.levels = {{level}};
+    } else {
+      all.num_trials_done += part.num_trials_done;
+      all.rows.insert(all.rows.end(), part.rows.begin(), part.rows.end());
+      all.levels.push_back({level});
+    }
+  }
+  return all;
 }
 
 std::vector<std::string> FindAlwaysRefusing(const Summary& summary) {

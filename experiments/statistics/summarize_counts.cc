@@ -19,10 +19,11 @@ bool KeepsCounts(const std::string& path) {
   }
 }
 
-Summary SummarizeCounts(const RunCounts& counts, bool with_times, Pooling pooling) {
+namespace {
+
+Summary SummarizePooledCounts(const RunCounts& counts, bool with_times) {
   const RunDescription& run = counts.run;
-  if (pooling == Pooling::kPooled) CheckMayBePooled(run);
-  if (pooling == Pooling::kPooled && HasPopulationIntervals(run)) {
+  if (HasPopulationIntervals(run)) {
     const TrialGroups groups = GroupByDraw(run);
     std::vector<SummaryCell> draws(groups.levels.size(), SummaryCell(run.estimators.size()));
     ProblemRecord any_of;
@@ -32,10 +33,23 @@ Summary SummarizeCounts(const RunCounts& counts, bool with_times, Pooling poolin
     }
     return SummarizePopulation(run, draws, with_times);
   }
+  SummaryCell all(run.estimators.size());
+  for (const ConditionCounts& condition : counts.conditions) all.Merge(condition.cell);
+  return SummarizeCells(run, OneGroup(), {&all}, with_times);
+}
+
+}  // namespace
+
+Summary SummarizeCounts(const RunCounts& counts, bool with_times, Pooling pooling) {
+  const RunDescription& run = counts.run;
   if (pooling == Pooling::kPooled) {
-    SummaryCell all(run.estimators.size());
-    for (const ConditionCounts& condition : counts.conditions) all.Merge(condition.cell);
-    return SummarizeCells(run, OneGroup(), {&all}, with_times);
+    CheckMayBePooled(run);
+    Summary summary = SummarizePooledCounts(counts, with_times);
+    for (const ConditionCounts& condition : counts.conditions) {
+      summary.num_conditions_with_trials += condition.cell.num_trials() > 0;
+      summary.num_conditions_not_simulated += condition.cell.IsNotSimulated();
+    }
+    return summary;
   }
   std::vector<const SummaryCell*> cells;
   for (const ConditionCounts& condition : counts.conditions) cells.push_back(&condition.cell);

@@ -328,6 +328,17 @@ std::vector<CountedQuantity> SummaryCell::Texts() const {
   return texts;
 }
 
+bool SummaryCell::IsNotSimulated() const {
+  const std::vector<TrialQuantity>& quantities = TrialQuantities();
+  const auto place = std::ranges::find_if(quantities,
+                                          [](const TrialQuantity& quantity) {
+                                            return quantity.name == StatusName(MotionStatus::kNotSimulated);
+                                          }) -
+                     quantities.begin();
+  const QuantityCounts& counts = estimators_.front().counts.at(static_cast<size_t>(place));
+  return num_trials_ > 0 && std::llround(std::get<WeightedEvents>(counts).sum_weights) == num_trials_;
+}
+
 SummaryCell SummaryCell::FromTexts(const std::vector<CountedQuantity>& texts, size_t num_estimators,
                                    std::int64_t num_trials) {
   SummaryCell cell(num_estimators);

@@ -12,7 +12,6 @@
 // variance split for repeated scenes (scene_split.h), and the ranking of errors (error_ranking.h).
 #pragma once
 
-#include <string>
 #include <variant>
 #include <vector>
 
@@ -68,6 +67,8 @@ class SummaryCell {
   void Merge(const SummaryCell& other);
 
   std::int64_t num_trials() const { return num_trials_; }
+  // Returns whether there are trials and none was simulated. For cells of counts.
+  bool IsNotSimulated() const;
   bool ranks_errors() const { return !rankings_.empty(); }
   const QuantitySums& of_estimator(size_t estimator) const { return estimators_[estimator]; }
   const QuantitySums& of_problems() const { return problems_; }

@@ -303,6 +303,13 @@ std::string SummaryAsTable(const Summary& summary) {
       "hold all quantities, also those that leave refusals out.\n";
   if (!summary.truth_quality.empty()) text += summary.truth_quality + "\n";
   if (!summary.population.empty()) text += summary.population + "\n";
+  if (summary.num_conditions_not_simulated > 0) {
+    text += FormatParagraph(
+        fmt::format("{} of {} conditions have no trial that counts: the simulator cannot make them ({}). The "
+                    "warning of `rcme run` counts the reasons.",
+                    summary.num_conditions_not_simulated, summary.num_conditions_with_trials,
+                    StatusName(MotionStatus::kNotSimulated)));
+  }
   if (summary.num_retried > 0) {
     text += fmt::format("{} trials were run again because an answer was missing (rcme run --retry).\n",
                         summary.num_retried);

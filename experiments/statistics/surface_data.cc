@@ -11,7 +11,7 @@
 
 #include "experiments/core/text/json_output.h"
 #include "experiments/run/store/result_store.h"
-#include "experiments/study/find_estimator.h"
+#include "experiments/study/estimator_spec.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
 

@@ -11,7 +11,7 @@
 #include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/severity_columns.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 
 namespace rcme {
 namespace {

@@ -45,6 +45,7 @@ rcme::MotionProblem MakeProblem() {
   problem.camera2 = {%CAMERA2};
   problem.sigma_px = %SIGMA;
   problem.noise_scale = {%SCALES};
+  problem.match_quality = {%QUALITIES};
   return problem;
 }
 
@@ -125,13 +126,15 @@ std::string TrialAsCpp(const StudyPlan& plan, const Condition& condition, const 
   }
   const MotionProblem& problem = result.data.problem;
   const MotionEstimate& estimate = result.estimates.at(estimator);
-  std::string matches, options, scales;
+  std::string matches, options, scales, qualities;
   for (const Correspondence& match : problem.matches)
     matches += fmt::format("    {{{}, {}, {}, {}}},\n", Bits(match.x1_px.x()), Bits(match.x1_px.y()),
                            Bits(match.x2_px.x()), Bits(match.x2_px.y()));
   for (const auto& [name, value] : spec.options)
     options += fmt::format("{}{{{}, {}}}", options.empty() ? "" : ", ", CppText(name), CppText(value));
   for (const double scale : problem.noise_scale) scales += (scales.empty() ? "" : ", ") + Bits(scale);
+  for (const double quality : problem.match_quality)
+    qualities += (qualities.empty() ? "" : ", ") + Bits(quality);
   const StreamName name = NameOfTrial(plan, condition, result.problem.trial);
   return FillIn({{"TRIAL", fmt::format("{}", result.problem.trial)},
                  {"CONDITION", fmt::format("{}", condition.index)},
@@ -143,6 +146,7 @@ std::string TrialAsCpp(const StudyPlan& plan, const Condition& condition, const 
                  {"CAMERA2", CameraText(problem.camera2)},
                  {"SIGMA", Bits(problem.sigma_px)},
                  {"SCALES", scales},
+                 {"QUALITIES", qualities},
                  {"NAME", CppText(spec.name)},
                  {"OPTIONS", options},
                  {"STREAM", fmt::format("{}u, {}u, {}u, {}u", name.seed, name.condition, name.trial,

@@ -9,7 +9,7 @@
 
 #include "experiments/core/text/field_text.h"
 #include "experiments/trial/trial_columns.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 
 namespace rcme {
 namespace {

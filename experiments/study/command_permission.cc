@@ -4,9 +4,9 @@
 #include <fmt/ranges.h>
 
 #include "estimator/conform/conform_estimator.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {

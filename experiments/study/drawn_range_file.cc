@@ -20,20 +20,13 @@ namespace {
 constexpr const char *kAny = "any", *kLog = "log", *kAnyOf = "any of ", *kLogOf = "log ";
 constexpr size_t kMaxDepth = 4;  // nesting of words with ranges of their own
 
-template <typename Entry>
-std::vector<std::string> NamesOfEntries(const std::vector<Entry>& registry) {
-  std::vector<std::string> names;
-  for (const Entry& entry : registry) names.push_back(entry.name);
-  return names;
-}
-
 // The names that a choice of the data allows.
 std::vector<std::string> NamesOfChoice(const std::string& key) {
-  if (key == "scene") return NamesOfEntries(SceneRegistry());
-  if (key == "cameras") return NamesOfEntries(CameraRegistry());
-  if (key == "motion") return NamesOfEntries(MotionRegistry());
-  if (key == "noise") return NamesOfEntries(NoiseRegistry());
-  return NamesOfEntries(OutlierRegistry());
+  if (key == "scene") return ListNames(SceneRegistry());
+  if (key == "cameras") return ListNames(CameraRegistry());
+  if (key == "motion") return ListNames(MotionRegistry());
+  if (key == "noise") return ListNames(NoiseRegistry());
+  return ListNames(OutlierRegistry());
 }
 
 bool IsNumber(const YAML::Node& node) {

@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
 #include "experiments/study/command_permission.h"
+#include "parameters/input_error.h"
+#include "parameters/suggestion.h"
 #include "peers/peer_registry.h"
 
 namespace rcme {
@@ -69,6 +73,14 @@ std::unique_ptr<EstimatorModel> Configure(const EstimatorSpec& spec) {
 std::unique_ptr<MotionEstimator> Make(const EstimatorSpec& spec) {
   RequireAllowedCommands({spec});
   return Configure(spec)->Make();
+}
+
+size_t FindLabel(const std::vector<std::string>& labels, const std::string& label, const std::string& owner) {
+  const auto found = std::ranges::find(labels, label);
+  if (found == labels.end())
+    throw InputError(fmt::format("{} has no estimator '{}'{}; allowed: {}", owner, label,
+                                 DidYouMean(label, labels), fmt::join(labels, ", ")));
+  return static_cast<size_t>(found - labels.begin());
 }
 
 }  // namespace rcme

@@ -50,4 +50,22 @@ void CheckProcessEstimators(const std::vector<EstimatorSpec>& specs);
 std::unique_ptr<EstimatorModel> Configure(const EstimatorSpec& spec);
 std::unique_ptr<MotionEstimator> Make(const EstimatorSpec& spec);
 
+// The labels of estimators: of EstimatorSpec, DescribedEstimator or another type with a label.
+template <typename Estimator>
+std::vector<std::string> ListLabels(const std::vector<Estimator>& estimators) {
+  std::vector<std::string> labels;
+  for (const Estimator& estimator : estimators) labels.push_back(estimator.label);
+  return labels;
+}
+
+// Finds an estimator of a study or a run by its label: returns the index of `label` in `labels`. Throws
+// InputError that begins with `owner` ("--estimator: the study") and lists the labels.
+size_t FindLabel(const std::vector<std::string>& labels, const std::string& label, const std::string& owner);
+
+template <typename Estimator>
+size_t FindEstimator(const std::vector<Estimator>& estimators, const std::string& label,
+                     const std::string& owner) {
+  return FindLabel(ListLabels(estimators), label, owner);
+}
+
 }  // namespace rcme

@@ -8,10 +8,9 @@
 
 #include "experiments/data/make_data.h"
 #include "experiments/study/study.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
-#include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "parameters/text_lines.h"
 #include "stats/fnv1a.h"
 
@@ -175,6 +174,10 @@ std::string DescribePopulationIdentity(const Population& population,
 
 bool IsSampleOfPopulation(const std::string& identity) {
   return identity.find(std::string("\n") + kDrawsLine) != std::string::npos;
+}
+
+bool HasChosenDraws(const std::string& identity) {
+  return identity.find(std::string("\n") + kChosenLine) != std::string::npos;
 }
 
 std::string DescribePopulation(const std::string& identity) {

@@ -10,7 +10,6 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "parameters/settings.h"
@@ -89,5 +88,7 @@ std::string DescribePopulation(const std::string& identity);
 // Returns whether the identity is that of a sample from a population, rather than of a grid or of chosen
 // draws.
 bool IsSampleOfPopulation(const std::string& identity);
+// Returns whether the identity is that of chosen draws of a population (Population::draws).
+bool HasChosenDraws(const std::string& identity);
 
 }  // namespace rcme

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "experiments/core/text/program_name.h"
-#include "experiments/data/settings.h"
 #include "experiments/study/study_plan.h"
 
 namespace rcme {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {

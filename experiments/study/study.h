@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "experiments/data/data_source.h"
-#include "experiments/data/settings.h"
 #include "experiments/study/estimator_spec.h"
 #include "experiments/study/population.h"
 #include "experiments/study/stated_hypothesis.h"

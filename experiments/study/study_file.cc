@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "estimator/estimator_registry.h"
 #include "experiments/core/files/shared_files.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/camera_noise.h"
@@ -18,9 +17,9 @@
 #include "experiments/study/settle_study.h"
 #include "experiments/study/study_keys.h"
 #include "experiments/study/tuning_file.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "parameters/suggestion.h"
 
 namespace rcme {
@@ -107,7 +106,7 @@ void ReadEstimators(const Place& place, const YAML::Node& node, Study* study) {
 // The names that hypotheses may refer to; call this after the levels of the factors are canonical.
 StatableNames ListStatableNames(const Study& study) {
   StatableNames names;
-  for (const EstimatorSpec& spec : study.estimators) names.estimators.push_back(spec.label);
+  names.estimators = ListLabels(study.estimators);
   for (const Factor& factor : study.factors) names.factors.emplace_back(factor.key, factor.levels);
   return names;
 }
@@ -184,11 +183,9 @@ void OverrideData(const std::string& key, const std::string& value, Study* study
 }
 
 EstimatorSpec& LabelledEstimator(const std::string& label, Study* study) {
-  std::vector<std::string> labels;
-  for (EstimatorSpec& spec : study->estimators) {
-    if (spec.label == label) return spec;
-    labels.push_back(spec.label);
-  }
+  const auto spec = std::ranges::find(study->estimators, label, &EstimatorSpec::label);
+  if (spec != study->estimators.end()) return *spec;
+  const std::vector<std::string> labels = ListLabels(study->estimators);
   throw InputError(fmt::format("--set: the study has no estimator {}{}; its estimators: {}", Quoted(label),
                                DidYouMean(label, labels), fmt::join(labels, ", ")));
 }

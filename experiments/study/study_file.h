@@ -23,8 +23,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "experiments/study/study.h"
 

@@ -16,10 +16,10 @@
 #include "experiments/core/text/program_name.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "parameters/text_lines.h"
 
 namespace rcme {

@@ -10,8 +10,8 @@
 #include "experiments/data/make_data.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/study_file.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
+#include "parameters/settings.h"
 #include "stats/fnv1a.h"
 
 namespace rcme {

@@ -128,11 +128,9 @@ std::vector<TunedOption> ReadOptions(const Place& place, const YAML::Node& node,
 }  // namespace
 
 const EstimatorSpec& TunedEstimator(const Tuning& tuning, const std::vector<EstimatorSpec>& estimators) {
-  std::vector<std::string> labels;
-  for (const EstimatorSpec& spec : estimators) {
-    if (spec.label == tuning.estimator) return spec;
-    labels.push_back(spec.label);
-  }
+  const auto spec = std::ranges::find(estimators, tuning.estimator, &EstimatorSpec::label);
+  if (spec != estimators.end()) return *spec;
+  const std::vector<std::string> labels = ListLabels(estimators);
   throw InputError(fmt::format("tune: estimator: '{}' is no label of the study{}; give one of: {}",
                                tuning.estimator, DidYouMean(tuning.estimator, labels),
                                fmt::join(labels, ", ")));

@@ -7,7 +7,6 @@
 #include <type_traits>
 
 #include "experiments/trial/severity_columns.h"
-#include "experiments/trial/stored_column.h"
 #include "experiments/trial/trial.h"
 
 namespace rcme {
@@ -158,6 +157,18 @@ inline std::string FormatField(bool flag) { return flag ? "yes" : "no"; }
 template <typename Number>
 std::string FormatField(Number number) {
   return fmt::format("{}", number);
+}
+
+// Whether two records agree in every column but the time.
+inline bool AreEqualButForTime(const TrialRecord& a, const TrialRecord& b) {
+  const auto join_fields = [](const TrialRecord& record) {
+    std::string text;
+    VisitColumns(record, [&](const StoredColumn& column, const auto& field) {
+      if (column.role != StoredColumn::Role::kTime) text += FormatField(field) + " ";
+    });
+    return text;
+  };
+  return join_fields(a) == join_fields(b);
 }
 
 }  // namespace rcme

@@ -7,6 +7,31 @@ bool Refused(const TrialRecord& record, const FailureBounds&) { return HasRefuse
 
 }  // namespace
 
+TrialOutcome ClassifyOutcome(const TrialRecord& record, const FailureBounds& bounds) {
+  if (HasRefused(record)) return TrialOutcome::kRefusal;
+  if (HasFailed(record, bounds)) return TrialOutcome::kFailure;
+  return IsScored(record) ? TrialOutcome::kSuccess : TrialOutcome::kNotScored;
+}
+
+const char* Name(TrialOutcome outcome) {
+  switch (outcome) {
+    case TrialOutcome::kSuccess:
+      return "success";
+    case TrialOutcome::kFailure:
+      return "failure";
+    case TrialOutcome::kRefusal:
+      return "refusal";
+    case TrialOutcome::kNotScored:
+      break;
+  }
+  return "not_scored";
+}
+
+std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds) {
+  return record.status == MotionStatus::kOk ? Name(ClassifyOutcome(record, bounds))
+                                            : StatusName(record.status);
+}
+
 const std::vector<TrialEvent>& TrialEvents() {
   static const std::vector<TrialEvent> events = {
       {"failure", "a motion beyond a failure bound, or an answer that is not valid", HasFailed, true},

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "estimator/loop_inspection.h"
-#include "experiments/run/for_each_trial.h"
+#include "experiments/run/run_trials.h"
 #include "experiments/trial/simulate_draw.h"
 #include "experiments/trial/trial.h"
 

@@ -1,13 +1,10 @@
 #include "experiments/tuning/setting_counts.h"
 
-#include <fmt/format.h>
-
-#include <array>
 #include <map>
 
-#include "experiments/run/for_each_trial.h"
+#include "experiments/run/run_trials.h"
 #include "experiments/trial/simulate_draw.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "parameters/input_error.h"
-#include "stats/intervals.h"
 
 namespace rcme {
 namespace {

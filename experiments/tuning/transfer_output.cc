@@ -2,15 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/table/table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
-#include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_json.h"
+#include "experiments/tuning/tune_output.h"
 
 namespace rcme {
 namespace {

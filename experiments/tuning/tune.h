@@ -2,11 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
+#include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_range.h"
 #include "experiments/tuning/choose_setting.h"
 #include "experiments/tuning/setting_counts.h"
-#include "experiments/tuning/verify_setting.h"
+#include "stats/paired.h"
+#include "stats/risk_control.h"
 
 namespace rcme {
 
@@ -15,6 +18,19 @@ struct TuningTrials {
   TrialRange explore, calibrate, verify;
   explicit TuningTrials(const Tuning& tuning);
 };
+
+// What an estimator did on trials that played no part in tuning.
+struct VerifiedEstimator {
+  EstimatorSpec spec;
+  ErrorCount failure, refusal, failure_or_refusal;
+  // Number of trials in which failure or refusal happened to the first estimator (first) and to this one
+  // (second).
+  PairedCounts against_first;
+};
+
+// Measures every estimator of the plan in these trials of every condition, in the plan's order: by plain
+// calls, on the same problems for all.
+std::vector<VerifiedEstimator> VerifyEstimators(const StudyPlan& plan, TrialRange trials);
 
 // The source of the outcomes of a tuning's trials (tuning_work.h).
 struct TuningSource {

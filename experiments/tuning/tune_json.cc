@@ -8,12 +8,10 @@
 #include "estimator/estimator_registry.h"
 #include "estimator/loop_inspection.h"
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/study/tuning_file.h"
-#include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_output.h"
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
 #include "stats/pareto_front.h"
 #include "stats/thresholds.h"
 

@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <nlohmann/json.hpp>
 
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/trial/simulate_draw.h"
-#include "experiments/tuning/rate_output.h"
 #include "stats/intervals.h"
-#include "stats/thresholds.h"
 
 namespace rcme {
 namespace {
@@ -150,6 +148,22 @@ Table MakeChosenTable(const Tuning& tuning, const SettingPlan& settings, const R
 }
 
 }  // namespace
+
+double ComputeRate(const ErrorCount& count) {
+  return static_cast<double>(count.errors) / static_cast<double>(count.n);
+}
+
+Estimate EstimateRate(const ErrorCount& count) {
+  return {ComputeRate(count), ExactBinomialInterval(count.errors, count.n)};
+}
+
+std::string RateForTable(const ErrorCount& count) { return FormatEstimate(EstimateRate(count), kPercent); }
+
+nlohmann::ordered_json RateAsJson(const ErrorCount& count) {
+  nlohmann::ordered_json json = RenderJsonBounds(EstimateRate(count));
+  json["n"] = count.n;
+  return json;
+}
 
 std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
                         const std::vector<EntropyRoc>& rocs) {

@@ -1,14 +1,29 @@
 #pragma once
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "experiments/core/table/command_result.h"
+#include "experiments/core/table/table.h"
 #include "experiments/tuning/entropy_roc.h"
 #include "experiments/tuning/tune.h"
+#include "stats/risk_control.h"
 
 namespace rcme {
+
+// A rate of a tuning; NaN if n is 0.
+double ComputeRate(const ErrorCount& count);
+
+// The rate with its exact 95 % interval.
+Estimate EstimateRate(const ErrorCount& count);
+
+// "1.23 % [1.01, 1.50]"; "-" if n is 0.
+std::string RateForTable(const ErrorCount& count);
+
+// {"value", "lower", "upper", "n"}: the rate with its exact 95 % interval; value is null if n is 0.
+nlohmann::ordered_json RateAsJson(const ErrorCount& count);
 
 // The question, the tuning and the verification as a table; without a choice, what was tried.
 std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result, const std::vector<EntropyRoc>& rocs);

@@ -7,9 +7,6 @@
 // second round.
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "experiments/core/work/runner.h"
 #include "experiments/tuning/entropy_roc.h"
 #include "experiments/tuning/tune.h"

@@ -13,7 +13,7 @@ def report_of(data, check, effects, proposed, level, out):
     """`out`: the folder that receives next.yaml, as the user gave it."""
     parts = [heading(data), verdict(check, data), calibration(check, data)]
     if check.beats_constant:
-        parts += [indices_table(effects), groups_in_words(effects), ranges_table(effects), what_is_not_known(effects)]
+        parts += [indices_table(effects), groups_in_words(effects), ranges_table(effects, data), what_is_not_known(effects)]
     else:
         parts.append(paragraph(
             "So this run does not show that the quantity depends on the factors, or it has too few conditions or trials to "
@@ -103,8 +103,9 @@ def groups_in_words(effects):
     return paragraph(text + f"The quantity's standard deviation between conditions is {100 * effects.spread:.0f} points.")
 
 
-def ranges_table(effects):
-    lines = ["Mean over the population where all conditions have one level, % [90 % band]", "",
+def ranges_table(effects, data):
+    over = "the population" if data.is_sample.any() else "these conditions"
+    lines = [f"Mean over {over} where all conditions have one level, % [90 % band]", "",
              f"{'factor':<20}{'least':>14} {'at':<15}{'most':>14} at"]
     matter = effects.indices[effects.indices.matters & (effects.indices.group != "")].sort_values("total", ascending=False)
     for group in matter.group:

@@ -10,6 +10,7 @@ import pandas as pd
 from common.command_line import PlotError
 from surface.condition_encoder import ConditionEncoder
 from surface.condition_model import ConditionModel
+from surface.memory import check_memory
 
 FORMAT = "rcme surface data 1"
 LEAST_CONDITIONS = 20
@@ -75,7 +76,7 @@ class SurfaceData:
 
 
 def read_surface_data(path):
-    """Raises PlotError for what is no such file, and for too few conditions."""
+    """Raises PlotError for what is no such file, and for too few conditions or too many for this machine's memory."""
     try:
         with open(path, encoding="utf-8") as file:
             data = json.load(file)
@@ -94,6 +95,7 @@ def read_surface_data(path):
                         f"{data['quantity']}; there are {is_used.sum()}.")
     is_sample = conditions.run.map(lambda run: data["runs"][run]["is_sample"]).to_numpy(bool)
     encoder = ConditionEncoder().fit(pd.concat([levels, candidate_levels], ignore_index=True), scales_of(data["factors"]))
+    check_memory(int(is_used.sum()), len(encoder.groups))
     return SurfaceData(data["study"], data["study_yaml"], data["estimator"], data["quantity"], data["runs"], names,
                        conditions[is_used].reset_index(drop=True), levels[is_used].reset_index(drop=True),
                        is_sample[is_used], int((~is_used).sum()), pd.concat([candidates, candidate_levels], axis=1),

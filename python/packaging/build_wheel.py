@@ -1,8 +1,9 @@
-"""The build backend of pip (PEP 517): CMake builds, this file packs. It needs nothing beyond Python's own library, so that
-`pip install .` asks no network for a build tool.
+"""The build backend of pip (PEP 517): CMake builds, this file packs the module, the program and what the program reads. It
+needs nothing beyond Python's own library, so that `pip install .` asks no network for a build tool.
 
-    pip install .                                              builds in build/python-cp311
-    pip install . --config-settings build-dir=build/release    takes what is built there already
+    pip install .                                    builds in build/release if that has a module for this Python, else in
+                                                     build/python-cp311
+    pip install . --config-settings build-dir=FOLDER builds there
     pip install . --config-settings cmake-args=-DCMAKE_PREFIX_PATH=/opt/poselib
 """
 
@@ -11,6 +12,7 @@ import hashlib
 import pathlib
 import re
 import shlex
+import stat
 import subprocess
 import sys
 import sysconfig
@@ -20,6 +22,7 @@ import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PACKED = (".py", ".pyi", ".so", "py.typed")
+SHARED = {"studies": "*.yaml", "estimator_files": "*.yaml", "populations": "*.yaml", "plots": "*.py"}  # what the program reads
 
 
 def get_requires_for_build_wheel(config_settings=None):
@@ -30,13 +33,24 @@ def get_requires_for_build_sdist(config_settings=None):
     return []
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Without building."""
+    project = read_project()
+    for name, content in information(project).items():
+        path = pathlib.Path(metadata_directory) / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(content)
+    return info_folder(project)
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     settings = config_settings or {}
-    folder = build(ROOT / settings.get("build-dir", f"build/python-{python_tag()}"), shlex.split(settings.get("cmake-args", "")))
+    folder = build(ROOT / settings.get("build-dir", usual_folder()), shlex.split(settings.get("cmake-args", "")))
     files = {f"rcme/{file.name}": file.read_bytes() for file in sorted((folder / "python/rcme").iterdir())
              if file.name.endswith(PACKED)}
-    files |= {f"rcme/share/{file.relative_to(ROOT)}": file.read_bytes()
-              for folder in ("studies", "estimator_files", "populations") for file in sorted((ROOT / folder).rglob("*.yaml"))}
+    files["rcme/bin/rcme"] = (folder / "bin/rcme").read_bytes()
+    files |= {f"rcme/share/rcme/{file.relative_to(ROOT)}": file.read_bytes()
+              for shared, pattern in SHARED.items() for file in sorted((ROOT / shared).rglob(pattern))}
     project = read_project()
     name = f"{project['name']}-{project['version']}-{tag()}.whl"
     write_wheel(pathlib.Path(wheel_directory) / name, files, project)
@@ -60,15 +74,24 @@ def build_sdist(sdist_directory, config_settings=None):
     return path.name
 
 
+def module_in(folder):
+    return folder / "python/rcme" / ("_rcme" + sysconfig.get_config_var("EXT_SUFFIX"))
+
+
+def usual_folder():
+    """Within the project."""
+    return "build/release" if module_in(ROOT / "build/release").exists() else f"build/python-{python_tag()}"
+
+
 def build(folder, cmake_arguments):
-    """Builds the module, in a folder that is there already as it is configured, else for this very interpreter; returns the
+    """Builds the module and the program, in a folder that is there already as it is configured, else for this very interpreter; returns the
     folder."""
     if not (folder / "CMakeCache.txt").exists():
         subprocess.run(["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                         f"-DPython_EXECUTABLE={sys._base_executable}", "-DRCME_BUILD_PYTHON=ON", "-DRCME_BUILD_TESTS=OFF",
                         "-DRCME_BUILD_BENCHMARKS=OFF", *cmake_arguments], check=True, stdout=sys.stderr)
-    result = subprocess.run(["cmake", "--build", folder, "--target", "rcme_python"], stdout=sys.stderr, check=False)
-    module = folder / "python/rcme" / ("_rcme" + sysconfig.get_config_var("EXT_SUFFIX"))
+    result = subprocess.run(["cmake", "--build", folder, "--target", "rcme_python", "rcme"], stdout=sys.stderr, check=False)
+    module = module_in(folder)
     if result.returncode != 0 or not module.exists():
         raise SystemExit(f"rcme: {module} was not built. It needs pybind11 and Python's headers (Debian: pybind11-dev, "
                          "python3-dev) and the packages of scripts/packages.txt; scripts/install-deps installs them. A folder "
@@ -104,17 +127,28 @@ def metadata(project):
     return "\n".join(lines) + "\n\n" + (ROOT / "docs/python.md").read_text(encoding="utf-8")
 
 
+def info_folder(project):
+    return f"{project['name']}-{project['version']}.dist-info"
+
+
+def information(project):
+    """The files of the folder dist-info, but for its list of all files."""
+    info = info_folder(project)
+    scripts = "".join(f"{name} = {function}\n" for name, function in project["scripts"].items())
+    return {f"{info}/METADATA": metadata(project).encode(), f"{info}/entry_points.txt": f"[console_scripts]\n{scripts}".encode(),
+            f"{info}/WHEEL": (f"Wheel-Version: 1.0\nGenerator: rcme\nRoot-Is-Purelib: false\nTag: {tag()}\n").encode(),
+            f"{info}/LICENSE": (ROOT / "LICENSE").read_bytes(), f"{info}/NOTICE": (ROOT / "NOTICE").read_bytes()}
+
+
 def write_wheel(path, files, project):
-    info = f"{project['name']}-{project['version']}.dist-info"
-    files = {**files, f"{info}/METADATA": metadata(project).encode(),
-             f"{info}/WHEEL": (f"Wheel-Version: 1.0\nGenerator: rcme\nRoot-Is-Purelib: false\nTag: {tag()}\n").encode(),
-             f"{info}/LICENSE": (ROOT / "LICENSE").read_bytes(), f"{info}/NOTICE": (ROOT / "NOTICE").read_bytes()}
+    info = info_folder(project)
+    files = {**files, **information(project)}
     record = "".join(f"{name},sha256={hash_of(content)},{len(content)}\n" for name, content in files.items())
     files[f"{info}/RECORD"] = f"{record}{info}/RECORD,,\n".encode()
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in files.items():
             entry = zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0))
-            entry.external_attr = (0o755 if name.endswith(".so") else 0o644) << 16
+            entry.external_attr = (stat.S_IFREG | (0o755 if name.endswith((".so", "bin/rcme")) else 0o644)) << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, content)
 

@@ -2,8 +2,8 @@
 
     pose, info = rcme.estimate_relative_pose(x1, x2, camera1, camera2, {"sigma_px": 0.7})
 
-estimates one motion, `estimate_relative_poses` those of many pairs; `simulate` gives the matches of a simulated trial with their truth; `run` tries estimators on a study,
-functions of Python among them; `summarize`, `compare`, `reliability` and `audit` say what came of it, as data frames, `trials` gives
+estimates one motion, `estimate_relative_poses` those of many pairs; `simulate` gives the matches of a simulated trial with their truth, `write_pairs` brings such of your own into studies; `run` tries estimators on a study,
+functions of Python among them, `replay` one trial of it; `summarize`, `compare`, `reliability` and `audit` say what came of it, as data frames, `trials` gives
 every trial;
 `plot` draws them on axes of yours. docs/python.md begins at the beginning.
 
@@ -26,11 +26,12 @@ import pathlib
 from rcme import _rcme, plot
 from rcme._estimate import Pose, Poses, estimate_relative_pose, estimate_relative_poses, estimators, intrinsics
 from rcme._rcme import __version__
-from rcme._study import conditions, conform, run, simulate, tune
+from rcme._pairs import write_pairs
+from rcme._study import conditions, conform, replay, run, simulate, tune
 from rcme._tables import audit, compare, reliability, summarize, trials
 
 __all__ = ["Pose", "Poses", "audit", "compare", "conditions", "conform", "estimate_relative_pose", "estimate_relative_poses",
-           "estimators", "intrinsics", "plot", "reliability", "run", "simulate", "summarize", "trials", "tune", "__version__"]
+           "estimators", "intrinsics", "plot", "reliability", "replay", "run", "simulate", "summarize", "trials", "tune", "write_pairs", "__version__"]
 
-# The studies and estimator files that come with the package, by name.
-_rcme.use_share(str(pathlib.Path(__file__).resolve().parent / "share"))
+# The studies, estimator files and populations that come with the package, by name.
+_rcme.use_share(str(pathlib.Path(__file__).resolve().parent / "share" / "rcme"))

@@ -115,6 +115,35 @@ def run(study: Study, estimators: Optional[Mapping[str, Estimator]] = None, *, o
     return path
 
 
+def replay(run: str, condition: int, trial: int, estimators: Optional[Mapping[str, Callable[..., Any]]] = None, *,
+           allow_process: bool = False) -> pandas.DataFrame:
+    """Runs one trial of a result file again, as `rcme replay` does, your functions too.
+
+    Parameters
+    ----------
+    run : path of a result file
+    condition, trial : int, from 0
+    estimators : dict {label: function}; the functions of the run, with the same source as then
+    allow_process : as for `run`
+
+    Returns
+    -------
+    DataFrame with a row per estimator: estimator (its label), outcome, message (why it refused), status, the numbers of the
+    file's table trials, R (3, 3) and t (3, 1) of its answer, and same: whether the record in the file is equal but for the time
+    (None: the trial is not in the file).
+
+    Raises
+    ------
+    ValueError : no such file or condition, a function that is not given or has changed.
+    """
+    path = _check.existing("run", run, "a result file")
+    numbers = (_check.whole("condition", condition, 0, 2**32 - 1), _check.whole("trial", trial, 0, 2**32 - 2))
+    functions = {label: named_function(f"estimators[{label!r}]", function) for label, function in (estimators or {}).items()}
+    with alone("replay"):
+        rows = _rcme.replay(path, *numbers, functions, _check.yes_or_no("allow_process", allow_process))
+    return pandas.DataFrame(rows)
+
+
 def tune(study: Study, *, out: Optional[str] = None, threads: int = 0, seed: Optional[int] = None,
          overrides: Optional[Mapping[str, Any]] = None, allow_process: bool = False) -> dict[str, Any]:
     """Finds options that meet the target of the study's block `tune`, with a guarantee, as `rcme tune` does.

@@ -64,7 +64,7 @@ class Recipe:
 def estimators_of(program):
     """The names of a program's estimators."""
     listed = subprocess.run([str(program), "list", "estimators"], text=True, check=True, capture_output=True)
-    return {line.split()[0] for line in listed.stdout.splitlines() if line}
+    return {line.split()[0] for line in listed.stdout.splitlines() if line.strip() and not line.startswith(" ")}
 
 
 @functools.lru_cache(maxsize=None)

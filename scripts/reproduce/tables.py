@@ -86,6 +86,9 @@ def value_of(row):
 # What a row is shown as: a rate in per cent or as a share, with or without its interval, a number, the count.
 
 def rate(row, digits=1, unit=""):
+    """A dash where nothing was counted."""
+    if not value_of(row):
+        return "-"
     value = float(value_of(row))
     if not row.get("lower"):
         return f"{100 * value:.{digits}f}{unit}"

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "simulator/scenes/scenes.h"
 #include "simulator/scenes/view_volume.h"

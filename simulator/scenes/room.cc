@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "parameters/input_error.h"
 #include "simulator/scenes/scenes.h"

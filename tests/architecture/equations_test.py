@@ -3,6 +3,7 @@ at code of its own, every test is of a file of its row, every claim is one of th
 no label is cited in the code that it does not list. Needs nothing but this repository; the claims are those of the program in
 the environment variable RCME, without which they are not checked."""
 
+import json
 import os
 import pathlib
 import re
@@ -142,11 +143,8 @@ def read_source(path):
 
 def claims_of_the_program(program):
     """The claims with their labels, {id: label}."""
-    lines = subprocess.run([program, "list", "claims"], check=True, capture_output=True, text=True).stdout.splitlines()
-    rule = next(line for line in lines if line.startswith("---"))
-    ends = [match.span() for match in re.finditer("-+", rule)]
-    rows = lines[lines.index(rule) + 1:]
-    return {row[slice(*ends[0])].strip(): row[slice(*ends[1])].strip() for row in rows if row.strip()}
+    listed = subprocess.run([program, "list", "claims", "--format", "json"], check=True, capture_output=True, text=True)
+    return {claim["claim"]: claim["label"] for claim in json.loads(listed.stdout)["claims"]}
 
 
 class Equations(unittest.TestCase):

@@ -28,6 +28,16 @@ std::string Contents(const std::string& path) {
   return text.str();
 }
 
+// Before hours of work a user reads how to have fewer.
+TEST(Audit, ALongOneSaysWhatBoundsIt) {
+  const TempFolder folder;
+  const ProgramResult result = RunRcme({"audit", SourceFolder() + "/studies/failure_vs_outliers.yaml",
+                                        "--threads", "1", "--max-time", "1s", "--out", folder.Path("audit")});
+  EXPECT_EQ(result.exit_code, 75) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("To bound it: --max-time 30m"));
+  EXPECT_THAT(result.err, HasSubstr("--set FACTOR=LEVEL"));
+}
+
 TEST(Audit, PrintsTheTableAndWritesPageDataAndFigures) {
   const TempFolder folder;
   const std::string out = folder.Path("a/b");  // made, with its parents

@@ -101,7 +101,8 @@ TEST_F(BadInput, StudiesThatCannotBePlannedNameTheirFile) {
   const std::string bad =
       folder_.Write("bad.yaml", "data: {scene: match_files, folder: " + folder_.Path("none") +
                                     "}\nestimators: [{name: rcme}]\n");
-  EXPECT_TRUE(IsRefused(RunRcme({"run", bad, "--out", out_}), {"bad.yaml", "folder", "is not a folder"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"run", bad, "--out", out_}),
+                        {"bad.yaml", "folder", "is not a folder", "--set folder=PAIRS"}));
   EXPECT_TRUE(IsRefused(RunRcme({"run", folder_.path(), "--out", out_}), {folder_.path(), "is a folder"}));
   EXPECT_TRUE(
       IsRefused(RunRcme({"run", "/dev/zero", "--out", out_}), {"/dev/zero: is a device, not a study"}));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -115,6 +116,29 @@ TEST_F(Habits, EveryCommandShowsExamples) {
   EXPECT_GT(num_commands, 35);
 }
 
+// The longest line of a text, but for indented lines after `end`, which are examples.
+size_t LongestLine(const std::string& text, const std::string& end = "\n\n\n\n") {
+  std::istringstream lines(text.substr(0, text.find(end)));
+  size_t longest = 0;
+  for (std::string line; std::getline(lines, line);) longest = std::max(longest, line.size());
+  return longest;
+}
+
+TEST_F(Habits, HelpAndListsFitATerminal) {
+  for (const std::string command : {"run", "ask", "audit", "worst", "tune"})
+    EXPECT_LE(LongestLine(RunRcme({command, "--help"}).out, "Examples:"), 95u) << command;
+  const ProgramResult plot = RunRcme({"plot", "--help"});
+  EXPECT_LE(LongestLine(plot.out.substr(plot.out.find("Kinds")), "Examples:"), 80u);
+  for (const std::string list : {"options", "settings", "claims", "quantities", "scenes"})
+    EXPECT_LE(LongestLine(RunRcme({"list", list}).out), 80u) << list;
+  const std::string lists = RunRcme({"list"}).out;
+  EXPECT_LE(LongestLine(lists), 80u);
+  EXPECT_LT(std::ranges::count(lists, '\n'), 24);
+  for (const std::string name : {"estimators", "settings", "studies", "estimator_files"})
+    EXPECT_THAT(lists, HasSubstr("\n" + name + " "));
+  EXPECT_THAT(RunRcme({"list", "--format", "json"}).out, HasSubstr("\"settings\": ["));
+}
+
 TEST_F(Habits, ASlipOfThePenIsUnderstood) {
   EXPECT_TRUE(IsRefused(RunRcme({"sumarize", "run.sqlite", "more"}), {"there is no command 'sumarize'\n"}));
   EXPECT_TRUE(IsRefused(RunRcme({"--trails", "3"}), {"not expected: --trails 3\n"}));
@@ -200,6 +224,34 @@ TEST(Completion, OffersCommandsOptionsAndNames) {
   EXPECT_THAT(Completed({"rcme", "run", "x", "--shard", "au"}), ElementsAre("auto", "auto/8"));
   EXPECT_THAT(Completed({"rcme", "failures", "x", "--estimators", "opengv"}), ElementsAre("opengv_ransac"));
   EXPECT_THAT(Completed({"rcme", "summarize", "x", "--quantities", "kappa"}), ElementsAre("kappa_flag"));
+  EXPECT_THAT(Completed({"rcme", "ask", "--scene", "corr"}), ElementsAre("corridor"));
+  EXPECT_THAT(Completed({"rcme", "audit", "--only", "sampson.det"}), ElementsAre("sampson.determinant"));
+  EXPECT_THAT(Completed({"rcme", "solve", "x", "--over", "outlier_ra"}), ElementsAre("outlier_ratio"));
+  EXPECT_THAT(Completed({"rcme", "plot", "heat_map", "x", "--quantities", "kappa"}),
+              ElementsAre("kappa_flag"));
+}
+
+// Files are not offered where there is a list, but where they are allowed besides.
+TEST(Completion, OffersFilesOnlyWhereTheyAreAllowed) {
+  using testing::Contains;
+  EXPECT_THAT(Completed({"rcme", "ask", "--scene", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "audit", "--only", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "summarize", "x", "--format", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "plot", "heat_map", "x", "--quantities", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "list", "c"}), Not(Contains("c.bash")));
+  EXPECT_THAT(Completed({"rcme", "run", "x", "--add-estimator", "c"}), Contains("c.bash"));
+  EXPECT_THAT(Completed({"rcme", "run", "x", "--out", "c"}), Contains("c.bash"));
+}
+
+// Labels of a run are those of its study, not the names of the program's estimators.
+TEST_F(Habits, CompletionOffersTheLabelsOfTheRunOnTheLine) {
+  ASSERT_EQ(Run({"--out", out_}).exit_code, 0);
+  const ProgramResult labels = RunRcme({"completion", "labels", out_});
+  EXPECT_THAT(labels.out, HasSubstr("ours\n"));
+  EXPECT_THAT(Completed({"$RCME", "failures", out_, "--estimators", "our"}), testing::ElementsAre("ours"));
+  EXPECT_THAT(Completed({"$RCME", "replay", out_, "--estimator", "our"}), testing::ElementsAre("ours"));
+  EXPECT_TRUE(IsRefused(RunRcme({"completion", "labels"}), {"give the result file"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"completion", "bash", out_}), {"takes no file"}));
 }
 
 // The scripts that draw know their options themselves.

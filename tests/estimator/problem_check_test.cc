@@ -76,6 +76,20 @@ TEST(RefuseUnsolvable, NoiseScalesAreOnePerMatchFiniteAndPositive) {
   }
 }
 
+TEST(RefuseUnsolvable, MatchQualitiesAreOnePerMatchAndFinite) {
+  MotionProblem problem = OrdinaryProblem(20);
+  problem.match_quality.assign(20, -2.0);
+  EXPECT_FALSE(RefuseUnsolvable(problem, 8));
+  for (const double bad : {kNaN, kInfinity, -kInfinity}) {
+    problem.match_quality[7] = bad;
+    ExpectRefusal(problem, MotionStatus::kInvalidInput, "match_quality of match 7 is ");
+  }
+  for (const size_t count : {1u, 19u, 21u}) {
+    problem.match_quality.assign(count, 1.0);
+    ExpectRefusal(problem, MotionStatus::kInvalidInput, fmt::format("{} entries for 20 matches", count));
+  }
+}
+
 TEST(RefuseUnsolvable, BadCoordinateIsNamed) {
   for (const double bad : {kNaN, kInfinity, -kInfinity, 1.1e6, -1.1e6}) {
     for (int coordinate = 0; coordinate < 4; ++coordinate) {

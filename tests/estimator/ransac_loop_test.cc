@@ -7,7 +7,7 @@
 #include <limits>
 #include <new>
 
-#include "estimator/estimators/inlier_count.h"
+#include "estimator/estimators/standard.h"
 #include "estimator/kernels/block_search.h"
 #include "estimator/reference_search.h"
 #include "estimator/solvers/solver_table.h"

@@ -97,7 +97,10 @@ TEST(UndistortProblem, WithoutALensIsTheSame) {
 // r (1 - .5 r^2) is .544 at most: pixels beyond 163 px from the centre have no ray.
 TEST(UndistortProblem, LeavesOutWhatNoRayReaches) {
   const Lens folding{kCamera, LensModel::kRadtan, {-0.5}};
-  const UndistortedProblem made = UndistortProblem(folding, kNoLens, Distorted({1.0, 3.0, 1.0}));
+  MotionProblem distorted = Distorted({1.0, 3.0, 1.0});
+  distorted.match_quality = {3.0, 2.0, 1.0};
+  const UndistortedProblem made = UndistortProblem(folding, kNoLens, distorted);
+  EXPECT_EQ(made.problem.match_quality, std::vector<double>{2.0});
   EXPECT_EQ(made.kept, (std::vector<size_t>{1}));
   ASSERT_EQ(made.problem.matches.size(), 1u);
   EXPECT_EQ(made.problem.matches[0].x2_px, Eigen::Vector2d(330.0, 240.0));

@@ -14,6 +14,7 @@ mv "$scratch/first" "$scratch/prefix"
 # Studies and estimator files by their names, manual pages and completion, wherever the program was put.
 (cd / && "$scratch/prefix/bin/rcme" list studies | grep -q '^failure_vs_outliers ')
 test -s "$scratch/prefix/share/rcme/estimator_files/rcme_tuned.yaml"
+test -s "$scratch/prefix/share/rcme/study.schema.json"
 rm "$scratch/prefix/share/rcme/studies/failure_vs_outliers.yaml"
 if (cd / && "$scratch/prefix/bin/rcme" list studies | grep -q '^failure_vs_outliers '); then exit 1; fi  # these, not the source tree's
 grep -q 'RCME' "$scratch/prefix/share/man/man1/rcme-run.1"

@@ -1,6 +1,6 @@
-#include "parameters/find_setting.h"
-
 #include <gtest/gtest.h>
+
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {

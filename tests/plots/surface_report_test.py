@@ -3,7 +3,9 @@
 
 import pathlib
 import shlex
+import tracemalloc
 import unittest
+from unittest import mock
 
 from plot_test_case import PlotTestCase
 
@@ -13,6 +15,7 @@ import surface_report as script
 import yaml
 from known_surface import conditions, crossed_conditions, events, surface_file
 from scipy import special, stats
+from surface import memory
 from surface.cross_validation import (assign_folds, count_masses, cross_validate, exact_interval, interval_over_draws, score_count,
                                       standard_error_of_mean, transform_histogram)
 from surface.effects import WIDEST_BAND, measure_effects
@@ -260,6 +263,31 @@ class ScriptTest(SurfaceTestCase):
         code, out, err = self.run_script(self.write(self.known(is_sample=False)), "--out", self.out(), "--no-figures")
         self.assertEqual(code, 0, err)
         self.assertIn("None of them is a random draw", " ".join(out.split()))
+        self.assertIn("Mean over these conditions where", out)
+
+    def test_more_conditions_than_the_memory_holds_are_refused(self):
+        enough = memory.matrix_bytes(NUMBER, 20) / memory.SHARE + 1
+        with mock.patch.object(memory, "memory_bytes", lambda: enough / 10):
+            self.assert_refused(self.run_script(self.write(self.known()), "--out", self.out()),
+                                f"{NUMBER} conditions need", "fewer draws")
+        with mock.patch.object(memory, "memory_bytes", lambda: enough):
+            self.assertEqual(len(self.data(self.known()).trials), NUMBER)
+        self.assertEqual(memory.most_conditions(20, enough), NUMBER)
+        self.assertLess(memory.most_conditions(20, 8e9), 10_000)
+
+    def test_the_memory_of_a_fit_is_what_was_expected(self):
+        """Not statistical. The variances are learned from few conditions, so that matrices over all are the greatest."""
+        number = 400
+        levels, logit = conditions(number, 1)
+        data = self.data(surface_file(levels, events(logit, TRIALS, 0.4, 1), TRIALS))
+        with mock.patch("surface.condition_model.MOST_FOR_VARIANCES", 100):
+            tracemalloc.start()
+            data.fit()
+            _, peak = tracemalloc.get_traced_memory()
+            tracemalloc.stop()
+        expected = memory.matrix_bytes(number, len(data.encoder.groups))
+        self.assertLess(peak, 1.1 * expected)
+        self.assertGreater(peak, 0.6 * expected)
 
     def test_what_is_wrong_is_named(self):
         few = self.known()

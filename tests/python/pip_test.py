@@ -41,6 +41,23 @@ class Pip(unittest.TestCase):
                                     capture_output=True, text=True).stdout
             self.assertIn("rcme/_rcme", listed)
 
+            def rcme(*arguments):
+                return subprocess.run([f"{folder}/venv/bin/rcme", *arguments], check=True, env=environment, cwd=folder,
+                                      capture_output=True, text=True).stdout
+
+            rcme("run", "no_outliers_low_noise", "--trials", "2", "--out", "run.sqlite")
+            self.assertIn("failure", rcme("summarize", "run.sqlite"))
+            rcme("report", "run.sqlite", "--out", "report.html")
+            self.assertIn("<html", pathlib.Path(folder, "report.html").read_text(encoding="utf-8"))
+
+    def test_metadata_needs_no_build(self):
+        with tempfile.TemporaryDirectory() as folder:
+            call = "import build_wheel, sys; print(build_wheel.prepare_metadata_for_build_wheel(sys.argv[1]))"
+            info = subprocess.run([sys.executable, "-c", call, folder], check=True, capture_output=True, text=True,
+                                  cwd=ROOT / "python/packaging").stdout.strip()
+            self.assertIn("Name: rcme", pathlib.Path(folder, info, "METADATA").read_text(encoding="utf-8"))
+            self.assertIn("rcme = rcme._program:main", pathlib.Path(folder, info, "entry_points.txt").read_text(encoding="utf-8"))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -2,6 +2,7 @@
 ends a run; then the tables of a run, and tune."""
 
 import os
+import subprocess
 import sys
 import tempfile
 import threading
@@ -9,7 +10,9 @@ import unittest
 import warnings
 
 import numpy as np
+import pandas
 import rcme
+from program import PROGRAM
 from small_study import STUDY, TUNED_STUDY
 
 
@@ -195,6 +198,40 @@ class Tables(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.run_file = rcme.run(STUDY, {"worse": identity})
+
+    def test_a_trial_is_replayed_with_its_function_and_by_the_program_without_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = rcme.run(STUDY, {"mine": estimate_again}, out=os.path.join(folder, "run.sqlite"))
+            frame = rcme.replay(path, 1, 3, {"mine": estimate_again})
+            stored = rcme.trials(path).query("condition == 1 and trial == 3")
+            self.assertEqual(list(frame.estimator), list(stored.estimator))
+            self.assertTrue(frame.same.all())
+            np.testing.assert_allclose(frame.rotation_error_deg, stored.rotation_error_deg, rtol=1e-6)
+            self.assertIsNone(rcme.replay(path, 1, 5000, {"mine": estimate_again}).same[0])
+            with self.assertRaisesRegex(ValueError, "function 'mine' is not there"):
+                rcme.replay(path, 1, 3)
+            with self.assertRaisesRegex(ValueError, "has changed since"):
+                rcme.replay(path, 1, 3, {"mine": identity})
+            with self.assertRaisesRegex(ValueError, "condition: 2 is not allowed"):
+                rcme.replay(path, 2, 3, {"mine": estimate_again})
+            said = subprocess.run([PROGRAM, "replay", path, "--condition", "1", "--trial", "3"], capture_output=True, text=True,
+                                  check=True).stdout
+            self.assertIn("mine: a function of Python", said)
+            self.assertEqual(said.count("the record in the file:   the same"), 2)
+
+    def test_pairs_from_python_are_those_of_the_study(self):
+        study = {**STUDY, "factors": {"outlier_ratio": [0.4]}}
+        pairs = [{**rcme.simulate(study, trial=i), "scene": "mine"} for i in range(20)]
+        with tempfile.TemporaryDirectory() as folder:
+            written = rcme.write_pairs(os.path.join(folder, "pairs"), pairs)
+            of_files = rcme.trials(rcme.run({**STUDY, "factors": {}, "data": {"scene": "match_files", "folder": written}}))
+            pandas.testing.assert_series_equal(of_files.rotation_error_deg, rcme.trials(rcme.run(study)).rotation_error_deg)
+            with self.assertRaisesRegex(ValueError, "holds something"):
+                rcme.write_pairs(written, pairs)
+        for key, value, message in (("x2", np.zeros((3, 2)), "x2 3"), ("camera1", np.eye(3), "camera1"),
+                                    ("truth", {"R": 2 * np.eye(3), "t": [1, 0, 0]}, "truth: R"), ("sigma_px", -1.0, "sigma_px")):
+            with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, rf"pairs\[0\].*{message}"):
+                rcme.write_pairs(folder, [{**pairs[0], key: value}])
 
     def test_summarize(self):
         frame = rcme.summarize(self.run_file, times=True)

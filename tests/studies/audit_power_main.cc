@@ -22,7 +22,6 @@
 #include "experiments/audit/claims/call_estimator.h"
 #include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/claim_table.h"
-#include "experiments/audit/claims/cramer_rao.h"
 #include "experiments/audit/claims/decide_check.h"
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/sample_statistics.h"

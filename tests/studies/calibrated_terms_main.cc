@@ -29,7 +29,7 @@
 #include "estimator/calibrated/weigh_modes.h"
 #include "estimator/estimators/rcme_calibrated.h"
 #include "experiments/core/work/progress.h"
-#include "experiments/run/for_each_trial.h"
+#include "experiments/run/run_trials.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/simulate_draw.h"

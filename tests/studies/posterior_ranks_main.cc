@@ -24,7 +24,7 @@
 #include <optional>
 
 #include "estimator/estimators/rcme_calibrated.h"
-#include "experiments/run/for_each_trial.h"
+#include "experiments/run/run_trials.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/simulate_draw.h"

@@ -8,7 +8,7 @@
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial_columns.h"
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 

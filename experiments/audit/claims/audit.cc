@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 #include "experiments/core/work/for_each_index.h"
 #include "parameters/input_error.h"

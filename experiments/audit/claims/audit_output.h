@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "experiments/audit/claims/audit.h"
 #include "experiments/core/table/command_result.h"
 
@@ -14,7 +12,8 @@ CommandResult MakePlanResult(const Audit& plan);
 
 // The result of an audit. On the screen it has one row per claim: its verdict and the number that decided it,
 // with interval and n; on a study, one row per claim and condition. Files have one row per claimed or
-// measured number; JSON also has the contents of audit_json.h.
+// measured number; JSON also has the claims, conditions, targets, intervals and verdicts of
+// plots/audit.py.
 CommandResult MakeAuditResult(const Audit& audit);
 
 }  // namespace rcme

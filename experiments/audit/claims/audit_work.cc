@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numeric>
-#include <stdexcept>
 
 #include "estimator/instruction_set.h"
+#include "experiments/audit/claims/decide_check.h"
 #include "experiments/audit/claims/outcomes_json.h"
-#include "experiments/audit/claims/trial_blocks.h"
 #include "experiments/core/text/message.h"
 #include "experiments/core/text/program_name.h"
 #include "experiments/core/work/for_each_index.h"
@@ -17,6 +17,17 @@
 
 namespace rcme {
 namespace {
+
+// Most blocks of a round: up to this many machines get equal shares.
+constexpr std::int64_t kBlocksOfRound = 64;
+
+// The first look with at least this many trials.
+std::int64_t LookWith(const Check& check, Budget budget, double num_trials) {
+  std::int64_t look = 0;
+  do look = NextLook(check, budget, look);
+  while (static_cast<double>(look) < num_trials && look < check.limits.Max(budget));
+  return look;
+}
 
 // Everything on which the results depend, one line each.
 std::string Identity(const Audit& plan) {
@@ -76,7 +87,35 @@ size_t CountBlocks(const Audit& plan, const CheckPlace& place, const TrialBlocks
   return decision.IsDone() ? num_counted : blocks.RoundEnd(num_counted);
 }
 
+constexpr double kLongSeconds = 900.0;
+
+// How to make a long audit shorter.
+std::string DescribeBounds(const AuditOptions& options) {
+  const std::string of_study =
+      options.study_identity.empty() ? "" : ", --set FACTOR=LEVEL (one level of a factor of the study)";
+  return fmt::format(
+      "To bound it: --max-time 30m (the same command goes on later), --only FAMILY (`rcme list claims`){}\n",
+      of_study);
+}
+
 }  // namespace
+
+TrialBlocks::TrialBlocks(const Check& check, Budget budget) {
+  if (!check.not_possible.empty()) return;
+  const std::int64_t max_trials = check.limits.Max(budget);
+  double wanted =
+      CanEndEarly(check) ? static_cast<double>(check.limits.min) : static_cast<double>(max_trials);
+  while (begins_.back() < max_trials) {
+    const std::int64_t begin = begins_.back(), num_trials = LookWith(check, budget, wanted) - begin;
+    const std::int64_t num_blocks = std::min(num_trials, kBlocksOfRound);
+    for (std::int64_t block = 1; block <= num_blocks; ++block)
+      begins_.push_back(begin + num_trials * block / num_blocks);
+    round_ends_.push_back(begins_.size() - 1);
+    wanted = kRoundGrowth * static_cast<double>(begins_.back());
+  }
+}
+
+size_t TrialBlocks::RoundEnd(size_t block) const { return *std::ranges::upper_bound(round_ends_, block); }
 
 WorkPlan PlanAuditChecks(const Audit& plan) {
   return PlanOfChecks(plan, "audit on one machine", "check", AuditRound(ListCheckPlaces(plan).size(), 1));
@@ -86,10 +125,11 @@ Audit RunAudit(const std::vector<Claim>& all, const AuditOptions& options, Runne
   Audit audit = PlanAudit(all, options);
   const std::vector<CheckPlace> places = ListCheckPlaces(audit);
   const std::vector<double> seconds = EstimateSeconds(audit);
+  const double all_seconds = std::accumulate(seconds.begin(), seconds.end(), 0.0);
   PrintMessage("audit: {} claims, {} checks; at most {} on {} threads, less where a verdict falls early\n",
-               audit.claims.size(), places.size(),
-               DescribeDuration(std::accumulate(seconds.begin(), seconds.end(), 0.0)),
+               audit.claims.size(), places.size(), DescribeDuration(all_seconds),
                NumThreads(options.num_threads));
+  if (all_seconds > kLongSeconds) PrintMessage("{}", DescribeBounds(options));
   const auto milliseconds = [&](const ItemPlace& item) {
     return static_cast<std::int64_t>(1000.0 * seconds[item.group]) + 1;
   };

@@ -2,7 +2,7 @@
 // these claims have no cases yet.
 #pragma once
 
-#include "experiments/audit/claims/case_claim.h"
+#include "experiments/audit/claims/case.h"
 #include "experiments/trial/trial.h"
 
 namespace rcme {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "experiments/audit/claims/cramer_rao.h"
+#include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/design.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"

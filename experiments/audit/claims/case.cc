@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
+#include "estimator/uncertainty/motion_covariance.h"
 #include "experiments/data/make_data.h"
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
+#include "simulator/exact_match.h"
 #include "stats/distributions.h"
 
 namespace rcme {
@@ -18,6 +18,19 @@ Settings WithDefaults(const Settings& settings) {
 }
 
 }  // namespace
+
+std::optional<Matrix5d> CramerRaoBound(const Case& made) {
+  const MotionProblem& problem = made.problem();
+  std::vector<Correspondence> exact;
+  for (size_t i = 0; i < made.data.scene_point.size(); ++i) {
+    if (!made.data.truth.is_inlier_true[i]) continue;
+    const Eigen::Vector3d& point = made.scene.points_in_cam1[made.data.scene_point[i]];
+    exact.push_back(PinholeMatch(made.scene, point));
+  }
+  if (exact.size() < 5) return std::nullopt;
+  return FirstOrderMotionCovariance(made.pose_true(), problem.camera1, problem.camera2, exact,
+                                    problem.sigma_px);
+}
 
 CaseMaker CasesFrom(std::shared_ptr<const SimulatedData> simulated) {
   return [simulated = std::move(simulated)](const StreamName& name) {
@@ -81,6 +94,22 @@ std::vector<Target> CoverageTargets(int degrees_of_freedom, const ScaleTolerance
 
 Target IdentityTarget(const std::string& quantity, double tolerance) {
   return {quantity, Target::Kind::kCoverage, 1.0, AllowedRate(1.0, kIdentity.margin), tolerance};
+}
+
+Claim OnBuiltInScene(const CaseClaim& claim, const std::vector<Settings>& settings) {
+  Claim on_scene = claim.words;
+  for (const Settings& each : settings) {
+    on_scene.checks.push_back(MakeCheck(each, claim.statistic, claim.targets, claim.limits));
+    on_scene.checks.back().difficulty_statistic = claim.difficulty_statistic;
+    on_scene.checks.back().not_stated = claim.not_stated;
+  }
+  return on_scene;
+}
+
+Claim AtNoiseLevels(const CaseClaim& claim, const std::vector<double>& sigmas_px, const Settings& settings) {
+  Claim on_scene = claim.words;
+  on_scene.checks = ChecksAtNoiseLevels(sigmas_px, settings, claim.statistic, claim.targets, claim.limits);
+  return on_scene;
 }
 
 }  // namespace rcme

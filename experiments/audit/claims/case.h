@@ -3,6 +3,9 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "experiments/audit/claims/claim.h"
 #include "experiments/audit/claims/design.h"
@@ -22,6 +25,10 @@ struct Case {
   const MotionProblem& problem() const { return data.problem; }
   const RelativePose& pose_true() const { return scene.cam2_from_cam1_true; }
 };
+
+// The Cramer-Rao bound of the case's motion (5x5, [rotation, direction], rad^2): the inverse information at
+// the true motion and the exact points of the true matches. Nullopt if they do not determine a motion.
+std::optional<Matrix5d> CramerRaoBound(const Case& made);
 
 using CaseMaker = std::function<Case(const StreamName&)>;
 using Statistic = std::function<Outcome(Case&)>;
@@ -58,5 +65,35 @@ std::vector<Target> CoverageTargets(int degrees_of_freedom,
 // A target for an identity: the statistic, a relative deviation, is within `tolerance` in at least 999 of
 // 1,000 trials.
 Target IdentityTarget(const std::string& quantity, double tolerance);
+
+// The matches of a case that a statistic uses.
+enum class MatchesOf {
+  kSample,  // the first true matches, no more than needed; their order is random
+  kTruth,   // all true matches
+  kPair     // all matches, including wrong ones
+};
+struct CaseNeeds {
+  int num_true_matches = 8;  // minimum
+  MatchesOf matches = MatchesOf::kSample;
+  bool true_motion = true;  // compares with the true motion, whose direction must be defined
+};
+
+// A claim about a statistic of a trial, independent of the source of the trials: the built-in scene (below)
+// or a study (study_claims.h).
+struct CaseClaim {
+  Claim words;  // the claim without checks
+  Statistic statistic;
+  std::vector<Target> targets;
+  TrialLimits limits;
+  CaseNeeds needs;
+  std::optional<size_t> difficulty_statistic = std::nullopt;  // as in Check
+  std::string not_stated = {};                                // likewise
+};
+
+// The claim on the built-in scene, one check for each of the settings.
+Claim OnBuiltInScene(const CaseClaim& claim, const std::vector<Settings>& settings);
+
+// The claim on the built-in scene, one check per noise level.
+Claim AtNoiseLevels(const CaseClaim& claim, const std::vector<double>& sigmas_px, const Settings& settings);
 
 }  // namespace rcme

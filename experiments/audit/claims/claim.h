@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "experiments/data/data_source.h"
-#include "experiments/data/settings.h"
 #include "stats/equivalence.h"
 #include "stats/random.h"
 

@@ -38,6 +38,7 @@ MotionProblem FirstMatches(const MotionProblem& problem, double count) {
   MotionProblem part = problem;
   part.matches.resize(static_cast<size_t>(count));
   if (!part.noise_scale.empty()) part.noise_scale.resize(part.matches.size());
+  if (!part.match_quality.empty()) part.match_quality.resize(part.matches.size());
   return part;
 }
 

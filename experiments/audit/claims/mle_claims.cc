@@ -5,7 +5,7 @@
 #include "estimator/refinement/reprojection_mle.h"
 #include "estimator/refinement/sampson_mle.h"
 #include "experiments/audit/claims/calibration.h"
-#include "experiments/audit/claims/cramer_rao.h"
+#include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/trial/covariance_score.h"

@@ -1,7 +1,6 @@
 // The entropy of one model's inlier set, for the claims about entropy, Z-test and mu.
 #pragma once
 
-#include "estimator/hypothesis.h"
 #include "estimator/reference_search.h"
 #include "estimator/solvers/eight_point.h"
 #include "experiments/audit/claims/case.h"

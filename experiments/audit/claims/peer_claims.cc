@@ -4,7 +4,7 @@
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/geometry/sampson.h"
-#include "experiments/audit/claims/case_claim.h"
+#include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/design.h"
 #include "experiments/audit/claims/families.h"
 #include "experiments/audit/claims/sample_statistics.h"

@@ -12,7 +12,6 @@
 #include "stats/confidence_sequence.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
-#include "stats/equivalence.h"
 #include "stats/score_mean.h"
 
 namespace rcme {

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "experiments/data/make_data.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {
@@ -69,6 +69,7 @@ void KeepTrueMatches(TrialData* data, size_t num_matches) {
   };
   keep(&data->problem.matches);
   keep(&data->problem.noise_scale);
+  keep(&data->problem.match_quality);
   keep(&data->truth.is_inlier_true);
   keep(&data->truth.is_undetectable);
   keep(&data->scene_point);

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "experiments/audit/claims/case_claim.h"
+#include "experiments/audit/claims/case.h"
 #include "experiments/study/study_plan.h"
 
 namespace rcme {

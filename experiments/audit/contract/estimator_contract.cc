@@ -3,11 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
+#include <vector>
 
-#include "experiments/audit/contract/contract_bench.h"
+#include "experiments/audit/contract/contract_problems.h"
 #include "experiments/audit/contract/estimate_difference.h"
 #include "experiments/core/work/isolated_call.h"
 #include "experiments/study/study.h"
@@ -17,6 +22,76 @@
 
 namespace rcme {
 namespace {
+
+// A breach of the contract, found on a problem.
+struct Breach {
+  std::string problem, what;
+};
+
+// The tools of a contract check: the estimator, the problems, and the clock of its calls.
+class Bench {
+ public:
+  // The arguments must outlive the bench.
+  Bench(const EstimatorMaker& make, const ContractOptions& options, const Announce& announce)
+      : make_(make), estimator_(make()), options_(options), announce_(announce) {}
+
+  // Calls the estimator, or another one. May be called from any thread.
+  MotionEstimate Call(const ContractProblem& problem, const MotionEstimator* other = nullptr);
+  std::unique_ptr<MotionEstimator> MakeAnother() const { return make_(); }
+
+  // The problems that the options select. Throws InputError if there is none.
+  std::vector<ContractProblem> Chosen(std::vector<ContractProblem> problems) const;
+  // One problem per scene, for checks that call the estimator several times.
+  std::vector<ContractProblem> SomeOrdinary() const;
+
+  std::uint64_t seed() const { return options_.seed; }
+  // "slowest call 12 ms (problem)".
+  std::string SlowestCall() const;
+
+ private:
+  const EstimatorMaker& make_;
+  std::unique_ptr<MotionEstimator> estimator_;
+  const ContractOptions& options_;
+  const Announce& announce_;
+  std::mutex mutex_;  // guards the two below
+  double slowest_seconds_ = 0.0;
+  std::string slowest_;
+};
+
+constexpr size_t kNumMatchesOfSome = 60;  // every scene has one problem of this size
+
+MotionEstimate Bench::Call(const ContractProblem& problem, const MotionEstimator* other) {
+  announce_(problem.name);
+  RandomStream rng = StreamFor(problem.stream, StreamPurpose::kSampling);
+  const auto start = std::chrono::steady_clock::now();
+  MotionEstimate estimate = (other ? *other : *estimator_).Estimate(problem.problem, rng);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  const std::lock_guard lock(mutex_);
+  if (elapsed.count() > slowest_seconds_) {
+    slowest_seconds_ = elapsed.count();
+    slowest_ = problem.name;
+  }
+  return estimate;
+}
+
+std::vector<ContractProblem> Bench::Chosen(std::vector<ContractProblem> problems) const {
+  if (options_.problem.empty()) return problems;
+  std::erase_if(problems, [&](const ContractProblem& p) { return p.name != options_.problem; });
+  if (problems.empty())
+    throw InputError(fmt::format("--problem: this check has no problem '{}'", options_.problem));
+  return problems;
+}
+
+std::vector<ContractProblem> Bench::SomeOrdinary() const {
+  std::vector<ContractProblem> all = OrdinaryProblems(options_.seed);
+  if (!options_.problem.empty()) return Chosen(std::move(all));
+  std::erase_if(all, [](const ContractProblem& p) { return p.problem.matches.size() != kNumMatchesOfSome; });
+  return all;
+}
+
+std::string Bench::SlowestCall() const {
+  return fmt::format("slowest call {:.3g} ms ({})", 1e3 * slowest_seconds_, slowest_);
+}
 
 // A fault of an answer: one that the score would find, or one that only the contract forbids. Nullopt: sound.
 std::optional<std::string> FindContractFault(const MotionEstimate& estimate, const ContractProblem& problem) {

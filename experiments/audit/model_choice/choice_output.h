@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "experiments/audit/model_choice/choice_counts.h"
 #include "experiments/core/table/command_result.h"
 

@@ -1,7 +1,6 @@
 #include "experiments/audit/model_choice/true_kind.h"
 
 #include <numbers>
-#include <vector>
 
 #include "estimator/model_choice/homography.h"
 #include "estimator/observability.h"

@@ -7,8 +7,8 @@
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/data/make_data.h"
 #include "experiments/trial/simulate_draw.h"
-#include "parameters/find_setting.h"
 #include "parameters/parameter.h"
+#include "parameters/settings.h"
 #include "simulator/exact_match.h"
 
 namespace rcme {

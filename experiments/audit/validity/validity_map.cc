@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <numbers>
-#include <numeric>
 #include <span>
 
 #include "estimator/point_consistency.h"
@@ -16,7 +14,6 @@
 #include "experiments/core/table/render_table.h"
 #include "experiments/trial/covariance_score.h"
 #include "stats/distributions.h"
-#include "stats/intervals.h"
 #include "stats/measured_quantile.h"
 
 namespace rcme {

@@ -19,11 +19,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "experiments/core/table/table.h"
-#include "experiments/trial/trial_range.h"
 
 namespace rcme {
 

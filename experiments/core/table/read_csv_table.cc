@@ -1,6 +1,5 @@
 #include "experiments/core/table/read_csv_table.h"
 
-#include <algorithm>
 #include <limits>
 
 #include "experiments/core/text/field_text.h"

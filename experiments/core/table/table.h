@@ -114,4 +114,8 @@ std::vector<ColumnOf<Item>> LevelColumns(const std::vector<std::string>& factors
       factors, [](const Item& item) -> const auto& { return item.levels; });
 }
 
+// Adds a column with the interval after each column of estimates: "NAME_lower,NAME_upper" in CSV,
+// "NAME_interval" in JSON.
+Table WithIntervalColumns(const Table& table);
+
 }  // namespace rcme

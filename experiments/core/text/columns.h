@@ -16,6 +16,11 @@ std::string FormatParagraph(const std::string& text);
 // Formats rows as columns padded to equal width; the first row is the heading and is underlined.
 std::string FormatColumns(const std::vector<std::vector<std::string>>& rows);
 
+// Formats rows as columns in lines of kTextWidth: the last column is broken into lines below itself. Where
+// that would leave it too narrow, what does not fit stands below its row, with its heading if it is not the
+// last column.
+std::string FormatNarrowColumns(const std::vector<std::vector<std::string>>& rows);
+
 // Formats rows as a Markdown table; characters that would end a cell or begin a tag are escaped.
 std::string FormatMarkdown(const std::vector<std::vector<std::string>>& rows);
 

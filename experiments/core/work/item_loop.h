@@ -11,7 +11,7 @@
 namespace rcme {
 
 // Keeps finished items: in memory or in a part (core/work/runner.h), or in a result file
-// (run/trial_keeper.h).
+// (run/run_trials.h).
 class ItemKeeper {
  public:
   virtual ~ItemKeeper() = default;

@@ -7,8 +7,8 @@
 #include "estimator/calibrated/mode_covariance.h"
 #include "estimator/refinement/sampson_equations.h"
 #include "estimator/uncertainty/calibration_prior.h"
-#include "parameters/find_setting.h"
 #include "parameters/parameter.h"
+#include "parameters/settings.h"
 #include "stats/constants.h"
 
 namespace rcme {

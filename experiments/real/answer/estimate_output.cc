@@ -12,8 +12,8 @@
 #include "experiments/real/answer/motion_words.h"
 #include "experiments/real/answer/refusal_advice.h"
 #include "experiments/study/estimator_spec.h"
-#include "parameters/find_setting.h"
 #include "parameters/probability_text.h"
+#include "parameters/settings.h"
 #include "peers/outside_answer.h"
 #include "stats/constants.h"
 

@@ -7,10 +7,8 @@
 // Estimate itself never sees the truth.
 #pragma once
 
-#include <optional>
 #include <string>
 
-#include "experiments/real/answer/motion_evidence.h"
 #include "experiments/study/study.h"
 #include "experiments/trial/trial.h"
 

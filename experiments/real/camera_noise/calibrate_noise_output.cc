@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/field_text.h"
 #include "experiments/core/text/json_output.h"
 #include "stats/constants.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimator/robust_covariance/clustered_covariance.h"
-#include "experiments/real/truth_free/pair_answers.h"
+#include "experiments/real/truth_free/pair_set.h"
 #include "stats/pooled_scores.h"
 
 namespace rcme {

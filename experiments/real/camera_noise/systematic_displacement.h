@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "estimator/motion_problem.h"
 #include "experiments/data/camera_noise.h"
 #include "experiments/real/camera_noise/fitted_pairs.h"
 

@@ -37,8 +37,8 @@ static_assert(std::is_trivially_copyable_v<CacheHeader> && sizeof(CacheHeader) =
 static_assert(std::is_trivially_copyable_v<KeyPoint> && sizeof(KeyPoint) == 12);
 
 std::string MakeCacheName(const std::string& image, const DetectorOptions& options) {
-  const std::string about =
-      fmt::format("2 {} {} {}", CV_VERSION, static_cast<int>(options.detector), options.max_features);
+  const std::string about = fmt::format("2 {} {} {}{}", CV_VERSION, static_cast<int>(options.detector),
+                                        options.max_features, options.refines_corners ? " refined" : "");
   Fnv1a hash_about;
   hash_about.Add(about);
   return fmt::format("{:016x}{:016x}.features", Hash(image), Hash(image, hash_about));

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <map>
 #include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -35,6 +38,28 @@ double FinestSize(Detector detector) {
       break;
   }
   return 4.8;
+}
+
+// See DetectorOptions::refines_corners. Descriptors stay those of the places where ORB found the points.
+void RefineCorners(const cv::Mat& pixels, std::vector<cv::KeyPoint>* key_points) {
+  constexpr int kHalfWindow = 5, kCoarsestOctave = 1, kMaxRounds = 40;
+  constexpr float kMaxMovePx = 2.0f;
+  constexpr double kLeastMovePx = 1e-3;
+  std::vector<size_t> fine;
+  std::vector<cv::Point2f> places;
+  for (size_t i = 0; i < key_points->size(); ++i) {
+    if ((*key_points)[i].octave > kCoarsestOctave) continue;
+    fine.push_back(i);
+    places.push_back((*key_points)[i].pt);
+  }
+  if (fine.empty()) return;
+  cv::cornerSubPix(pixels, places, {kHalfWindow, kHalfWindow}, {-1, -1},
+                   {cv::TermCriteria::COUNT | cv::TermCriteria::EPS, kMaxRounds, kLeastMovePx});
+  for (size_t k = 0; k < fine.size(); ++k) {
+    cv::Point2f& place = (*key_points)[fine[k]].pt;
+    const cv::Point2f move = places[k] - place;
+    if (std::hypot(move.x, move.y) <= kMaxMovePx) place = places[k];
+  }
 }
 
 // Returns the descriptors as a matrix with a row per key point, which shares their memory.
@@ -107,10 +132,13 @@ size_t CountDescriptorBytes(Detector detector) {
 }
 
 Features DetectFeatures(const GreyImage& image, const DetectorOptions& options) {
+  if (options.refines_corners && options.detector != Detector::kOrb)
+    throw InputError("--subpixel: only orb places key points at whole pixels; give --detector orb with it");
   const cv::Mat pixels(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.grey.data()));
   std::vector<cv::KeyPoint> key_points;
   cv::Mat descriptors;
   Make(options)->detectAndCompute(pixels, cv::noArray(), key_points, descriptors);
+  if (options.refines_corners) RefineCorners(pixels, &key_points);
   std::vector<int> order(key_points.size());
   for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
   if (options.max_features > 0 && order.size() > static_cast<size_t>(options.max_features)) {

@@ -17,7 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "estimator/geometry/correspondence.h"
 #include "experiments/real/images/grey_image.h"
 
 namespace rcme {
@@ -28,6 +27,10 @@ const std::vector<std::pair<std::string, Detector>>& DetectorNames();
 struct DetectorOptions {
   Detector detector = Detector::kSift;
   int max_features = 0;  // keep the strongest; 0: all (ORB: 2,000, as in ORB-SLAM2)
+  // ORB places key points at whole pixels of its scales. This moves those of the two finest scales to the
+  // corner nearby, where the gradients of a window are perpendicular to the lines to it (cv::cornerSubPix).
+  // Moves of more than 2 px are not made.
+  bool refines_corners = false;
 };
 
 struct KeyPoint {
@@ -49,6 +52,7 @@ size_t CountDescriptorBytes(Detector detector);
 // even if the image was scaled down. OpenCV 4.6 places SIFT key points a quarter of a pixel too far to the
 // right and below, because it doubles the image about pixel borders and halves it about pixel centres (later
 // versions have an option). This is corrected, as it would be a quarter of a pixel in the principal point.
+// Throws InputError for refines_corners with another detector than ORB.
 Features DetectFeatures(const GreyImage& image, const DetectorOptions& options);
 
 struct MatcherOptions {

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "experiments/data/match_folder.h"
-#include "parameters/find_setting.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/settings.h"
 #include "parameters/text_lines.h"
 #include "stats/median_ratio.h"
 
@@ -227,8 +227,7 @@ PaperTable MakePaperTable(const ResultStore& run, const std::vector<SceneGroup>&
     throw InputError(
         "the run keeps only counts, but the table needs every trial; run it without --keep counts");
   const StudyPlan plan = run.Plan(run.StoredStudy(), PlanEstimators::kNotMade);
-  PaperTable table{plan.study.name, {}, plan.study.failure, {}};
-  for (const EstimatorSpec& spec : plan.study.estimators) table.estimators.push_back(spec.label);
+  PaperTable table{plan.study.name, ListLabels(plan.study.estimators), plan.study.failure, {}};
   const std::vector<SceneEvents> scenes = ListSceneEvents(run, plan, clusters);
   std::vector<const SceneEvents*> all;
   for (const SceneEvents& scene : scenes) {

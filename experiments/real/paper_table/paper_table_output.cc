@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "experiments/core/table/command_result.h"
 #include "experiments/real/paper_table/paper_table.h"
 

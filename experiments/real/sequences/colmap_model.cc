@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 
 #include "experiments/data/colmap_camera.h"

@@ -1,7 +1,6 @@
 // Reads a reconstruction of COLMAP: poses and cameras.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>

@@ -7,7 +7,6 @@
 #include "experiments/real/sequences/layout_files.h"
 #include "experiments/real/sequences/layouts.h"
 #include "experiments/real/sequences/timed_frames.h"
-#include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
 

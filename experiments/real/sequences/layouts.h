@@ -2,7 +2,6 @@
 // names a path for anything missing, damaged or contradictory.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "experiments/real/sequences/sequence.h"

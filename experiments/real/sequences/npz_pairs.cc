@@ -7,7 +7,7 @@
 
 #include "estimator/problem_check.h"
 #include "estimator/undistortion.h"
-#include "experiments/data/likely_size.h"
+#include "experiments/data/camera_plausibility.h"
 #include "experiments/real/sequences/layout_files.h"
 #include "experiments/real/sequences/listed_pairs.h"
 #include "experiments/real/sequences/npz_file.h"

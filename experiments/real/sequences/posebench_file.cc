@@ -6,7 +6,6 @@
 #include <hdf5.h>
 
 #include <algorithm>
-#include <cstring>
 
 #include "experiments/data/match_file.h"
 #include "parameters/input_error.h"

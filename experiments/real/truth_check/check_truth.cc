@@ -10,7 +10,7 @@
 #include <set>
 #include <utility>
 
-#include "experiments/core/work/make_in_order.h"
+#include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"

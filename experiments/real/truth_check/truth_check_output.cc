@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"

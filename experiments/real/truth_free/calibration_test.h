@@ -8,7 +8,7 @@
 
 #include "estimator/geometry/camera.h"
 #include "experiments/real/truth_free/camera_faults.h"
-#include "experiments/real/truth_free/pair_answers.h"
+#include "experiments/real/truth_free/pair_set.h"
 #include "experiments/real/truth_free/truth_free_verdict.h"
 #include "stats/pooled_scores.h"
 

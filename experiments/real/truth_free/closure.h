@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "experiments/real/truth_free/loops.h"
-#include "experiments/real/truth_free/pair_answers.h"
+#include "experiments/real/truth_free/pair_set.h"
 #include "stats/median_ratio.h"
 
 namespace rcme {

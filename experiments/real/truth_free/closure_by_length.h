@@ -6,7 +6,7 @@
 
 #include "experiments/core/table/table.h"
 #include "experiments/real/truth_free/closure.h"
-#include "experiments/real/truth_free/pair_answers.h"
+#include "experiments/real/truth_free/pair_set.h"
 
 namespace rcme {
 

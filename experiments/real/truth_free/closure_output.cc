@@ -1,10 +1,7 @@
 #include "experiments/real/truth_free/closure_output.h"
 
-#include <fmt/format.h>
-
-#include "experiments/core/table/interval_columns.h"
 #include "experiments/core/table/render_table.h"
-#include "experiments/core/text/field_text.h"
+#include "experiments/core/table/table.h"
 
 namespace rcme {
 namespace {

@@ -2,10 +2,8 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "estimator/motion_estimator.h"
-#include "experiments/real/truth_free/pair_set.h"
 
 namespace rcme {
 

@@ -116,6 +116,7 @@ std::string DescribePairs(const PairSet& set) {
         bytes.Add(x);
     }
     for (const double scale : pair.problem.noise_scale) bytes.Add(scale);
+    for (const double quality : pair.problem.match_quality) bytes.Add(quality);
   }
   return fmt::format("{}: {} pairs, checksum {:08x}", set.name, set.pairs.size(), bytes.Checksum());
 }

@@ -6,7 +6,6 @@
 
 #include "experiments/core/work/kept_steps.h"
 #include "experiments/real/truth_free/pair_set.h"
-#include "experiments/real/truth_free/residual_correlation.h"
 #include "experiments/real/truth_free/residual_pattern.h"
 #include "experiments/real/truth_free/twin_source.h"
 

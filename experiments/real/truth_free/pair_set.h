@@ -1,11 +1,13 @@
-// Image pairs that are validated without ground truth.
+// Image pairs that are validated without ground truth, and an estimator's answers to them.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "estimator/motion_estimate.h"
 #include "estimator/motion_problem.h"
 #include "experiments/study/study_plan.h"
 
@@ -33,5 +35,24 @@ std::vector<PairSet> PairSetsOfStudy(const StudyPlan& plan);
 // One set for each condition. Each trial is a sequence of images (experiments/data/simulated_sequence.h), and
 // its pairs name their images. Throws InputError for a study of real pairs.
 std::vector<PairSet> SequencesOfStudy(const StudyPlan& plan, int num_images);
+
+// An estimator's answers to the pairs of a set and to their twins.
+struct Answered {
+  NamedPair pair;
+  MotionEstimate estimate;
+  bool IsOk() const { return estimate.status == MotionStatus::kOk; }
+};
+
+struct PairAnswers {
+  Answered whole;
+  std::vector<Answered> twins;  // empty if the pair itself has no motion
+};
+
+// Numbers the images of each pair for stats/shared_members.h. A pair that does not name its images has one
+// number of its own for both.
+struct ImageNumbers {
+  std::int64_t image1 = 0, image2 = 0;
+};
+std::vector<ImageNumbers> NumberImages(const std::vector<PairAnswers>& answers);
 
 }  // namespace rcme

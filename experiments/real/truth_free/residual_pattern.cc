@@ -1,5 +1,6 @@
 #include "experiments/real/truth_free/residual_pattern.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "estimator/geometry/sampson.h"
@@ -8,6 +9,56 @@
 #include "stats/order_statistic.h"
 
 namespace rcme {
+namespace {
+
+struct PlacedResidual {
+  Eigen::Vector2d x1_px;
+  double residual_px;  // over the match's noise_scale
+};
+
+// From left to right.
+std::vector<PlacedResidual> ListResiduals(const MotionProblem& problem, const MotionEstimate& estimate) {
+  const Eigen::Matrix3d F = ComputeFundamental(problem, estimate.cam2_from_cam1);
+  std::vector<PlacedResidual> residuals;
+  for (const int i : estimate.inliers) {
+    const Correspondence& match = problem.matches[static_cast<size_t>(i)];
+    const EpipolarConstraint c = EvaluateConstraint(F, match);
+    const double scale = NoiseScaleAt(problem, static_cast<size_t>(i));
+    residuals.push_back({match.x1_px, c.g / std::sqrt(c.squared_gradient()) / scale});
+  }
+  std::ranges::sort(residuals, {}, [](const PlacedResidual& r) { return r.x1_px.x(); });
+  return residuals;
+}
+
+}  // namespace
+
+ResidualProducts& ResidualProducts::operator+=(const ResidualProducts& other) {
+  for (size_t k = 0; k < kNumDistances; ++k) {
+    sums[k] += other.sums[k];
+    counts[k] += other.counts[k];
+  }
+  return *this;
+}
+
+ResidualProducts SumProducts(const MotionProblem& problem, const MotionEstimate& estimate) {
+  const std::vector<PlacedResidual> residuals = ListResiduals(problem, estimate);
+  ResidualProducts products;
+  double sum_squares = 0.0;
+  for (const PlacedResidual& r : residuals) sum_squares += r.residual_px * r.residual_px;
+  const double mean_square = sum_squares / static_cast<double>(residuals.size());
+  for (size_t i = 0; i < residuals.size(); ++i) {
+    for (size_t k = i + 1; k < residuals.size(); ++k) {
+      if (residuals[k].x1_px.x() - residuals[i].x1_px.x() >= kDistanceEdgesPx.back()) break;
+      const double distance = (residuals[k].x1_px - residuals[i].x1_px).norm();
+      if (distance >= kDistanceEdgesPx.back()) continue;
+      const auto above = std::ranges::upper_bound(kDistanceEdgesPx, distance);
+      const auto bin = static_cast<size_t>(above - kDistanceEdgesPx.begin() - 1);
+      products.sums[bin] += residuals[i].residual_px * residuals[k].residual_px / mean_square;
+      products.counts[bin] += 1.0;
+    }
+  }
+  return products;
+}
 
 std::vector<double> ResidualSizes(const MotionProblem& problem, const MotionEstimate& estimate) {
   const double sigma_px = EstimateNoise(problem, estimate);

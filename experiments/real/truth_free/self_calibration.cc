@@ -7,8 +7,6 @@
 #include <optional>
 
 #include "experiments/real/truth_free/kept_answers.h"
-#include "experiments/real/truth_free/twin.h"
-#include "experiments/real/truth_free/twin_source.h"
 #include "stats/fnv1a.h"
 
 namespace rcme {

@@ -8,7 +8,7 @@
 #include "estimator/motion_estimator.h"
 #include "experiments/core/work/kept_steps.h"
 #include "experiments/real/truth_free/calibration_test.h"
-#include "experiments/real/truth_free/pair_answers.h"
+#include "experiments/real/truth_free/pair_set.h"
 
 namespace rcme {
 

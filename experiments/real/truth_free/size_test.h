@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/real/truth_free/pair_answers.h"
+#include "experiments/real/truth_free/pair_set.h"
 #include "experiments/real/truth_free/truth_free_verdict.h"
 #include "stats/pooled_scores.h"
 

@@ -2,11 +2,8 @@
 // independent.
 #pragma once
 
-#include <string>
-
 #include "estimator/motion_estimate.h"
 #include "experiments/real/truth_free/pair_set.h"
-#include "stats/random.h"
 
 namespace rcme {
 

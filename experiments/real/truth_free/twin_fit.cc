@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimator/geometry/essential_matrix.h"
 #include "estimator/geometry/triangulation.h"
 #include "experiments/real/truth_free/noise_fit.h"
-#include "experiments/real/truth_free/twin.h"
 #include "parameters/input_error.h"
 #include "simulator/severity/homography_share.h"
 #include "stats/constants.h"

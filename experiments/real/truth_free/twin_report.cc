@@ -5,12 +5,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <utility>
 
 #include "experiments/data/make_data.h"
-#include "experiments/real/truth_free/kept_answers.h"
 #include "experiments/real/truth_free/noise_fit.h"
-#include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/twin_quantities.h"
 #include "experiments/real/truth_free/twin_settings.h"
 #include "parameters/input_error.h"

@@ -10,7 +10,7 @@
 #include "experiments/real/truth_free/closure.h"
 #include "experiments/real/truth_free/halves.h"
 #include "experiments/real/truth_free/kept_answers.h"
-#include "experiments/real/truth_free/residual_correlation.h"
+#include "experiments/real/truth_free/residual_pattern.h"
 #include "experiments/real/truth_free/self_calibration.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/trial/answer_check.h"

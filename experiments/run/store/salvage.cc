@@ -8,7 +8,6 @@
 #include "experiments/core/files/checksum.h"
 #include "experiments/core/text/shell_word.h"
 #include "experiments/run/store/schema.h"
-#include "experiments/run/store/trial_checksum.h"
 #include "experiments/study/study_file.h"
 
 namespace rcme {

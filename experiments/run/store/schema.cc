@@ -5,7 +5,6 @@
 #include <map>
 #include <string>
 
-#include "experiments/core/files/database.h"
 #include "experiments/run/store/record_table.h"
 
 namespace rcme {

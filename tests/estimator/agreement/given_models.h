@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "estimator/estimators/inlier_count.h"
+#include "estimator/estimators/standard.h"
 #include "estimator/kernels/block_search.h"
 #include "estimator/ransac_loop.h"
 #include "estimator/reference_search.h"

@@ -53,6 +53,22 @@ void ExpectWhole(const MotionEstimate& e, size_t num_matches) {
   EXPECT_EQ(e.inliers, likely);
 }
 
+// Without the check's widening, 10 of the 20 robust covariances are below the own one in some direction.
+TEST_F(RcmeCalibratedOf, RobustCovarianceIsNoSmallerThanItsOwn) {
+  CalibratedOptions robust;
+  robust.covariance = CovarianceKind::kRobust;
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const Scene scene = TwoCameraScene(100, trial);
+    Observation seen = ObserveTwoCameraScene(scene, 0.5, 0.2, trial);
+    const std::vector<Correspondence> once = seen.matches;
+    seen.matches.insert(seen.matches.end(), once.begin(), once.end());  // the check sees it and widens
+    const MotionProblem problem{seen.matches, scene.camera1, scene.camera2, 0.5};
+    const MotionEstimate own = RunOn(problem, trial), wider = RunOn(problem, trial, robust);
+    const Eigen::SelfAdjointEigenSolver<Matrix5d> difference(Matrix5d(wider.pose_cov - own.pose_cov));
+    EXPECT_GE(difference.eigenvalues()(0), -1e-6 * own.pose_cov.trace()) << trial;
+  }
+}
+
 TEST_F(RcmeCalibratedOf, FindsTheMotionAndItsMatches) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const Scene scene = TwoCameraScene(200, trial);

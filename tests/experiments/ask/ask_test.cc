@@ -11,9 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "experiments/ask/accept_rule.h"
+#include "experiments/ask/answer.h"
 #include "experiments/ask/answer_output.h"
-#include "experiments/ask/inlier_threshold.h"
 #include "experiments/ask/question.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"

@@ -1,10 +1,10 @@
-#include "experiments/commands/number_option.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 #include <vector>
+
+#include "experiments/commands/common_options.h"
 
 namespace rcme {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "experiments/conform/conform_output.h"
-#include "experiments/conform/region_kinds.h"
+#include "experiments/conform/conform_tables.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
 

@@ -8,7 +8,7 @@
 #include "experiments/real/truth_free/camera_faults.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"

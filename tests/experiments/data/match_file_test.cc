@@ -138,6 +138,8 @@ TEST_F(MatchFileTest, AColumnMayGiveScoresWhereTheHeaderSaysWhichAreBetter) {
     const MatchFile file = Read(header + rows);
     EXPECT_EQ(file.better_score, better);
     EXPECT_EQ(file.scores, (std::vector<double>{0.5, -1.25}));
+    const double sign = better == BetterScore::kHigher ? 1.0 : -1.0;
+    EXPECT_EQ(MakeMotionProblem(file, {}).match_quality, (std::vector<double>{0.5 * sign, -1.25 * sign}));
     const std::string copy = folder_.Path("copy.csv");
     WriteMatchFile(file, copy);
     EXPECT_EQ(ReadMatchFile(copy).better_score, better);

@@ -7,7 +7,7 @@
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/temp_folder.h"

@@ -1,13 +1,12 @@
 // Errors beyond their protection level as a rare event: the same answers as `rcme integrity` counts, and the
 // same rate by splitting as by plain trials.
-#include "experiments/rare/rare_event.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "experiments/integrity/integrity_counts.h"
+#include "experiments/rare/failing_motion.h"
 #include "experiments/rare/split_failures.h"
 #include "experiments/study/study_file.h"
 #include "tests/test_support/in_memory.h"

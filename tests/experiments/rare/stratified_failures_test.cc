@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "experiments/audit/claims/cramer_rao.h"
+#include "experiments/audit/claims/case.h"
 #include "experiments/audit/claims/study_cases.h"
 #include "experiments/study/study_file.h"
 #include "tests/test_support/expect_input_error.h"

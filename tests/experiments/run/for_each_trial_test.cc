@@ -1,11 +1,10 @@
-#include "experiments/run/for_each_trial.h"
-
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <tuple>
 #include <vector>
 
+#include "experiments/run/run_trials.h"
 #include "tests/test_support/small_study.h"
 
 namespace rcme {

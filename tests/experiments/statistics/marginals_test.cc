@@ -31,12 +31,24 @@ Study WideStudy() {
       "wide.yaml");
 }
 
+// The draws 0, ..., 23 of a population, as a sample or as chosen draws.
+Study StudyOfDraws(bool are_chosen, const std::string& more = "") {
+  std::string numbers = "0";
+  for (int i = 1; i < 24; ++i) numbers += fmt::format(", {}", i);
+  return ParseStudy("name: drawn\nseed: 1\ntrials: 40\n" + more +
+                        "data: {scene: uniform_volume, sigma_px: 0.5}\n"
+                        "conditions:\n  number: 24\n  ranges: {outlier_ratio: [0, 0.5]}\n" +
+                        (are_chosen ? "  draws: [" + numbers + "]\n" : "") +
+                        "estimators:\n  - {name: standard}\n",
+                    "drawn.yaml");
+}
+
 // Answers with a stated probability of .2 that fail as often as `rate` says, in each condition.
 class MarginalsOfRun : public testing::Test {
  protected:
   template <typename Rate>
   Marginals Measure(Rate rate, bool with_pairs = false, double stated = 0.2) {
-    const StudyPlan plan = MakePlan(WideStudy());
+    const StudyPlan plan = MakePlan(study_);
     ResultStore store = ResultStore::OpenForRun(folder_.Path(fmt::format("{}.sqlite", number_++)), plan);
     RandomStream rng({1, number_, 0, 0});
     for (const Condition& condition : plan.conditions) {
@@ -53,6 +65,7 @@ class MarginalsOfRun : public testing::Test {
     return MeasureMarginals(store, {.with_pairs = with_pairs, .estimators = {}});
   }
 
+  Study study_ = WideStudy();
   const TempFolder folder_;
   std::uint32_t number_ = 0;
 };
@@ -121,6 +134,48 @@ TEST_F(MarginalsOfRun, AnEstimatorThatIsFarTooCautiousIsNamed) {
   const Marginals marginals = Measure([](const Condition&) { return 0.0; }, false, 0.5);
   EXPECT_EQ(marginals.rows.front().quantity, MarginalQuantity::kFailedLessStated);
   EXPECT_GT(marginals.rows.front().excess, 0.0);
+}
+
+const Marginal& FindOverall(const Marginals& marginals, MarginalQuantity quantity) {
+  const auto found = std::ranges::find_if(
+      marginals.rows, [&](const Marginal& one) { return one.regime.empty() && one.quantity == quantity; });
+  EXPECT_NE(found, marginals.rows.end());
+  return *found;
+}
+
+// Every second draw always fails. Over 24 draws of a population the rate 0.5 is known to some +-0.3; that of
+// these very draws, from 960 trials, to +-0.05.
+TEST_F(MarginalsOfRun, ChosenDrawsAreNoSample) {
+  const auto rate = [](const Condition& condition) { return condition.index % 2 == 0 ? 1.0 : 0.0; };
+  for (const bool are_chosen : {false, true}) {
+    study_ = StudyOfDraws(are_chosen);
+    const Marginals marginals = Measure(rate);
+    for (const auto quantity : {MarginalQuantity::kFailure, MarginalQuantity::kFailedLessStated}) {
+      const Interval interval = FindOverall(marginals, quantity).interval;
+      const double width = interval.upper - interval.lower;
+      EXPECT_EQ(width < 0.15, are_chosen) << width;
+      EXPECT_EQ(width > 0.4, !are_chosen) << width;
+    }
+    const CommandResult result = MakeMarginalsResult("drawn", marginals, 3);
+    EXPECT_EQ(result.text.find("no sample") != std::string::npos, are_chosen) << result.text;
+    EXPECT_EQ(result.json.find("these_conditions") != std::string::npos, are_chosen);
+  }
+}
+
+// All trials succeed, so they do not scatter; an upper end at the mean would be far too low.
+TEST_F(MarginalsOfRun, ChosenDrawsAllowForFailuresThatWereNotSeen) {
+  study_ = StudyOfDraws(true);
+  const Marginals marginals = Measure([](const Condition&) { return 0.0; }, false, 1e-4);
+  const Marginal& one = FindOverall(marginals, MarginalQuantity::kFailedLessStated);
+  EXPECT_EQ(one.excess, 0.0);
+  EXPECT_GT(one.interval.upper, 0.003);
+  EXPECT_LT(one.interval.upper, 0.02);
+}
+
+TEST_F(MarginalsOfRun, ChosenDrawsThatShareScenesAreRefused) {
+  study_ = StudyOfDraws(true, "common_scenes: true\n");
+  EXPECT_TRUE(ThrowsInputError([&] { Measure([](const Condition&) { return 0.0; }); },
+                               {"chosen draws, no sample", "share their scenes"}));
 }
 
 TEST_F(MarginalsOfRun, OneOrTwoConditionsAreNoRegime) {

@@ -77,6 +77,31 @@ class PopulationSummary : public testing::Test {
   std::vector<ConditionPair> pairs_ = std::vector<ConditionPair>(12);
 };
 
+// One level of a factor has the draws' trials with that level alone: here the first of each draw's two
+// conditions.
+TEST_F(PopulationSummary, ByAFactorEachLevelHasItsOwnTrials) {
+  const ResultStore store = Open();
+  const Summary by = SummarizeBy(ReadRun(store), false, "outlier_ratio");
+  EXPECT_EQ(by.factor_names, std::vector<std::string>{"outlier_ratio"});
+  EXPECT_EQ(by.levels, (std::vector<std::vector<std::string>>{{"0"}, {"0.5"}}));
+  EXPECT_EQ(by.num_trials_done, 24 * 5);
+  std::vector<ConditionCount> first(12);
+  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    if (problem.condition % 2 != 0) return;
+    first[problem.condition / 2].num_trials += 1;
+    first[problem.condition / 2].num_events += HasFailed(records[0], store.Description().failure);
+  });
+  const PopulationRate expected = MeasurePopulationRate(first, ConditionWeights::kByTrials);
+  const auto row = std::ranges::find_if(by.rows, [](const SummaryRow& r) {
+    return r.condition == 0 && r.estimator == "standard" && r.quantity == "failure";
+  });
+  ASSERT_NE(row, by.rows.end());
+  EXPECT_EQ(row->n, 60);
+  EXPECT_DOUBLE_EQ(row->interval.lower, expected.interval.lower);
+  EXPECT_DOUBLE_EQ(row->interval.upper, expected.interval.upper);
+  EXPECT_THROW(SummarizeBy(ReadRun(store), false, "sigma"), InputError);
+}
+
 // Of draws, not of conditions, whose two levels of the factor are alike.
 TEST_F(PopulationSummary, RatesHaveTheIntervalOverDraws) {
   const Summary pooled = Summarize(Open(), false, Pooling::kPooled);
@@ -190,6 +215,18 @@ TEST(PopulationSummaryOfCounts, IsThatOfTheTrials) {
   EXPECT_EQ(row("not_simulated").n, 40);
   EXPECT_GT(row("not_simulated").value, 0.0);
   EXPECT_EQ(row("failure").n, std::llround(40 * (1.0 - row("not_simulated").value)));
+  // A draw of 119 deg has no trial that counts, any other draw has all four.
+  const std::int64_t num_impossible = std::ranges::count_if(plan.conditions, [](const Condition& condition) {
+    return std::ranges::count(condition.levels, "119") > 0;
+  });
+  for (const Summary& summary : {of_trials, of_counts}) {
+    EXPECT_EQ(summary.num_conditions_not_simulated, num_impossible);
+    EXPECT_EQ(summary.num_conditions_with_trials, 10);
+    const std::string text = SummaryAsTable(summary);
+    EXPECT_NE(text.find(fmt::format("{} of 10 conditions have no trial that counts", num_impossible)),
+              std::string::npos)
+        << text;
+  }
 }
 
 }  // namespace

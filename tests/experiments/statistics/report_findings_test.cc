@@ -114,6 +114,23 @@ TEST(ListFindings, ACoverageIsNotSaidWithoutItsSharpness) {
       "0.1, with an sd of 0.62 times the Cramer-Rao bound: they are too small.");
 }
 
+TEST(ListFindings, NamesThePopulation) {
+  Summary summary = MakeSummary({Rate("nees_coverage", "ours", 0, 0.8, 0.05), Failure(0, "ours", 0.05),
+                                 Rate("no_candidate", "ours", 0, 0.5, 0.05)});
+  summary.study = "any_room";
+  summary.is_of_population = true;
+  summary.factor_names.clear();
+  summary.levels = {{}};
+  Comparison comparison;
+  comparison.reference = "standard";
+  comparison.rows = {Difference(0, "failure_or_refusal", -0.02, 0.2)};
+  comparison.rows[0].n = 100;
+  const std::vector<std::string> sentences = ListFindings(summary, comparison, {});
+  ASSERT_EQ(sentences.size(), 4u);
+  for (const std::string& sentence : sentences)
+    EXPECT_THAT(sentence, testing::ContainsRegex("[Oo]ver the population of study any_room"));
+}
+
 TEST(ListFindings, TheOneAheadComesBeforeTheOneBehind) {
   Comparison comparison;
   comparison.reference = "c";
@@ -133,6 +150,30 @@ TEST(ListFindings, RightProbabilitiesAndSmallSamplesAreNoFinding) {
   forecast.failure.value = 0.2;
   forecast.failure.interval = {0.15, 0.25};
   EXPECT_TRUE(ListFindings(summary, {}, {forecast}).empty());
+}
+
+TEST(ListFindings, ACoverageOfFewAnswersIsNoFinding) {
+  SummaryRow few = Rate("nees_coverage", "a", 0, 0.0, 0.0);
+  few.interval = {0.0, 0.5};
+  few.n = 9;
+  EXPECT_TRUE(ListFindings(MakeSummary({few}), {}, {}).empty());
+  few.n = 10;
+  EXPECT_EQ(ListFindings(MakeSummary({few}), {}, {}).size(), 1u);
+}
+
+// Of ten coverages and two refusals both refusals are kept.
+TEST(ListFindings, AtMostEightAreListedOfAllKinds) {
+  std::vector<SummaryRow> rows;
+  for (const std::string label : {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"})
+    rows.push_back(Rate("nees_coverage", label, 0, 0.1, 0.05));
+  rows.push_back(Rate("no_candidate", "a", 0, 0.5, 0.05));
+  rows.push_back(Rate("no_candidate", "b", 0, 0.4, 0.05));
+  const std::vector<std::string> sentences = ListFindings(MakeSummary(rows), {}, {});
+  ASSERT_EQ(sentences.size(), 9u);
+  EXPECT_THAT(sentences[5], HasSubstr("Coverage"));
+  EXPECT_THAT(sentences[6], HasSubstr("Refusals: a"));
+  EXPECT_THAT(sentences[7], HasSubstr("Refusals: b"));
+  EXPECT_EQ(sentences[8], "And 4 more in the tables.");
 }
 
 TEST(ListFindings, SaysNothingOfNothing) { EXPECT_TRUE(ListFindings({}, {}, {}).empty()); }

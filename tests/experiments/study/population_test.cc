@@ -16,7 +16,7 @@
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "experiments/trial/trial.h"
-#include "experiments/trial/trial_outcome.h"
+#include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
 #include "simulator/camera_registry.h"
 #include "simulator/motion_registry.h"

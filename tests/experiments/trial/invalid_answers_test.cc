@@ -8,7 +8,7 @@
 #include "experiments/run/run_until.h"
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/summarize.h"
-#include "experiments/tuning/verify_setting.h"
+#include "experiments/tuning/tune.h"
 #include "stats/constants.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"

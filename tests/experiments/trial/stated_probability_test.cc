@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/run/for_each_trial.h"
+#include "experiments/run/run_trials.h"
 #include "experiments/study/study_file.h"
 #include "experiments/trial/trial.h"
 #include "stats/moments.h"

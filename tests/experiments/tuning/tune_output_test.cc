@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "experiments/tuning/rate_output.h"
 #include "experiments/tuning/tune_json.h"
 #include "stats/intervals.h"
 #include "tests/test_support/tuned_study.h"

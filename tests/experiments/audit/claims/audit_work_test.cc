@@ -17,7 +17,6 @@
 #include "experiments/audit/claims/audit_output.h"
 #include "experiments/audit/claims/audit_page.h"
 #include "experiments/audit/claims/outcomes_json.h"
-#include "experiments/audit/claims/trial_blocks.h"
 #include "experiments/core/files/file_output.h"
 #include "tests/test_support/changed_part.h"
 #include "tests/test_support/expect_input_error.h"

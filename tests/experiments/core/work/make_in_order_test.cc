@@ -1,5 +1,3 @@
-#include "experiments/core/work/make_in_order.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -8,6 +6,8 @@
 #include <stdexcept>
 #include <thread>
 #include <vector>
+
+#include "experiments/core/work/for_each_index.h"
 
 namespace rcme {
 namespace {

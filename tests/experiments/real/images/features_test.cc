@@ -12,6 +12,7 @@
 #include "estimator/geometry/sampson.h"
 #include "experiments/real/images/feature_cache.h"
 #include "stats/median_ratio.h"
+#include "stats/random.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/rendered_sequence.h"
 #include "tests/test_support/temp_folder.h"
@@ -169,6 +170,89 @@ TEST(FrontEnd, ResidualsGrowAtLeastAsSigmaSays) {
   }
 }
 
+// Dark squares of 20 px, turned and shifted at random, with a pixel's blur and noise of 3 grey values.
+struct SquaresImage {
+  GreyImage image{320, 240, std::vector<std::uint8_t>(320 * 240)};
+  std::vector<Eigen::Vector2d> corners;
+};
+SquaresImage MakeSquares(std::uint32_t number) {
+  constexpr double kStepPx = 40.0;
+  constexpr int kRays = 6;  // of a pixel in x and in y, over 1.5 px
+  SquaresImage squares;
+  RandomStream rng({.seed = 1, .trial = number, .purpose = 2750});
+  const Eigen::Rotation2Dd turn(1.5 * rng.Uniform());
+  const Eigen::Vector2d origin(160.0 + rng.Uniform(), 120.0 + rng.Uniform());
+  const auto is_dark = [&](double x, double y) {
+    const Eigen::Vector2d at = turn.inverse() * (Eigen::Vector2d(x, y) - origin) / kStepPx;
+    return at.x() - std::floor(at.x()) < 0.5 && at.y() - std::floor(at.y()) < 0.5;
+  };
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      int num_dark = 0;
+      for (int i = 0; i < kRays * kRays; ++i) {
+        const int row = i / kRays, column = i % kRays;
+        num_dark += is_dark(x + (column + 0.5) / 4.0 - 0.75, y + (row + 0.5) / 4.0 - 0.75);
+      }
+      const double grey = 200.0 - 160.0 * num_dark / (kRays * kRays) + 3.0 * rng.Normal();
+      squares.image.grey[static_cast<size_t>(y * 320 + x)] =
+          static_cast<std::uint8_t>(std::lround(std::clamp(grey, 0.0, 255.0)));
+    }
+  }
+  for (int i = -20; i <= 20; ++i) {
+    for (int j = -20; j <= 20; ++j)
+      squares.corners.emplace_back(origin + turn * Eigen::Vector2d(0.5 * kStepPx * i, 0.5 * kStepPx * j));
+  }
+  return squares;
+}
+
+// Distance of each key point of the two finest scales from the nearest corner, px.
+std::vector<double> DistancesFromCorners(const SquaresImage& squares, const Features& features) {
+  std::vector<double> distances;
+  for (const KeyPoint& point : features.key_points) {
+    if (point.size_px > 31.0f * 1.2f + 0.1f) continue;
+    double least = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector2d& corner : squares.corners)
+      least = std::min(least, (Eigen::Vector2d(point.x_px, point.y_px) - corner).norm());
+    distances.push_back(least);
+  }
+  return distances;
+}
+
+// ORB finds these corners some 1.75 px inside of the square, the median over 2,143 key points; refined, 0.20
+// px from it. Nothing is random here.
+TEST(FrontEnd, RefinedKeyPointsOfOrbLieOnTheCorners) {
+  std::vector<double> found, refined;
+  for (std::uint32_t number = 0; number < 5; ++number) {
+    const SquaresImage squares = MakeSquares(number);
+    const Features plain = DetectFeatures(squares.image, {Detector::kOrb}),
+                   moved = DetectFeatures(squares.image, {Detector::kOrb, 0, true});
+    ASSERT_EQ(plain.key_points.size(), moved.key_points.size());
+    EXPECT_EQ(plain.descriptors, moved.descriptors);
+    for (size_t i = 0; i < plain.key_points.size(); ++i) {
+      const KeyPoint &before = plain.key_points[i], &after = moved.key_points[i];
+      const float move_px = std::hypot(after.x_px - before.x_px, after.y_px - before.y_px);
+      EXPECT_LE(move_px, 2.001f);
+      if (before.size_px > 31.0f * 1.2f + 0.1f) {
+        EXPECT_EQ(move_px, 0.0f);
+      }
+    }
+    for (const double d : DistancesFromCorners(squares, plain)) found.push_back(d);
+    for (const double d : DistancesFromCorners(squares, moved)) refined.push_back(d);
+  }
+  EXPECT_GT(found.size(), 500u);
+  EXPECT_GT(ComputeMedian(found), 1.2);
+  EXPECT_LT(ComputeMedian(refined), 0.3);
+}
+
+TEST(FrontEnd, OnlyOrbIsRefined) {
+  for (const Detector detector : {Detector::kSift, Detector::kAkaze})
+    EXPECT_TRUE(ThrowsInputError(
+        [&] {
+          DetectFeatures(Rendered(4), {detector, 0, true});
+        },
+        {"--subpixel", "--detector orb"}));
+}
+
 TEST(FrontEnd, OfAnImageWithoutTextureThereIsNothing) {
   const GreyImage grey{64, 48, std::vector<std::uint8_t>(64 * 48, 100)};
   for (const auto& [name, detector] : DetectorNames()) {
@@ -191,11 +275,12 @@ TEST(FeatureCache, FindsAnImageByItsContentAndMakesWhatIsDamagedAgain) {
   EXPECT_EQ(cache.num_found(), 1);
   cache.Get(image, {Detector::kOrb});
   cache.Get(image, {Detector::kSift, 50});
+  cache.Get(image, {Detector::kOrb, 0, true});
   EXPECT_EQ(cache.num_found(), 1);
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::directory_iterator(cached))
     files.push_back(entry.path().string());
-  ASSERT_EQ(files.size(), 3u);
+  ASSERT_EQ(files.size(), 4u);
   for (const std::string& file : files) {
     std::string bytes = ReadBytes(file);
     EXPECT_TRUE(UnpackFeatures(bytes).has_value());

@@ -1,6 +1,6 @@
-#include "experiments/real/truth_free/pair_answers.h"
-
 #include <gtest/gtest.h>
+
+#include "experiments/real/truth_free/pair_set.h"
 
 namespace rcme {
 namespace {

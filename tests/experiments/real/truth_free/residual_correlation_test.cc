@@ -1,10 +1,9 @@
-#include "experiments/real/truth_free/residual_correlation.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "estimator/geometry/sampson.h"
+#include "experiments/real/truth_free/residual_pattern.h"
 #include "experiments/real/truth_free/twin.h"
 #include "tests/test_support/two_camera_scene.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/data/make_data.h"
-#include "parameters/find_setting.h"
+#include "parameters/settings.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {

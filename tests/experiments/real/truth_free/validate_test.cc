@@ -11,7 +11,7 @@
 #include "estimator/geometry/sampson.h"
 #include "experiments/real/truth_free/halves.h"
 #include "experiments/real/truth_free/loops.h"
-#include "experiments/real/truth_free/residual_correlation.h"
+#include "experiments/real/truth_free/residual_pattern.h"
 #include "experiments/real/truth_free/twin.h"
 #include "experiments/real/truth_free/validate_output.h"
 #include "experiments/real/truth_free/validate_words.h"

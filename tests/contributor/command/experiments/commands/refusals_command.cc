@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "experiments/commands/commands.h"
-#include "experiments/commands/number_option.h"
+#include "experiments/commands/common_options.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
 #include "experiments/run/store/result_store.h"

@@ -1,8 +1,8 @@
 #include "estimator/estimators/predictive_ransac.h"
 
-#include "estimator/estimators/inlier_count.h"
 #include "estimator/estimators/loop_estimator.h"
 #include "estimator/estimators/ransac_model.h"
+#include "estimator/estimators/standard.h"
 
 namespace rcme {
 namespace {

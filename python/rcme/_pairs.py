@@ -1,0 +1,81 @@
+"""Pairs that were made in Python, as match files that studies run on."""
+
+from __future__ import annotations
+
+import os
+import pathlib
+from collections.abc import Iterable, Mapping
+from typing import Any, Union
+
+from rcme import _check
+
+
+def write_pairs(folder: Union[str, "os.PathLike[str]"], pairs: Iterable[Mapping[str, Any]]) -> str:
+    """Writes pairs as match files, for a study with the data {"scene": "match_files", "folder": folder}.
+
+    This is how a scene, a noise law or wrong matches of yours, written in Python, run in a study: make each pair, or take one of
+    `simulate` and change it.
+
+    Parameters
+    ----------
+    folder : where to write 000000.csv, 000001.csv, ...; it is made, and must hold nothing
+    pairs : dicts with the keys that `simulate` returns
+        - x1, x2 (N, 2; px) and camera1, camera2 (dicts {model, width, height, params} with a model of COLMAP)
+        - optional: truth, a dict of R (3, 3) and t (3), X2 = R X1 + t; sigma_px, the noise level that estimators assume; noise_scale
+          (N), how noisy each match is beside the others; scene, a name: pairs of one scene are one condition of the study.
+          Other keys are ignored.
+
+    Returns
+    -------
+    str : the folder. Trial t of a condition is its pair number t, in the order in which they were given.
+
+    Raises
+    ------
+    ValueError : a pair that is wrong, a folder that holds something.
+    """
+    path = pathlib.Path(_check.path("folder", folder, "a folder"))
+    path.mkdir(parents=True, exist_ok=True)
+    if any(path.iterdir()):
+        raise ValueError(f"folder: {path} holds something; give a new folder")
+    for number, pair in enumerate(pairs):
+        (path / f"{number:06d}.csv").write_text(_match_file(f"pairs[{number}]", pair), encoding="utf-8")
+    return str(path)
+
+
+def _match_file(name: str, pair: Mapping[str, Any]) -> str:
+    missing = [key for key in ("x1", "x2", "camera1", "camera2") if key not in pair]
+    if missing:
+        raise ValueError(f"{name}: {missing[0]} is missing; expected x1, x2, camera1 and camera2")
+    x1, x2 = (_check.points(f"{name}: {key}", pair[key]) for key in ("x1", "x2"))
+    if len(x1) != len(x2):
+        raise ValueError(f"{name}: x1 has {len(x1)} rows and x2 {len(x2)}; expected as many")
+    lines = [f"# scene: {_check.plain(f'{name}: scene', pair.get('scene', 'python'))}"]
+    for number in (1, 2):
+        lines += _camera_lines(f"{name}: camera{number}", number, pair[f"camera{number}"])
+    truth = pair.get("truth") or {}
+    if truth.get("R") is not None and truth.get("t") is not None:
+        R = _check.rotation(f"{name}: truth: R", _check.shaped(f"{name}: truth: R", truth["R"], (3, 3), "a rotation"))
+        t = _check.direction(f"{name}: truth: t", _check.shaped(f"{name}: truth: t", truth["t"], (3,), "a translation"))
+        lines += [f"# R_rowmajor: {_row(R.ravel(), ' ')}", f"# t_unit: {_row(t, ' ')}"]
+    sigma = pair.get("sigma_px")
+    if sigma is not None:
+        lines.append(f"# sigma_px: {_check.number(f'{name}: sigma_px', sigma, 1e-6, 1e6)!r}")
+    scales = _check.scales(f"{name}: noise_scale", pair.get("noise_scale"), len(x1))
+    lines.append("x1,y1,x2,y2" + (",sigma_px" if scales else ""))
+    lines += [_row([*first, *second, *([scales[i]] if scales else [])], ",") for i, (first, second) in enumerate(zip(x1, x2))]
+    return "\n".join(lines) + "\n"
+
+
+def _camera_lines(name: str, number: int, camera: Mapping[str, Any]) -> list[str]:
+    _check.camera(name, camera)
+    if not isinstance(camera, Mapping):
+        raise ValueError(f"{name}: expected a dict with model, width, height and params")
+    size, params = f"{camera['width']} {camera['height']}", _row(camera["params"], " ")
+    if camera["model"] == "PINHOLE":
+        return [f"# size{number}: {size}", f"# K{number}_fx_fy_cx_cy: {params}"]
+    return [f"# camera{number}: {camera['model']} {size} {params}"]
+
+
+def _row(values: Iterable[float], between: str) -> str:
+    """All digits."""
+    return between.join(repr(float(value)) for value in values)
