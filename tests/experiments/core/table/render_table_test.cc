@@ -123,10 +123,10 @@ TEST(RenderText, LeavesOutLevelsThatTheFirstDeterminesIfTheyAreMany) {
   EXPECT_EQ(RenderText(table),
             "draw  outlier_ratio  rate\n"
             "----  -------------  ----\n"
-            "0     0.1             0.5\n"
-            "0     0.2             0.5\n"
-            "7     0.1             0.5\n"
-            "7     0.2             0.5\n"
+            "0     0.1            0.5\n"
+            "0     0.2            0.5\n"
+            "7     0.1            0.5\n"
+            "7     0.2            0.5\n"
             "(draw stands for 20 more columns)\n");
   EXPECT_NE(RenderText(table, 1000).find("key_19"), std::string::npos);
   EXPECT_NE(RenderMarkdown(table).find("key_19"), std::string::npos);
