@@ -53,7 +53,7 @@ void ExpectWhole(const MotionEstimate& e, size_t num_matches) {
   EXPECT_EQ(e.inliers, likely);
 }
 
-// Without the check's widening, 10 of the 20 robust covariances are below the own one in some direction.
+// Without that bound all 20 are smaller in some direction.
 TEST_F(RcmeCalibratedOf, RobustCovarianceIsNoSmallerThanItsOwn) {
   CalibratedOptions robust;
   robust.covariance = CovarianceKind::kRobust;
