@@ -152,6 +152,11 @@ Examples:
           "where the conditions are draws of one, else for these very conditions")
       ->excludes("--raw");
   command
+      ->add_option(
+          "--by", arguments->by,
+          "FACTOR: with --pooled, once for each of its levels, such as a threshold over a population")
+      ->needs("--pooled");
+  command
       ->add_option("--fifths-of", arguments->fifths_of,
                    "five groups of equally many trials instead of the conditions, ordered by this quantity "
                    "of the problem: "
