@@ -104,7 +104,7 @@ def check_no_repetition(path, part, keys, at):
 
 
 # Of paired comparisons: what a file calls a test and an interval, in words.
-OF_POPULATION = "95 % of the population, over its draws"
+OF_POPULATION = "95 % population"
 TESTS = {"mcnemar": "McNemar", "discordant_sequence": "anytime-valid", "betting": "betting", "population": "population"}
 DIFFERENCE_INTERVALS = {"tango": "Tango's 95 %", "betting": "anytime-valid 95 % (betting)", "population": OF_POPULATION}
 
