@@ -27,7 +27,8 @@ def write_pairs(folder: Union[str, "os.PathLike[str]"], pairs: Iterable[Mapping[
 
     Returns
     -------
-    str : the folder. Trial t of a condition is its pair number t, in the order in which they were given.
+    str : the folder. Trial t of a condition is its pair number t, in the order in which they were given; the study's `trials`
+    counts passes over all of them.
 
     Raises
     ------
