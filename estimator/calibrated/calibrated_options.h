@@ -16,7 +16,7 @@ enum class SigmaKnowledge {
 enum class CovarianceKind {
   kInformation,  // the inverse of the likelihood's Hessian
   kSandwich,     // HC3: variances from the residuals themselves
-  kRobust,       // for dependent errors (robust_covariance.h), at least what the check of the model widens to
+  kRobust,  // for dependent errors (robust_covariance.h), on average no smaller than the checked sandwich
 };
 
 // A step to leave out in an ablation.

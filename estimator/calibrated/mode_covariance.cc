@@ -24,6 +24,18 @@ Vector5d ReadDerivative(const MatchTermLists& terms, size_t i) {
   return J;
 }
 
+// The least matrix that is no smaller than a or b along any direction in which they are compared.
+Matrix5d ComputeLeastUpperBound(const Matrix5d& a, const Matrix5d& b) {
+  const Eigen::LLT<Matrix5d> llt(b);
+  if (llt.info() != Eigen::Success) return a;
+  const Matrix5d L = llt.matrixL();
+  const Matrix5d half = L.triangularView<Eigen::Lower>().solve(a);
+  const Matrix5d ratio = L.triangularView<Eigen::Lower>().solve(half.transpose());
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(ratio);
+  const Matrix5d root = L * eigen.eigenvectors();
+  return root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose();
+}
+
 // Widens the covariance root root' along each principal axis by k / (k - 2). k is the effective number of
 // matches of the axis if that is below kFew, else the degrees of freedom of the whole. It works on the root,
 // so that rounding cannot make the result indefinite.
@@ -42,17 +54,6 @@ Matrix5d WidenedForFew(const Matrix5d& root, const Matrix5d& inverse, const Mode
 }
 
 }  // namespace
-
-Matrix5d ComputeLeastUpperBound(const Matrix5d& a, const Matrix5d& b) {
-  const Eigen::LLT<Matrix5d> llt(b);
-  if (llt.info() != Eigen::Success) return a;
-  const Matrix5d L = llt.matrixL();
-  const Matrix5d half = L.triangularView<Eigen::Lower>().solve(a);
-  const Matrix5d ratio = L.triangularView<Eigen::Lower>().solve(half.transpose());
-  const Eigen::SelfAdjointEigenSolver<Matrix5d> eigen(ratio);
-  const Matrix5d root = L * eigen.eigenvectors();
-  return root * eigen.eigenvalues().cwiseMax(1.0).asDiagonal() * root.transpose();
-}
 
 Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode, const MixturePrior& prior) {
   const auto gradient_at = [&](const Vector5d& step) -> Vector5d {

@@ -8,10 +8,6 @@
 
 namespace rcme {
 
-// The least matrix that is no smaller than a or b along any direction in which they are compared; both positive
-// definite.
-Matrix5d ComputeLeastUpperBound(const Matrix5d& a, const Matrix5d& b);
-
 // H^-1, where H is the Hessian of the likelihood at the optimum by central differences of its gradient, with
 // steps of a tenth of a standard deviation. With little parallax, noise seems to determine the direction
 // (observability.h). The second derivatives of the residuals, which this Hessian includes, correct this. With

@@ -282,10 +282,11 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       const Matrix5d own = prior.motion ? OwnCovarianceOfMatches(matches, prior, answer) : verdict.pose_cov;
       MakeCovarianceRobust(problem, robust, own, &estimate);
       if (estimate.status == MotionStatus::kOk) {
-        const Matrix5d of_matches =
-            is_checked ? ComputeLeastUpperBound(CovarianceFactor(check) * own, estimate.pose_cov)
-                       : estimate.pose_cov;
-        estimate.pose_cov = BoundByUniformMotion(CovarianceWithPrior(of_matches, answer, prior));
+        // No smaller than the checked one, on average over the directions.
+        const double ratio =
+            is_checked ? estimate.pose_cov.llt().solve(CovarianceFactor(check) * own).trace() / 5.0 : 1.0;
+        estimate.pose_cov = BoundByUniformMotion(CovarianceWithPrior(
+            (ratio > 1.0 && std::isfinite(ratio) ? ratio : 1.0) * estimate.pose_cov, answer, prior));
       }
     }
     if (posterior != nullptr)
