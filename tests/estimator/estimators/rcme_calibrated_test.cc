@@ -53,7 +53,7 @@ void ExpectWhole(const MotionEstimate& e, size_t num_matches) {
   EXPECT_EQ(e.inliers, likely);
 }
 
-// On average over the directions.
+// On average over the directions. Without the factor all 20 are smaller.
 TEST_F(RcmeCalibratedOf, RobustCovarianceIsNoSmallerThanItsOwn) {
   CalibratedOptions robust;
   robust.covariance = CovarianceKind::kRobust;
