@@ -147,7 +147,7 @@ class HoardingEstimator : public QuickEstimator {
 
  private:
   mutable std::mutex mutex_;
-  mutable std::list<std::array<char, 40>> hoard_;  // 64 bytes each, on the heap
+  mutable std::list<std::array<char, 104>> hoard_;  // 128 bytes each, on the heap; a record has 170
 };
 
 TEST_F(RunStudyTest, TenTimesTheTrialsNeedNoMoreMemory) {
