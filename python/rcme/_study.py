@@ -138,7 +138,11 @@ def replay(run: str, condition: int, trial: int, estimators: Optional[Mapping[st
     """
     path = _check.existing("run", run, "a result file")
     numbers = (_check.whole("condition", condition, 0, 2**32 - 1), _check.whole("trial", trial, 0, 2**32 - 2))
-    functions = {label: named_function(f"estimators[{label!r}]", function) for label, function in (estimators or {}).items()}
+    functions: Functions = {}
+    for label, function in (estimators or {}).items():
+        if not callable(function):
+            raise ValueError(f"estimators[{label!r}]: {_check.words(function)} is not allowed; expected a function of the run")
+        functions[label] = named_function(f"estimators[{label!r}]", function)
     with alone("replay"):
         rows = _rcme.replay(path, *numbers, functions, _check.yes_or_no("allow_process", allow_process))
     return pandas.DataFrame(rows)

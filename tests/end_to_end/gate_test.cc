@@ -135,8 +135,8 @@ TEST_F(Gate, GoesOnWhereItWasStopped) {
 // Margins that are chosen after a look would void the level.
 TEST_F(Gate, OtherTermsNeedAnotherFolder) {
   const auto judge = [&](const std::vector<std::string>& terms) {
-    std::vector<std::string> all = {"gate",         study_, "--old", "standard",           "--new", "standard",
-                                    "--max-trials", "30",   "--out", folder_.Path("terms")};
+    std::vector<std::string> all = {"gate",     study_,         "--old", "standard", "--new",
+                                    "standard", "--max-trials", "30",    "--out",    folder_.Path("terms")};
     all.insert(all.end(), terms.begin(), terms.end());
     return RunRcme(all);
   };

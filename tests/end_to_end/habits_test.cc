@@ -196,7 +196,7 @@ std::vector<std::string> Completed(const std::vector<std::string>& words) {
   const TempFolder folder;
   const ProgramResult result =
       RunShell("cd '" + folder.path() + "' && set -- && " + "\"$RCME\" completion bash > c.bash && " +
-               line.substr(line.find("bash -c")));
+               "RCME=\"$RCME\" " + line.substr(line.find("bash -c")));
   EXPECT_EQ(result.exit_code, 0) << result.err;
   std::vector<std::string> offered;
   std::istringstream lines(result.out);

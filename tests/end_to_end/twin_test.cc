@@ -103,7 +103,7 @@ TEST_F(TwinProgram, OfALensAssumesTheNoiseOfUndistortedMatches) {
   }
 }
 
-// The time is over before the first pair; other options are other twins.
+// The time is over before the second pair; other options are other twins.
 TEST_F(TwinProgram, GoesOnAfterATimeLimit) {
   const std::string study = folder_.Path("b.yaml"), kept = study + ".unfinished.part";
   const std::vector<std::string> call = {"twin", pairs_.path(), "--scene", "b", "--out", study};
@@ -114,7 +114,8 @@ TEST_F(TwinProgram, GoesOnAfterATimeLimit) {
   };
   const ProgramResult result = with({"--twins", "1", "--max-time", "0.001s"});
   EXPECT_EQ(result.exit_code, 75) << result.err;
-  EXPECT_NE(result.err.find(kept + " has 0 steps, the same command goes on"), std::string::npos)
+  EXPECT_TRUE(result.err.find(kept + " has 0 steps, the same command goes on") != std::string::npos ||
+              result.err.find(kept + " has 1 steps, the same command goes on") != std::string::npos)
       << result.err;
   EXPECT_TRUE(IsRefused(with({"--twins", "2"}), {kept, "twins: 1", "--out"}));
   ASSERT_EQ(with({"--twins", "1"}).exit_code, 0);

@@ -1,6 +1,7 @@
 """Ten wrong inputs and more to each call: a ValueError that names the argument and says what is expected."""
 
 import inspect
+import os
 import pathlib
 import tempfile
 import unittest
@@ -51,6 +52,9 @@ NO_RUNS = [("run", dict(run=3)), ("run", dict(run="/nowhere/run.sqlite")), ("run
            ("run", dict(run=b"\0"))]
 AXES = object()
 
+SCRATCH = tempfile.TemporaryDirectory()
+NEW_FOLDER = os.path.join(SCRATCH.name, "pairs")
+PAIR = {"x1": X, "x2": X, "camera1": CAMERA, "camera2": CAMERA}
 WRONG = {
     "estimate_relative_poses": [(name, dict(dict(pairs=[(X, X, K, K)]), **changed)) for name, changed in [
         ("pairs", dict(pairs=3)), ("pairs", dict(pairs=[X])), ("pairs[1]", dict(pairs=[(X, X, K, K), (X, X, K)])),
@@ -95,6 +99,18 @@ WRONG = {
         ("condition", dict(study=STUDY, condition=2)), ("condition", dict(study=STUDY, condition=-1)),
         ("condition", dict(study=STUDY, condition="first")), ("trial", dict(study=STUDY, trial=-1)),
         ("trial", dict(study=STUDY, trial=2**40)), ("trial", dict(study=STUDY, trial=None))],
+    "replay": [(name, dict(dict(run=__file__, condition=0, trial=0), **changed)) for name, changed in [
+        *NO_RUNS, ("wrong_inputs_test", {}), ("condition", dict(condition=-1)), ("condition", dict(condition=0.5)),
+        ("trial", dict(trial="1")), ("allow_process", dict(allow_process=1)), ("estimators['f']", dict(estimators={"f": 3}))]],
+    "write_pairs": [(name, dict(dict(folder=NEW_FOLDER, pairs=[PAIR]), **changed)) for name, changed in [
+        ("folder", dict(folder=3)), ("folder", dict(folder="")), ("holds something", dict(folder=os.path.dirname(__file__))),
+        ("pairs[0]", dict(pairs=[{}])), ("pairs[0]: x2", dict(pairs=[{**PAIR, "x2": X[:, :1]}])),
+        ("pairs[0]: x1", dict(pairs=[{**PAIR, "x1": X[:7]}])), ("pairs[0]: camera2", dict(pairs=[{**PAIR, "camera2": K}])),
+        ("pairs[0]: camera1", dict(pairs=[{**PAIR, "camera1": 3}])), ("pairs[0]: scene", dict(pairs=[{**PAIR, "scene": "a\nb"}])),
+        ("pairs[0]: sigma_px", dict(pairs=[{**PAIR, "sigma_px": "x"}])),
+        ("pairs[0]: noise_scale", dict(pairs=[{**PAIR, "noise_scale": np.ones(3)}])),
+        ("pairs[0]: truth: R", dict(pairs=[{**PAIR, "truth": {"R": np.eye(2), "t": [1, 0, 0]}}])),
+        ("pairs[0]: truth: t", dict(pairs=[{**PAIR, "truth": {"R": np.eye(3), "t": [0, 0, 0]}}]))]],
     "run": NO_STUDIES + NO_SEEDS + NO_THREADS + NO_ESTIMATORS + [
         ("trials", dict(study=STUDY, trials=0)), ("out", dict(study=STUDY, out=7)),
         ("/nowhere", dict(study=STUDY, out="/nowhere/run.sqlite"))],

@@ -151,12 +151,13 @@ TEST(MakeTwinReport, TellsWhatIsFitted) {
   }
 }
 
-// Without names every pair has two images of its own, eight in all: no sums but the pairs' own. The variance
-// is that of independent numbers, u^2 4 / 3 over 4, u = 0.1, with t of seven degrees of freedom.
+// Without names every pair has two images of its own: no sums but the pairs' own. The variance is that of
+// independent numbers, u^2 4 / 3 over 4, u = 0.1, with t of three degrees of freedom, as there are four
+// pairs.
 TEST(MakeTwinReport, ImagesWithoutANameAreSharedByNoPairs) {
   TwinSource source = FourPairs();
   for (AnsweredTrial& one : source.pairs) one.image1 = one.image2 = "";
-  const double half = 0.1 / std::sqrt(3.0) * StudentQuantile(7, 1.0 - 0.025 / 12.0);
+  const double half = 0.1 / std::sqrt(3.0) * StudentQuantile(3, 1.0 - 0.025 / 12.0);
   ExpectComparison(SemiRealReport(source, AnswersBySize()), "stated_failure", "semi_real", 0.27, 0.47,
                    {0.47 - half, 0.47 + half}, 4);
 }
