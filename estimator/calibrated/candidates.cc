@@ -8,6 +8,7 @@
 #include "estimator/calibrated/explanation.h"
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/kernels/mixture_sums.h"
+#include "stats/order_statistic.h"
 
 namespace rcme {
 namespace {
@@ -16,6 +17,10 @@ constexpr int kFewSteps = 3, kCandidateSteps = 18;
 constexpr int kMatchesOfCandidates = 192;  // used to refine and rank candidates; a whole number of blocks
 constexpr int kScaleMatches = 128;         // used to estimate a first scale
 constexpr int kCheiralityBlocks = 32;      // blocks of matches that decide the cheirality
+// Standard deviations of the parallax's noise. Where some mode has less, the first candidates are fitted as
+// they are, too.
+constexpr double kLittleParallax = 6.0;
+constexpr size_t kUnrefined = 3;
 
 void SortByLikelihood(std::vector<Mode>* modes) {
   std::stable_sort(modes->begin(), modes->end(),
@@ -153,6 +158,33 @@ void AddOptimum(const MatchBlocks& matches, const MixturePrior& prior, Mode mode
     optima->stuck = std::move(mode);
 }
 
+// The parallax that a fifth of the matches that the mode explains exceed, in standard deviations of its
+// noise, among the first kScaleMatches.
+double UsualParallax(const MatchBlocks& matches, const Mode& mode) {
+  constexpr double kExplained = 3.0;  // standard deviations
+  MatchTermLists terms;
+  EvaluateTerms(matches, mode.pose, &terms, kScaleMatches);
+  const auto n = static_cast<size_t>(std::min(matches.num_matches(), kScaleMatches));
+  std::vector<double> parallaxes;
+  for (size_t i = 0; i < n; ++i)
+    if (std::abs(terms.residual[i]) < kExplained * mode.mixture.scale) parallaxes.push_back(terms.depth[i]);
+  return ComputeQuantile(parallaxes, 0.8);
+}
+
+// Adds the optima reached from the first candidates without the few steps at a wide scale. Where the parallax
+// is no greater than that scale, these steps lead away from the motion of a good sample.
+void AddOptimaOfCandidates(const MatchBlocks& matches, const MixturePrior& prior,
+                           const std::vector<ScoredEssential>& candidates, Optima* optima) {
+  for (size_t i = 0; i < std::min(candidates.size(), kUnrefined); ++i) {
+    Mode mode;
+    mode.pose = PoseInFront(matches, candidates[i].E);
+    mode.mixture =
+        FirstGuess(prior, NoiseLaw().scale_of_gaussian, candidates.front().score / matches.num_matches());
+    if (prior.estimates_scale) mode.mixture.scale = StartScale(matches, mode);
+    AddOptimum(matches, prior, std::move(mode), optima);
+  }
+}
+
 // A fit that did not converge counts if no optimum is as likely: then no other fit has reached its motion.
 std::vector<Mode> TakeModes(Optima optima) {
   const auto is_less_likely = [&](const Mode& mode) {
@@ -177,6 +209,9 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
     mode.mixture.scale = StartScale(matches, mode);
     AddOptimum(matches, prior, std::move(mode), &found);
   }
+  const bool has_little_parallax = std::ranges::any_of(
+      found.modes, [&](const Mode& mode) { return UsualParallax(matches, mode) < kLittleParallax; });
+  if (has_little_parallax) AddOptimaOfCandidates(matches, prior, candidates, &found);
   std::vector<Mode> optima = TakeModes(std::move(found));
   // There may be no optimum, because c(z) can reject every step. Then take the best motion after a few steps.
   for (Mode& mode : Distinct(refined, optima.empty() ? 1 : 0)) {
@@ -185,7 +220,7 @@ std::vector<Mode> FindModes(const MatchBlocks& matches, const MixturePrior& prio
     FitMode(matches, prior, kFewSteps, &mode);
     if (mode.inverse_hessian.allFinite()) optima.push_back(std::move(mode));
   }
-  return Distinct(std::move(optima), num_modes);
+  return Distinct(std::move(optima), num_modes + kUnrefined);
 }
 
 std::vector<Mode> ModesFrom(const MatchBlocks& matches, const MixturePrior& prior,

@@ -11,12 +11,15 @@ namespace rcme {
 // The one of the four poses of E that puts the matches most clearly in front of both cameras (SumCheirality).
 RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E);
 
-// Refines the candidates to modes and returns at most `num_modes` of them, most likely first:
+// Refines the candidates to modes and returns at most `num_modes` of them, most likely first; where there is
+// little parallax, at most three more:
 // 1. Each candidate is refined by a few steps at a wide scale on the first matches.
 // 2. The best distinct ones are refined to their optimum on all matches. Half of them are ranked at the
 //    assumed scale. If sigma is estimated, the other half are ranked at the wide scale and start at the scale
 //    that fits them best. A fit that reaches a known mode is dropped, and so is one that does not converge,
 //    unless it is more likely than every optimum.
+// 3. Where a fifth or less of the matches of some mode have a parallax above six standard deviations of its
+//    noise, the best three candidates are refined on all matches as they are, too.
 //
 // If no candidate has an optimum, returns the best one after a few steps; if no Hessian can be inverted,
 // returns nothing.

@@ -35,6 +35,8 @@ struct DisplacementSet {
   std::vector<Displacement> matches;
   double all_over_used = 1.0;  // explained matches per match in `matches`
   double image_rad = 1.0;      // extent of image 2, over which the displacement of an outlier is uniform
+  Eigen::Vector3d mean_ray = Eigen::Vector3d::UnitZ();  // unit
+  double size_rad = 1.0;                                // root mean square of |d|
   // The prior of w, if there is one: cost |r + J w|^2 / 2, with r and J at the mode's rotation. And the prior
   // of the direction.
   std::optional<PriorResiduals> of_rotation = {};
@@ -74,6 +76,13 @@ DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode&
   }
   const auto used = static_cast<double>(set.matches.size());
   set.all_over_used = std::max(mode.explanation.num_explained / std::max(used, 1.0), 1.0);
+  Eigen::Vector3d sum_of_rays = Eigen::Vector3d::Zero();
+  double squares = 0.0;
+  for (const Displacement& match : set.matches) sum_of_rays += match.a, squares += match.d.squaredNorm();
+  if (used > 0.0) {
+    set.mean_ray = sum_of_rays.normalized();
+    set.size_rad = std::max(std::sqrt(squares / used), 1e-9);
+  }
   set.image_rad = std::sqrt(problem.camera2.width * problem.camera2.height * inverse_f2);
   AddPrior(problem, mode.mode.pose, &set);
   return set;
@@ -115,23 +124,29 @@ class LogProduct {
   double log_ = 0.0, product_ = 1.0;
 };
 
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
 struct AxisFit {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
-  Eigen::Vector4d x = Eigen::Vector4d::Zero();  // w, m
-  double variance = 0.0;                        // v
+  Vector6d x = Vector6d::Zero();  // w, n: the inverse depth of a ray a is n'a
+  double variance = 0.0;          // v
   double near = kFirstNear;
   double log_likelihood = -std::numeric_limits<double>::infinity();
-  double mean_in_sd = 0.0;                                // m / sd
-  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();  // of x, from the matches in the set
+  // The inverse depth of the plane n, in standard deviations: at the mean ray, and the extremes over the
+  // matches.
+  double mean = 0.0, least = 0.0, greatest = 0.0;
+  Matrix6d information = Matrix6d::Zero();  // of x, from the matches in the set
 };
 
-// First values: m is the median and v comes from the median absolute deviation.
-AxisFit FirstFit(const std::vector<Parts>& parts) {
+// First values: a plane across the mean ray at the median, and v from the median absolute deviation.
+AxisFit FirstFit(const DisplacementSet& set, const std::vector<Parts>& parts) {
   AxisFit fit;
   std::vector<double> values;
   for (const Parts& p : parts) values.push_back(p.along / p.sin);
-  fit.x(3) = UpperQuantile(0.5, &values);
-  for (double& value : values) value = std::abs(value - fit.x(3));
+  const double median = UpperQuantile(0.5, &values);
+  fit.x.tail<3>() = median * set.mean_ray;
+  for (double& value : values) value = std::abs(value - median);
   fit.variance = std::pow(1.4826 * UpperQuantile(0.5, &values), 2);
   return fit;
 }
@@ -143,10 +158,11 @@ struct Rest {
   double along, along_variance, far, near, wrong;
   double All() const { return far + near + wrong; }
 };
-Rest ComputeRest(const DisplacementSet& set, const Parts& p, double noise_variance, const AxisFit& fit) {
+Rest ComputeRest(const DisplacementSet& set, const Parts& p, const Displacement& match, const AxisFit& fit) {
+  const double noise_variance = match.noise_variance;
   Rest rest;
   const double across = p.across + fit.x.head<3>().dot(p.unit_along);
-  rest.along = p.along - fit.x.head<3>().dot(p.unit_across) - fit.x(3) * p.sin;
+  rest.along = p.along - fit.x.head<3>().dot(p.unit_across) - fit.x.tail<3>().dot(match.a) * p.sin;
   rest.along_variance = noise_variance + fit.variance * p.sin * p.sin;
   const double noise_rad = std::sqrt(noise_variance);
   const double law_across = std::exp(-0.5 * across * across / noise_variance) / (kRootTwoPi * noise_rad);
@@ -158,24 +174,57 @@ Rest ComputeRest(const DisplacementSet& set, const Parts& p, double noise_varian
   return rest;
 }
 
+// The prior of n. Across the mean ray it is normal with the standard deviation size_rad / sin, so that the
+// parallax n'a sin may vary over the image as much as the displacements do. Along the mean ray the logarithm
+// of the inverse depth is uniform: at a given parallax, a density proportional to sin.
+struct PlanePrior {
+  Eigen::Matrix3d precision;
+  double log_density;
+};
+PlanePrior MakePlanePrior(const DisplacementSet& set, const std::vector<Parts>& parts) {
+  double squares = 0.0;
+  for (const Parts& p : parts) squares += p.sin * p.sin;
+  const double sin2 = squares / static_cast<double>(parts.size());
+  const double precision = sin2 / (set.size_rad * set.size_rad);
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - set.mean_ray * set.mean_ray.transpose();
+  return {precision * across, std::log(precision) + 0.5 * std::log(sin2)};
+}
+
+// Sets the inverse depths of the plane; `covariance` is that of n.
+void SetPlaneDepths(const DisplacementSet& set, const Eigen::Matrix3d& covariance, AxisFit* fit) {
+  const auto in_sd = [&](const Eigen::Vector3d& ray) {
+    return fit->x.tail<3>().dot(ray) / std::sqrt(std::max(ray.dot(covariance * ray), 1e-300));
+  };
+  fit->mean = in_sd(set.mean_ray);
+  fit->least = std::numeric_limits<double>::infinity();
+  fit->greatest = -fit->least;
+  for (const Displacement& match : set.matches) {
+    const double depth = in_sd(match.a);
+    fit->least = std::min(fit->least, depth);
+    fit->greatest = std::max(fit->greatest, depth);
+  }
+}
+
 // One step of expectation-maximisation.
-AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const AxisFit& old) {
+AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const PlanePrior& plane,
+             const AxisFit& old) {
   AxisFit fit;
   fit.direction = old.direction;
-  Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
-  Eigen::Vector4d moment = Eigen::Vector4d::Zero();
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d moment = Vector6d::Zero();
   LogProduct likelihood;
   double squares = 0.0, fourths = 0.0, sum_near = 0.0;
   for (size_t i = 0; i < parts.size(); ++i) {
     const Parts& p = parts[i];
     const double noise = set.matches[i].noise_variance, sin2 = p.sin * p.sin;
-    const Rest rest = ComputeRest(set, p, noise, old);
+    const Eigen::Vector3d& a = set.matches[i].a;
+    const Rest rest = ComputeRest(set, p, set.matches[i], old);
     const double all = rest.All(), far = rest.far / all, near = rest.near / all;
     likelihood.MultiplyBy(all / rest.wrong);
     sum_near += near;
-    Eigen::Vector4d by_across, by_along;
-    by_across << -p.unit_along, 0.0;
-    by_along << p.unit_across, p.sin;
+    Vector6d by_across, by_along;
+    by_across << -p.unit_along, Eigen::Vector3d::Zero();
+    by_along << p.unit_across, p.sin * a;
     const double w_across = (far + near) / noise, w_along = far / rest.along_variance;
     information += w_across * by_across * by_across.transpose() + w_along * by_along * by_along.transpose();
     moment += w_across * p.across * by_across + w_along * p.along * by_along;
@@ -183,24 +232,26 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
     squares += share * (rest.along * rest.along - noise);
     fourths += share * sin2;
   }
-  double prior_cost = 0.0;
+  // Priors are divided by all_over_used, which multiplies the sums over the matches below.
+  information.bottomRightCorner<3, 3>() += plane.precision / set.all_over_used;
+  const Eigen::Vector3d n = old.x.tail<3>();
+  double prior_cost = 0.5 * n.dot(plane.precision * n) - plane.log_density;
   if (set.of_rotation) {
-    // Divided by all_over_used, which multiplies the sums over the matches below.
     const auto J = set.of_rotation->jacobian.leftCols<3>();
     const auto& r = set.of_rotation->residual;
     information.topLeftCorner<3, 3>() += J.transpose() * J / set.all_over_used;
     moment.head<3>() -= J.transpose() * r / set.all_over_used;
-    prior_cost = 0.5 * (r + J * old.x.head<3>()).squaredNorm();
+    prior_cost += 0.5 * (r + J * old.x.head<3>()).squaredNorm();
   }
-  const Eigen::LDLT<Eigen::Matrix4d> ldlt(information);
+  const Eigen::LDLT<Matrix6d> ldlt(information);
   fit.x = ldlt.solve(moment);
   if (!fit.x.allFinite()) return {};
   fit.variance = fourths > 0.0 ? std::max(squares / fourths, 0.0) : 0.0;
   fit.near = std::clamp(sum_near / static_cast<double>(parts.size()), kLeastNear, 1.0 - 2.0 * kShareWrong);
   const double log_det = ldlt.vectorD().array().max(1e-300).log().sum();
   fit.log_likelihood = set.all_over_used * likelihood.Log() - prior_cost - 0.5 * log_det;
-  const double variance_of_mean = ldlt.solve(Eigen::Vector4d::Unit(3))(3) / set.all_over_used;
-  fit.mean_in_sd = fit.x(3) / std::sqrt(std::max(variance_of_mean, 1e-300));
+  const Matrix6d covariance = ldlt.solve(Matrix6d::Identity()) / set.all_over_used;
+  SetPlaneDepths(set, covariance.bottomRightCorner<3, 3>(), &fit);
   fit.information = information;
   return fit;
 }
@@ -210,21 +261,25 @@ AxisFit FitAxis(const DisplacementSet& set, const Eigen::Vector3d& direction) {
   std::vector<Parts> parts;
   parts.reserve(set.matches.size());
   for (const Displacement& match : set.matches) parts.push_back(ComputeParts(direction, match));
-  AxisFit fit = FirstFit(parts);
+  AxisFit fit = FirstFit(set, parts);
   fit.direction = direction;
-  for (int step = 0; step < kSteps; ++step) fit = Step(set, parts, fit);
+  const PlanePrior plane = MakePlanePrior(set, parts);
+  for (int step = 0; step < kSteps; ++step) fit = Step(set, parts, plane, fit);
   return fit;
 }
 
 double NormalCdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-// The weight of an axis, divided between its direction (ahead) and the opposite one (behind), and their sum.
+// The weight of an axis for its direction (ahead) and the opposite one (behind), and their sum.
 struct TwoWays {
   double ahead, behind, both;
 };
 TwoWays DivideWeight(double weight, const AxisFit& fit, const DisplacementSet& set) {
-  const double ahead = NormalCdf(fit.mean_in_sd) * weight, behind = weight - ahead;
-  if (!set.of_direction) return {ahead, behind, weight};
+  // Where no direction has the whole plane in front, the mean inverse depth decides.
+  constexpr double kPartlyBehind = 1e-6;
+  const double ahead = (NormalCdf(fit.least) + kPartlyBehind * NormalCdf(fit.mean)) * weight;
+  const double behind = (NormalCdf(-fit.greatest) + kPartlyBehind * NormalCdf(-fit.mean)) * weight;
+  if (!set.of_direction) return {ahead, behind, ahead + behind};
   const double a = ahead * PriorDensity(fit.direction, set), b = behind * PriorDensity(-fit.direction, set);
   return {a, b, a + b};
 }
@@ -298,7 +353,7 @@ std::vector<DirectionCell> ComputeDirectionCells(const MotionProblem& problem, c
   for (const WeightedAxis& axis : axes) {
     const double weight = std::exp(axis.fit.log_likelihood - greatest + axis.log_area);
     if (!(weight > 0.0)) continue;
-    const Eigen::Matrix4d covariance = axis.fit.information.inverse() / set.all_over_used;
+    const Matrix6d covariance = axis.fit.information.inverse() / set.all_over_used;
     const TwoWays ways = DivideWeight(weight, axis.fit, set);
     const double half = kPi / kAzimuths;
     const Eigen::Vector3d rotation = axis.fit.x.head<3>();
@@ -327,7 +382,7 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
   const std::vector<WeightedAxis> axes = FitAxes(set, centre, EdgeAt(angle_rad));
   const AxisFit& greatest = MostLikely(axes).fit;
   AxisFit best = greatest;
-  bool is_behind = best.x(3) < 0.0;
+  bool is_behind = best.mean < 0.0;
   double within = 0.0, total = 0.0, most = 0.0, ahead = 0.0;
   Matrix5d moment = Matrix5d::Zero();
   for (const WeightedAxis& axis : axes) {
@@ -340,9 +395,8 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
       moment += ways.ahead * ComputeSecondMoment(axis, {mode.mode.pose.R, centre}, set.all_over_used);
     if (axis.angle <= angle_rad) within += ways.ahead;
     if (std::numbers::pi - axis.angle <= angle_rad) within += ways.behind;
-    // A prior of the direction may prefer another axis: take the most likely direction of all axes.
     const TwoWays densities = DivideWeight(density, axis.fit, set);
-    if (!set.of_direction || !(std::max(densities.ahead, densities.behind) > most)) continue;
+    if (!(std::max(densities.ahead, densities.behind) > most)) continue;
     most = std::max(densities.ahead, densities.behind);
     best = axis.fit;
     is_behind = densities.behind > densities.ahead;
@@ -354,7 +408,7 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
   posterior.best.pose = {RotationFromVector(best.x.head<3>()) * mode.mode.pose.R,
                          is_behind ? Eigen::Vector3d(-best.direction) : best.direction};
   for (const Displacement& match : set.matches) {
-    const Rest rest = ComputeRest(set, ComputeParts(best.direction, match), match.noise_variance, best);
+    const Rest rest = ComputeRest(set, ComputeParts(best.direction, match), match, best);
     if (rest.far + rest.near > rest.wrong) continue;
     posterior.best.used[match.match / kBlockSize] &=
         static_cast<std::uint8_t>(~(1u << (match.match % kBlockSize)));

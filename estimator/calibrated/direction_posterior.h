@@ -9,18 +9,21 @@
 //
 //   e = t - (t a) a,  sin = |e|,  e' = e / sin,  n = a x e'
 //   across   n (b - a) + w e'                ~ N(0, s^2)
-//   along    e' (b - a) - w n - m sin        ~ N(0, s^2 + v sin^2)
+//   along    e' (b - a) - w n - (p a) sin    ~ N(0, s^2 + v sin^2)
 //
-// Here w is a small rotation, m and v are the mean and the variance of the inverse depths in baselines, and s
-// is the noise of the angle between two rays. Without parallax (m = v = 0) the density is the same for all
-// directions. Two kinds of matches have a component of any size along the line: near points, whose share is
-// found by expectation-maximisation, and a small fixed share of outliers, so that one outlier does not
-// decide.
+// Here w is a small rotation, p a is the inverse depth, in baselines, of the plane p at ray a, v is the
+// variance of the inverse depths about the plane, and s is the noise of the angle between two rays. Without
+// parallax (p = v = 0) the density is the same for all directions. Without the plane's slopes the law would
+// be sure of a wrong direction where depths depend on the place in the image: travel along the axis has a
+// twin, as every motion over a plane, and the plane of that twin has no slope. Two kinds of matches have a
+// component of any size along the line: near points, whose share is found by expectation-maximisation, and a
+// small fixed share of outliers, so that one outlier does not decide.
 //
-// w and m are integrated out under uniform priors. As m > 0, the weight of an axis is divided between t and
-// -t as Phi(m / sd) and Phi(-m / sd). A prior of the motion (MotionProblem::prior) multiplies the density of
-// the matches: rotation and gravity as a normal law of w, the direction as a factor of the weights of t and
-// -t.
+// w and p are integrated out, w under a uniform prior. The prior of p is that of the parallax (p a) sin, the
+// same for every direction. The plane lies in front: t has the weight of its axis times Phi(x / sd), x the
+// least inverse depth of the plane among the matches, and -t times Phi(-x / sd) of the greatest. A prior of
+// the motion (MotionProblem::prior) multiplies the density of the matches: rotation and gravity as a normal
+// law of w, the direction as a factor of the weights of t and -t.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,9 @@
 #include "estimator/calibrated/settle_direction.h"
 
+#include <cmath>
+
+#include "estimator/calibrated/weigh_modes.h"
+
 namespace rcme {
 namespace {
 
@@ -19,7 +23,7 @@ std::optional<ExplainedMode> MovedTo(const MatchBlocks& matches, const MixturePr
 
 std::optional<WeakDirection> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
                                              const MixturePrior& prior, double angle_rad,
-                                             ExplainedMode* answer) {
+                                             CalibratedStep leave_out, ExplainedMode* answer) {
   if (UsualDepthInNoise(answer->explanation) > kLowParallax) return std::nullopt;
   if (problem.prior && problem.prior->direction && problem.prior->direction->sd_rad < 0.5 * angle_rad)
     return std::nullopt;
@@ -28,6 +32,9 @@ std::optional<WeakDirection> SettleDirection(const MotionProblem& problem, const
   if (found.mass_within > kSettled) return direction;
   std::optional<ExplainedMode> moved = MovedTo(matches, prior, found.best);
   if (!moved) return direction;
+  const double log_odds = ComputeLogOdds(*answer, *moved, prior, leave_out);
+  if (log_odds > 0.0)
+    return WeakDirection{found.mass_within, found.covariance, 1.0 / (1.0 + std::exp(log_odds))};
   const DirectionPosterior of_moved = PosteriorOfDirection(problem, *moved, moved->mode.pose.t, angle_rad);
   if (of_moved.mass_within <= found.mass_within) return direction;
   *answer = std::move(*moved);

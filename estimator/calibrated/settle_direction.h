@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "estimator/calibrated/calibrated_options.h"
 #include "estimator/calibrated/direction_posterior.h"
 
 namespace rcme {
@@ -10,17 +11,24 @@ namespace rcme {
 struct WeakDirection {
   double mass_within = 0.0;  // probability that the direction is within the bound of the answer's
   Matrix5d covariance = Matrix5d::Zero();  // as DirectionPosterior's
+  // How far the two count against the modes. Below one where the law of the displacements prefers another
+  // direction than the weights of the modes do.
+  double weight = 1.0;
 };
 
 // The direction is not normal if fewer than a fifth of the matches have a parallax above six standard
 // deviations of its noise (UsualDepthInNoise). Then returns the probability, over the whole sphere, that the
-// direction lies within `angle_rad` of the answer's. If that is at most .8, the answer is first moved to the
-// optimum near the most likely direction, provided that this has a greater probability.
+// direction lies within `angle_rad` of the answer's. If that is at most .8, the answer is compared with the
+// optimum near the most likely direction:
+// - If the log-odds of the modes (ComputeLogOdds) prefer the answer, it stays, and the result has the weight
+//   1 / (1 + odds). The law of the displacements takes depths for independent of the place in the image; on a
+//   street or a plane it may be sure of a wrong direction.
+// - Otherwise the answer moves there, provided that this has a greater probability.
 //
 // Otherwise returns nullopt and leaves the answer; also if a prior determines the direction to half of
 // `angle_rad`, so that it is normal.
 std::optional<WeakDirection> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
                                              const MixturePrior& prior, double angle_rad,
-                                             ExplainedMode* answer);
+                                             CalibratedStep leave_out, ExplainedMode* answer);
 
 }  // namespace rcme

@@ -2,7 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "estimator/geometry/pose.h"
 
@@ -28,7 +30,7 @@ ModeTraits FindTraits(const ExplainedMode& mode, const MotionPrior* prior, Calib
 
 class ModeComparison {
  public:
-  explicit ModeComparison(const std::vector<ExplainedMode>& modes, const MotionPrior* prior = nullptr,
+  explicit ModeComparison(std::span<const ExplainedMode> modes, const MotionPrior* prior = nullptr,
                           CalibratedStep leave_out = CalibratedStep::kNone)
       : modes_(modes), prior_evidence_(modes.size(), 0.0) {
     for (const ExplainedMode& mode : modes) traits_.push_back(FindTraits(mode, prior, leave_out));
@@ -54,7 +56,7 @@ class ModeComparison {
   double LogOdds(size_t a, size_t b) const { return LogOdds(a, b, Compare(a, b)); }
 
  private:
-  const std::vector<ExplainedMode>& modes_;
+  std::span<const ExplainedMode> modes_;
   std::vector<ModeTraits> traits_;
   std::vector<double> prior_evidence_;  // nats
 };
@@ -98,6 +100,12 @@ void ScaleOdds(const std::vector<bool>& is_rival, std::vector<double>* odds) {
 }
 
 }  // namespace
+
+double ComputeLogOdds(const ExplainedMode& a, const ExplainedMode& b, const MixturePrior& prior,
+                      CalibratedStep leave_out) {
+  const std::array<ExplainedMode, 2> both = {a, b};
+  return ModeComparison(both, prior.motion, leave_out).LogOdds(0, 1);
+}
 
 std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t answer,
                              const MotionBounds& bounds) {

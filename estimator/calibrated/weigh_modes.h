@@ -43,6 +43,11 @@ struct ModePair {
   bool is_second_motion = false;  // two motions, whose odds do not depend on the terms
 };
 
+// Log-odds that mode a is the camera's motion rather than b, by their matches and the priors
+// (mode_weights.h).
+double ComputeLogOdds(const ExplainedMode& a, const ExplainedMode& b, const MixturePrior& prior,
+                      CalibratedStep leave_out);
+
 // All pairs of modes with a < b.
 std::vector<ModePair> ListModePairs(const std::vector<ExplainedMode>& modes);
 

@@ -223,8 +223,12 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       Matrix5d covariance = ComputeModeCovariance(
           modes[i], curvature, IntrinsicsCovariance(problem, options_, modes[i].mode, curvature),
           of_matches.checked.check, prior, options_);
-      if (of_matches.weak_direction && !weights.is_second_motion[i])
-        covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
+      if (of_matches.weak_direction && !weights.is_second_motion[i]) {
+        const double of_direction = of_matches.weak_direction->weight;
+        covariance =
+            (1.0 - of_direction) * covariance +
+            of_direction * SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
+      }
       beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i]});
     }
     return beliefs;
@@ -254,8 +258,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       ChooseNoiseLaw(matches, prior, &modes[weights.answer]);
     std::optional<WeakDirection> weak_direction;
     if (options_.leave_out != CalibratedStep::kDirectionPosterior) {
-      weak_direction =
-          SettleDirection(shuffled, matches, prior, Bounds().direction_rad, &modes[weights.answer]);
+      weak_direction = SettleDirection(shuffled, matches, prior, Bounds().direction_rad, options_.leave_out,
+                                       &modes[weights.answer]);
       weights.is_rival = FindRivals(modes, weights.answer, Bounds());
     }
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
@@ -291,7 +295,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       }
     }
     if (posterior != nullptr)
-      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, weak_direction.has_value(), estimate);
+      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads,
+                                  weak_direction ? weak_direction->weight : 0.0, estimate);
     if (workings == nullptr) return estimate;
     workings->weights = std::move(weights);
     workings->weak_direction = weak_direction;
@@ -331,21 +336,22 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   // the estimate's is used for the whole answer.
   MotionPosterior BuildPosterior(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
                                  const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
-                                 bool is_direction_weak, const MotionEstimate& estimate) const {
+                                 double of_direction, const MotionEstimate& estimate) const {
     const bool is_whole = options_.covariance == CovarianceKind::kRobust;
     std::vector<MotionComponent> components;
     for (size_t i = 0; i < modes.size(); ++i) {
-      const double weight = weights.of_modes[i];
       const bool is_answer = IsWithin(estimate.cam2_from_cam1, Bounds(), modes[i].mode.pose);
-      if (is_direction_weak && (is_answer || !weights.is_second_motion[i])) continue;
-      if (weight < kNegligibleWeight && i != weights.answer) continue;
+      const bool is_second_motion = weights.is_second_motion[i] && !is_answer;
+      const double weight = weights.of_modes[i] * (is_second_motion ? 1.0 : 1.0 - of_direction);
+      if (weight == 0.0 || (weight < kNegligibleWeight && i != weights.answer)) continue;
       if (is_whole && is_answer && i != weights.answer) continue;
       components.push_back(
           {modes[i].mode.pose, is_whole && is_answer ? estimate.pose_cov : spreads[i], weight, is_answer});
     }
     std::vector<DirectionCell> cells;
-    if (is_direction_weak)
+    if (of_direction > 0.0)
       cells = ComputeDirectionCells(problem, modes[weights.answer], Bounds().direction_rad);
+    for (DirectionCell& cell : cells) cell.weight *= of_direction;
     return MakeMotionPosterior(estimate.cam2_from_cam1, Bounds(), estimate.failure_probability,
                                std::move(components), std::move(cells));
   }

@@ -7,6 +7,7 @@
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/geometry/essential_matrix.h"
 #include "tests/test_support/calibrated_mode.h"
+#include "tests/test_support/street_scenes.h"
 
 namespace rcme {
 namespace {
@@ -72,6 +73,25 @@ TEST(FindModes, TheMotionIsFoundAmongPointsWithoutParallax) {
     });
   }
   EXPECT_GE(num_found, kScenes - 4);
+}
+
+// Where the parallax is below the wide scale, the few steps at that scale lead away from good candidates.
+TEST(FindModes, TheMotionIsFoundOnAStreetOfLittleParallax) {
+  const StreetScenes scenes;
+  constexpr int kScenes = 60;
+  int num_found = 0;
+  for (std::uint32_t trial = 0; trial < kScenes; ++trial) {
+    const StreetScenes::Case street = scenes.Make(trial);
+    const MatchBlocks matches(street.problem);
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2757});
+    const HypothesisSearch search = SearchHypotheses(matches, ScoreMatches(matches), {}, rng);
+    const std::vector<Mode> modes = FindModes(matches, MakePrior(street.problem), search.candidates, 4);
+    num_found += std::ranges::any_of(modes, [&](const Mode& mode) {
+      return IsWithin(mode.pose, {0.05, 0.25}, street.pose_true);
+    });
+  }
+
+  EXPECT_GE(num_found, kScenes * 3 / 4);
 }
 
 TEST(FindModes, OfNoCandidateThereAreNone) {

@@ -7,6 +7,7 @@
 
 #include "stats/constants.h"
 #include "tests/test_support/calibrated_mode.h"
+#include "tests/test_support/street_scenes.h"
 
 namespace rcme {
 namespace {
@@ -33,8 +34,8 @@ FarCase MakeFar(std::uint32_t trial, double near, bool starts_at_truth) {
 
 TEST(SettleDirection, LeavesAClearParallaxAlone) {
   FarCase far = MakeFar(0, 5.0, true);
-  EXPECT_FALSE(
-      SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound, &far.answer));
+  EXPECT_FALSE(SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound,
+                               CalibratedStep::kNone, &far.answer));
 }
 
 // 200 baselines away the parallax is some pixels' noise: a fit that began across the true direction ends at
@@ -44,8 +45,8 @@ TEST(SettleDirection, MovesAWrongAnswerOrDoubtsIt) {
   constexpr int kTrials = 30;
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     FarCase far = MakeFar(trial, 200.0, false);
-    const auto direction =
-        SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound, &far.answer);
+    const auto direction = SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound,
+                                           CalibratedStep::kNone, &far.answer);
     if (!direction) continue;
     ++num_low;
     EXPECT_GE(direction->mass_within, 0.0);
@@ -67,16 +68,41 @@ TEST(SettleDirection, MovesToMoreMassAlone) {
     const RelativePose before = far.answer.mode.pose;
     const double mass_before =
         PosteriorOfDirection(far.random.problem, far.answer, before.t, kBound).mass_within;
-    const auto direction =
-        SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound, &far.answer);
+    const auto direction = SettleDirection(far.random.problem, far.fitted.matches, far.fitted.prior, kBound,
+                                           CalibratedStep::kNone, &far.answer);
     if (!direction) continue;
     const bool has_moved = far.answer.mode.pose.t != before.t;
     EXPECT_EQ(has_moved, direction->mass_within > mass_before) << trial;
     EXPECT_GE(direction->mass_within, mass_before) << trial;
+    EXPECT_GT(direction->weight, 0.0) << trial;
+    EXPECT_LE(direction->weight, 1.0) << trial;
     (has_moved ? num_moved : num_stayed) += 1;
   }
   EXPECT_GE(num_moved, 3);
   EXPECT_GE(num_stayed, 3);
+}
+
+// With depths independent of the place in the image the law would exclude the true direction in 39 of 40.
+TEST(SettleDirection, AStreetIsNotTakenForItsTwin) {
+  const StreetScenes street_scenes;
+  constexpr int kTrials = 40;
+  int num_weak = 0, num_excluded = 0, num_moved_away = 0;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    const StreetScenes::Case street = street_scenes.Make(trial);
+    const FittedMode fitted = FitFromTruth(street.problem, street.pose_true);
+    ExplainedMode answer{fitted.mode, Explain(fitted.matches, fitted.mode)};
+    if (AngleBetween(answer.mode.pose.t, street.pose_true.t) > kBound) continue;
+    const double mass = PosteriorOfDirection(street.problem, answer, street.pose_true.t, kBound).mass_within;
+    const auto direction =
+        SettleDirection(street.problem, fitted.matches, fitted.prior, kBound, CalibratedStep::kNone, &answer);
+    if (!direction) continue;
+    ++num_weak;
+    num_excluded += mass < 0.01;
+    num_moved_away += AngleBetween(answer.mode.pose.t, street.pose_true.t) > kBound;
+  }
+  EXPECT_GE(num_weak, kTrials * 3 / 4);
+  EXPECT_LE(num_excluded, kTrials / 8);
+  EXPECT_LE(num_moved_away, kTrials / 8);
 }
 
 }  // namespace
