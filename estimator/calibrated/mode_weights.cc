@@ -74,12 +74,25 @@ Matrix5d FindMatchInformation(const MotionPrior* prior, const Mode& mode) {
          eigen.eigenvectors().transpose();
 }
 
+namespace {
+
+// The log density of the measurements over the greatest of their stated law, at this cost.
+double LogMeasurementDensity(const MotionPrior& prior, double cost) {
+  constexpr double kShareBad = 0.05, kFactorBad = 5.0;
+  const double volume = std::pow(kFactorBad, CountPriorFreedom(prior));
+  return std::log((1.0 - kShareBad) * std::exp(-cost) +
+                  kShareBad / volume * std::exp(-cost / (kFactorBad * kFactorBad)));
+}
+
+}  // namespace
+
 double ComputePriorEvidence(const MotionPrior& prior, const Mode& mode) {
   const Eigen::LLT<Matrix5d> of_matches(FindMatchInformation(&prior, mode)), of_both(mode.hessian);
   const auto half_log_det = [](const Eigen::LLT<Matrix5d>& llt) {
     return llt.matrixLLT().diagonal().array().log().sum();
   };
-  const double evidence = LogPeakOverUniform(prior) - EvaluatePrior(prior, mode.pose).cost;
+  const double evidence =
+      LogPeakOverUniform(prior) + LogMeasurementDensity(prior, EvaluatePrior(prior, mode.pose).cost);
   if (of_matches.info() != Eigen::Success || of_both.info() != Eigen::Success) return evidence;
   return evidence - (half_log_det(of_both) - half_log_det(of_matches));
 }

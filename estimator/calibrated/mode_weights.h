@@ -82,10 +82,13 @@ inline constexpr double kSearchNats = 22.0;
 // and Q: the integral of L q over the mode is L(p) q(p) |H + Q|^(-1/2) up to powers of 2 pi, that of L alone
 // is L(p) |H|^(-1/2). ModeLogOdds weighs the likelihood and |H|, as without a prior. The rest is
 //
-//   log q(p) - (log|H + Q| - log|H|) / 2,   log q(p) = LogPeakOverUniform - cost
+//   log q(p) - (log|H + Q| - log|H|) / 2,
+//   log q(p) = LogPeakOverUniform + log(.95 e^-cost + .05 5^-d e^(-cost / 25)),  d its degrees of freedom
 //
 // It is not tempered as the evidence of the matches is, because the noise of the prior is independent of that
-// of the matches, and stated.
+// of the matches, and stated. But one measurement in twenty is taken to have five times the stated standard
+// deviations: a biased sensor may lie nearer to the twin of a plane than to the camera's motion, by chance and
+// by many of its own standard deviations.
 double ComputePriorEvidence(const MotionPrior& prior, const Mode& mode);
 // The Hessian of the likelihood alone: the mode's Hessian without the prior.
 Matrix5d FindMatchInformation(const MotionPrior* prior, const Mode& mode);

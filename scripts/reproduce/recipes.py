@@ -140,7 +140,9 @@ def run(command, out, programs, draws=True):
         target, words = words[-1], words[:-2]
     is_ours = "/" not in words[0]
     program = programs / words[0] if is_ours else Path(words[0])
-    environment = {**os.environ, "PYTHONHOME": "/nowhere"} if is_ours and not draws else None
+    environment = {**os.environ, "RCME_PROGRAMS": str(programs)}
+    if is_ours and not draws:
+        environment["PYTHONHOME"] = "/nowhere"
     done = subprocess.run([str(program), *words[1:]], cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     if done.returncode != 0 and not (done.returncode in (1, 3) and words[1] in VERDICTS):
         last = done.stderr.decode(errors="replace").strip().splitlines()[-3:]

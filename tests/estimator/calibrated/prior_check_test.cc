@@ -82,8 +82,14 @@ TEST(FitMode, EndsAtTheOptimumOfLikelihoodAndPrior) {
   EXPECT_GT(RotationAngleBetween(f.mode.pose.R, mode.pose.R), 1e-4);
 }
 
+// The log density of three measured numbers over its greatest: one in twenty has five times the stated sd.
+double LogMixture(double cost) {
+  return std::log(0.95 * std::exp(-cost) + 0.05 / 125.0 * std::exp(-cost / 25.0));
+}
+
 // Of a normal likelihood: the evidence is log N(r; 0, I + J C J') over that at r = 0 without C, which the
-// lemma of determinants turns into Laplace's form at the optimum of both.
+// lemma of determinants turns into Laplace's form at the optimum of both; with the mixture in place of the
+// normal law at that optimum.
 TEST(PriorEvidence, IsThatOfAConvolution) {
   RandomStream rng({.seed = 1, .purpose = 4123});
   const RelativePose truth = RandomPose(rng, 30.0);
@@ -101,7 +107,24 @@ TEST(PriorEvidence, IsThatOfAConvolution) {
       Eigen::Matrix<double, 9, 9>::Identity() + r.jacobian * H.inverse() * r.jacobian.transpose();
   const double expected = LogPeakOverUniform(motion) - 0.5 * r.residual.dot(spread.inverse() * r.residual) -
                           0.5 * std::log(spread.determinant());
-  EXPECT_NEAR(ComputePriorEvidence(motion, both) - loss, expected, 0.01);
+  const double cost = EvaluatePrior(motion, both.pose).cost;
+  EXPECT_NEAR(ComputePriorEvidence(motion, both) - loss, expected + cost + LogMixture(cost), 0.01);
+}
+
+// A motion five standard deviations from the measurement against one at three: 2981 to 1 by the normal law.
+TEST(PriorEvidence, LeavesRoomForABadMeasurement) {
+  const double sd = 0.02;
+  MotionPrior motion;
+  motion.rotation = {Eigen::Matrix3d::Identity(), sd * sd * Eigen::Matrix3d::Identity()};
+  const auto evidence_at = [&](double sds) {
+    Mode mode;
+    mode.pose = {RotationFromVector({sds * sd, 0.0, 0.0}), Eigen::Vector3d::UnitZ()};
+    mode.hessian = 1e12 * Matrix5d::Identity();
+    return ComputePriorEvidence(motion, mode);
+  };
+  EXPECT_NEAR(evidence_at(3.0) - evidence_at(5.0), LogMixture(4.5) - LogMixture(12.5), 1e-3);
+  EXPECT_LT(evidence_at(3.0) - evidence_at(5.0), 4.5);
+  EXPECT_GT(evidence_at(0.0) - evidence_at(3.0), 4.0);
 }
 
 // 400 scenes: the fit by matches and prior covers as it says, and its error is what both give. At .95 a false
