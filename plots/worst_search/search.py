@@ -10,10 +10,14 @@ import numpy as np
 from common.plot_error import PlotError
 from worst_search.grow_box import AXIS_DRAWS, first_box, peel, widen
 from worst_search.intervals import clopper_pearson, simultaneous_rate
+from worst_search.objective import Tried
 from worst_search.space import Box, overlap
 from worst_search.surrogate import Surrogate, choose_promising
 
 MIN_EVENTS = 4  # in a look into a box; with fewer it is given up
+# Where the event is frequent, the draws tried so far say more than a walk from one of them: from this many events on, a
+# box is cut from all of them, to no less than this share of the population.
+MIN_CARVED, LEAST_CARVED = 200, 0.01
 MAX_CYCLES, LEAST_EXPLORED = 6, 200  # exploring, racing and growing again with what is left
 INTERVALS_OF_REGION = 2  # its rate and its share of the population, which all hold together
 NUM_LOOKED_AT = 3000  # draws of which the surrogate says which to try
@@ -168,10 +172,23 @@ def box_beside(space, draw, evidence, regions):
     return box
 
 
-def grow(objective, plan, name, draw, evidence, regions):
+def carve(objective, plan, name, draw, evidence, beside):
+    """A region cut from the draws tried so far in the box `beside`; None if there are too few events."""
+    space = objective.space
+    rows = np.flatnonzero(evidence.tried & beside.contains(space.pool))
+    if evidence.events[rows].sum() < MIN_CARVED:
+        return None
+    tried = Tried(space.pool.take(rows), evidence.events[rows], evidence.trials[rows], np.zeros(len(rows)))
+    box, _ = peel(space, beside, tried, LEAST_CARVED)
+    looked = objective.try_box(f"{name}_carved", box, plan.box_draws)
+    rate = (looked.events.sum() + 1) / (looked.trials.sum() + 2)
+    return Region(box.without_idle_ends(space), draw, rate) if rate > plan.claim else None
+
+
+def grow(objective, plan, name, draw, evidence, beside):
+    """A region grown from this draw within the box `beside`; None if the event is hardly more frequent there."""
     space = objective.space
     inside, outside = rates_apart(plan, (evidence.events[draw] + 1) / (evidence.trials[draw] + 2))
-    beside = box_beside(space, draw, evidence, regions)
     box = first_box(objective, f"{name}_axis", space.pool.row(draw), beside, inside, outside)
     for look in range(plan.num_looks):
         tried = objective.try_box(f"{name}_look_{look}", box, plan.box_draws)
@@ -206,7 +223,8 @@ def grow_regions(objective, plan, evidence, regions, given_up):
         draw = next_draw(objective, plan, evidence, regions, given_up)
         if draw is None:
             return
-        region = grow(objective, plan, f"region_{draw}", draw, evidence, regions)
+        name, beside = f"region_{draw}", box_beside(space, draw, evidence, regions)
+        region = carve(objective, plan, name, draw, evidence, beside) or grow(objective, plan, name, draw, evidence, beside)
         given_up.add(draw)
         if region and all(overlap(region.box, other.box, space.pool) <= plan.most_overlap for other in regions):
             regions.append(region)
