@@ -124,12 +124,12 @@ def fails_less(tried, gone, kept):
     return float((e2 / n2 - e1 / n1) / math.sqrt(pooled * (1 - pooled) * (1 / n1 + 1 / n2)))
 
 
-def peel(space, box, tried, least_share):
-    """Cuts off the slice that fails least often, as long as it is far enough below the rest (PRIM, with a test in place of
-    a fixed share) and the box keeps `least_share` of the population. Returns the box and the draws in it."""
+def peel(space, box, tried, least_share, least_z=PEEL_Z):
+    """Cuts off the slice that fails least often, as long as it is `least_z` standard deviations below the rest (PRIM, with
+    a test in place of a fixed share) and the box keeps `least_share` of the population. Returns the box and the draws in it."""
     inside = np.ones(tried.table.size, dtype=bool)
     while True:
-        best = (PEEL_Z, None, None, None)
+        best = (least_z, None, None, None)
         for key, limit, gone in slices(space, box, tried.subset(inside)):
             rows = np.flatnonzero(inside)[gone]
             out = np.zeros_like(inside)

@@ -16,8 +16,9 @@ from worst_search.surrogate import Surrogate, choose_promising
 
 MIN_EVENTS = 4  # in a look into a box; with fewer it is given up
 # Where the event is frequent, the draws tried so far say more than a walk from one of them: from this many events on, a
-# box is cut from all of them, to no less than this share of the population.
-MIN_CARVED, LEAST_CARVED = 200, 0.01
+# box is cut from all of them, to no less than this share of the population. Each cut is the best of hundreds, so that it
+# has to be this many standard deviations clear.
+MIN_CARVED, LEAST_CARVED, CARVE_Z = 200, 0.01, 4.0
 MAX_CYCLES, LEAST_EXPLORED = 6, 200  # exploring, racing and growing again with what is left
 INTERVALS_OF_REGION = 2  # its rate and its share of the population, which all hold together
 NUM_LOOKED_AT = 3000  # draws of which the surrogate says which to try
@@ -179,7 +180,7 @@ def carve(objective, plan, name, draw, evidence, beside):
     if evidence.events[rows].sum() < MIN_CARVED:
         return None
     tried = Tried(space.pool.take(rows), evidence.events[rows], evidence.trials[rows], np.zeros(len(rows)))
-    box, _ = peel(space, beside, tried, LEAST_CARVED)
+    box, _ = peel(space, beside, tried, LEAST_CARVED, CARVE_Z)
     looked = objective.try_box(f"{name}_carved", box, plan.box_draws)
     rate = (looked.events.sum() + 1) / (looked.trials.sum() + 2)
     return Region(box.without_idle_ends(space), draw, rate) if rate > plan.claim else None
