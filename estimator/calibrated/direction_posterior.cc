@@ -174,9 +174,9 @@ Rest ComputeRest(const DisplacementSet& set, const Parts& p, const Displacement&
   return rest;
 }
 
-// The prior of n. Across the mean ray it is normal with the standard deviation size_rad / sin, so that the
-// parallax n'a sin may vary over the image as much as the displacements do. Along the mean ray the logarithm
-// of the inverse depth is uniform: at a given parallax, a density proportional to sin.
+// The prior of n, the same for all directions in terms of the parallax n sin. Across the mean ray n sin is
+// normal with the standard deviation size_rad: per radian of the image, the parallax may vary by the size of
+// the displacements. Along the mean ray n sin is uniform.
 struct PlanePrior {
   Eigen::Matrix3d precision;
   double log_density;

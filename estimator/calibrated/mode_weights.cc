@@ -79,9 +79,9 @@ namespace {
 // The log density of the measurements over the greatest of their stated law, at this cost.
 double LogMeasurementDensity(const MotionPrior& prior, double cost) {
   constexpr double kShareBad = 0.05, kFactorBad = 5.0;
-  const double volume = std::pow(kFactorBad, CountPriorFreedom(prior));
-  return std::log((1.0 - kShareBad) * std::exp(-cost) +
-                  kShareBad / volume * std::exp(-cost / (kFactorBad * kFactorBad)));
+  const double bad_cost = cost / (kFactorBad * kFactorBad);
+  const double bad_density = kShareBad / std::pow(kFactorBad, CountPriorFreedom(prior));
+  return std::log((1.0 - kShareBad) * std::exp(bad_cost - cost) + bad_density) - bad_cost;
 }
 
 }  // namespace

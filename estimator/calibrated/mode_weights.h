@@ -87,8 +87,8 @@ inline constexpr double kSearchNats = 22.0;
 //
 // It is not tempered as the evidence of the matches is, because the noise of the prior is independent of that
 // of the matches, and stated. But one measurement in twenty is taken to have five times the stated standard
-// deviations: a biased sensor may lie nearer to the twin of a plane than to the camera's motion, by chance and
-// by many of its own standard deviations.
+// deviations: a biased sensor may lie nearer to the twin of a plane than to the camera's motion, by chance
+// and by many of its own standard deviations.
 double ComputePriorEvidence(const MotionPrior& prior, const Mode& mode);
 // The Hessian of the likelihood alone: the mode's Hessian without the prior.
 Matrix5d FindMatchInformation(const MotionPrior* prior, const Mode& mode);

@@ -60,6 +60,7 @@ struct PosePoint {
   RelativePose pose;
   double weight;
   bool is_answer;
+  bool is_in_cell = false;
 };
 
 // `share`: its weight relative to the greatest weight of the answer's components, or of the rivals.
@@ -103,8 +104,8 @@ void AddPoints(const MotionPosterior& posterior, const DirectionCell& cell, doub
   const Eigen::Matrix3d root = ComputeRoot<3>(cell.rotation_cov);
   const auto number = kLeastOfCell + static_cast<size_t>(share * static_cast<double>(kPointsOfCells));
   for (size_t k = 0; k < number; ++k)
-    points->push_back(
-        {MotionIn(cell, root, posterior.answer, places[k]), cell.weight / static_cast<double>(number), true});
+    points->push_back({MotionIn(cell, root, posterior.answer, places[k]),
+                       cell.weight / static_cast<double>(number), true, true});
 }
 
 // The number of points of a component or cell depends on its share alone, not on its absolute weight.
@@ -277,7 +278,7 @@ PosteriorCovariance Covariance(const MotionPosterior& posterior) {
                                                 away * away.transpose());
   }
   for (const PosePoint& point : MakePosePoints(posterior)) {
-    if (point.is_answer && posterior.cells.empty()) continue;  // in closed form, above
+    if (point.is_answer && !point.is_in_cell) continue;  // in closed form, above
     const Vector5d away = LocalCoordinates(posterior.answer, point.pose);
     (point.is_answer ? covariance.of_answer : of_rivals) += point.weight * away * away.transpose();
   }

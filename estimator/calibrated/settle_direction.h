@@ -21,12 +21,11 @@ struct WeakDirection {
 // direction lies within `angle_rad` of the answer's. If that is at most .8, the answer is compared with the
 // optimum near the most likely direction:
 // - If the log-odds of the modes (ComputeLogOdds) prefer the answer, it stays, and the result has the weight
-//   1 / (1 + odds). The law of the displacements takes depths for independent of the place in the image; on a
-//   street or a plane it may be sure of a wrong direction.
+//   1 / (1 + odds). The law of the displacements knows neither the noise of each motion nor the usual ones.
 // - Otherwise the answer moves there, provided that this has a greater probability.
 //
-// Otherwise returns nullopt and leaves the answer; also if a prior determines the direction to half of
-// `angle_rad`, so that it is normal.
+// Of a normal direction returns nullopt and leaves the answer; also if a prior determines the direction to
+// half of `angle_rad`, so that it is normal.
 std::optional<WeakDirection> SettleDirection(const MotionProblem& problem, const MatchBlocks& matches,
                                              const MixturePrior& prior, double angle_rad,
                                              CalibratedStep leave_out, ExplainedMode* answer);

@@ -145,8 +145,11 @@ def narrowed_conditions(conditions, space, box, number, design):
     brought = brought_keys(space, ranges)
     ranges = {key: value for key, value in ranges.items() if key in brought}
     given = list(conditions.get("given", []))
+    in_box = box.contains(space.pool)
     for key, limit in box.limits:
-        if not isinstance(limit, frozenset) and key in brought:
+        # Not of keys that some draws of the box lack: the condition would be on their default, and exclude those draws.
+        is_in_all = not isinstance(limit, frozenset) and not np.isnan(space.pool.columns[key][in_box]).any()
+        if is_in_all and key in brought:
             given += [f"{key} {sign} {number_text(end)}" for sign, end in zip((">=", "<="), limit) if math.isfinite(end)]
     return {"design": design, "number": number, "ranges": ranges, **({"given": given} if given else {})}
 

@@ -61,8 +61,8 @@ class KnownFunctions(unittest.TestCase):
             self.assertGreater(inside.mean(), 0.7)
 
     def test_where_events_are_frequent_everywhere_the_box_is_cut_from_all_draws(self):
-        """Rates of .85 in 6 % of the draws, .4 elsewhere. Of six walks from the worst draw four ended in a find, with 67 to
-        100 % of the draws in the region."""
+        """Rates of .85 in 6 % of the draws, .4 elsewhere. Of six walks from the worst draw, only four end in a find, and two
+        of these in a box with a quarter or more of its draws outside of the region."""
         box = {"x0": (0.0, 0.3), "x1": (0.0, 0.5), "a": frozenset(["one", "two"])}
         for seed in range(3):
             objective = PlantedRegion([box], seed=seed, inside=0.85, outside=0.4)
@@ -247,6 +247,13 @@ class Boxes(unittest.TestCase):
         narrowed = narrowed_conditions(conditions, self.space, box, 50, "random")
         self.assertEqual(narrowed["ranges"], {"scene": {"room": {"num_boxes": ["3", "7"]}}, "sigma_px": "0.2"})
         self.assertIn("num_boxes >= 2.4", narrowed["given"])
+
+    def test_draws_that_lack_a_key_are_not_excluded_by_its_default(self):
+        conditions = {"ranges": {"scene": {"room": {"num_boxes": ["0", "10"]}, "plane": {}}, "sigma_px": ["0", "1"]}}
+        box = Box.of(self.space, {"num_boxes": (2.4, 7.7), "sigma_px": (0.2, 0.9)})
+        narrowed = narrowed_conditions(conditions, self.space, box, 50, "random")
+        self.assertEqual(narrowed["ranges"]["scene"]["room"], {"num_boxes": ["3", "7"]})
+        self.assertEqual(narrowed["given"], ["sigma_px >= 0.2", "sigma_px <= 0.9"])
 
     def test_keys_of_words_that_are_left_out_are_not_drawn(self):
         """num_boxes stands beside the scenes, and is drawn with a room alone: with a plane it is no key."""

@@ -90,6 +90,18 @@ TEST(PosteriorDistances, NoRegionHoldsWhatNoneTakesAway) {
 }
 
 // Of two motions the median is the likelier one.
+// A mode with a tenth of a radian of spread and a cell far narrower, half of the weight each: the variance is
+// half of the mode's.
+TEST(Covariance, OfModesAndCellsIsThatOfTheMixture) {
+  MotionPosterior posterior;
+  posterior.answer = {Eigen::Matrix3d::Identity(), Eigen::Vector3d::UnitZ()};
+  const Matrix5d wide = 0.01 * Matrix5d::Identity();
+  posterior.components = {{posterior.answer, wide, 0.5, true}};
+  posterior.cells = {{0.0, 1e-6, 0.0, 1.0, 0.5}};
+  posterior.weight_of_none = 0.0;
+  EXPECT_LT((Covariance(posterior).of_answer - 0.5 * wide).norm(), 1e-4);
+}
+
 TEST(Median, IsTheLikelierOfTwo) {
   const MotionPosterior posterior{
       kStands,

@@ -74,8 +74,10 @@ TEST(SettleDirection, MovesToMoreMassAlone) {
     const bool has_moved = far.answer.mode.pose.t != before.t;
     EXPECT_EQ(has_moved, direction->mass_within > mass_before) << trial;
     EXPECT_GE(direction->mass_within, mass_before) << trial;
-    EXPECT_GT(direction->weight, 0.0) << trial;
-    EXPECT_LE(direction->weight, 1.0) << trial;
+    if (direction->weight < 1.0) {
+      EXPECT_LE(direction->weight, 0.5) << trial;  // the odds prefer the answer
+      EXPECT_FALSE(has_moved) << trial;
+    }
     (has_moved ? num_moved : num_stayed) += 1;
   }
   EXPECT_GE(num_moved, 3);
