@@ -1,6 +1,7 @@
-# Warnings that count as errors in our own code.
+# Warnings of our own code, which stop the build unless RCME_WARNINGS_AS_ERRORS is off.
 add_library(rcme_warnings INTERFACE)
-target_compile_options(rcme_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror)
+target_compile_options(rcme_warnings INTERFACE -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+                                               $<$<BOOL:${RCME_WARNINGS_AS_ERRORS}>:-Werror>)
 
 # rcme_add_room(NAME LINKS ... [PRIVATE_LINKS ...] [SOURCES ...] [APART ...] [PRECOMPILED ... | PRECOMPILED_BY NAME]
 # [TOGETHER ...]): one library per room, of all sources in its folder, or of those SOURCES of it, but those of APART; headers
