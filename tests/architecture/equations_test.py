@@ -152,7 +152,7 @@ class Equations(unittest.TestCase):
 
     def setUp(self):
         self.text = PAGE.read_text(encoding="utf-8")
-        _, self.equations, self.parts = tables(self.text)
+        _, self.equations, self.parts, _ = tables(self.text)
 
     def test_the_list_is_complete(self):
         count = int(re.search(r"(\d+) equations", self.text).group(1))
