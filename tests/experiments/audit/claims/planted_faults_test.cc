@@ -1,6 +1,6 @@
 // Faults planted in test doubles of the claims' parts. Each must be caught ("does not hold") with a power
-// that is measured over many seeds, where the sound twin must never be called so. The printed table is the
-// one of experiments/README.md.
+// that is measured over many seeds, where the sound twin must never be called so; experiments/README.md
+// states both rates.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
