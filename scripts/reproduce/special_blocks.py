@@ -144,7 +144,7 @@ def better(spec):
 
 
 def one_at_a_time(spec):
-    """A row where every factor is at its usual level, and one for each other level; `only` picks estimators."""
+    """A row where every factor is at its usual level, and one for each other level; `only` picks estimators, `show` factors."""
     rows = read_table(spec.argument)
     factors = [name for name, _ in spec.parts("factors")]
     base = dict(zip(factors, [level for level, _ in spec.parts("base")]))
@@ -156,7 +156,7 @@ def one_at_a_time(spec):
         return [" / ".join(value_or_dash(here, estimator, cell) for cell in cells) for estimator in estimators]
 
     body = [["(usual)", "", *line(factors[0], base[factors[0]])]]
-    for factor in factors:
+    for factor in [name for name, _ in spec.parts("show")] or factors:
         body += [[factor, level, *line(factor, level)] for level in levels_of(rows, factor) if not is_level(level, base[factor])]
     return markdown(["factor", "level"] + estimators, body)
 
