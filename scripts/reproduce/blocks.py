@@ -13,7 +13,7 @@ A page shows a block between two comments, and the file of the same name with `.
                     quantities of `cells`; further columns about the problem by `scene: quantity as Heading; ...`;
                     `where` picks rows, `only` picks columns, `having` leaves out rows without that column, `format`
                     says how a cell is shown (tables.py)
-    table TABLE     the columns of `columns` ("column as Heading; format: NAME as Heading; ...") of the rows of `where`
+    table TABLE ... the columns of `columns` ("column as Heading; format: NAME as Heading; ...") of the rows of `where`
     say             the lines below it, with numbers in braces: {TABLE: conditions | format}; `use` names a table and
                     `where` conditions that hold for all of them
     text FILE       lines of a committed text file as they stand; `from` and `to` say with what the first and the last begin, `before`
@@ -107,7 +107,7 @@ def cell(rows, across, level, quantity, form):
 
 
 def table(spec):
-    rows = read_table(spec.argument)
+    rows = [row for name in spec.argument.split() for row in read_table(name)]
     rows = select(rows, spec.get("where")) if spec.get("where") else rows
     columns = spec.parts("columns")
     forms = [what[len("format: "):] if what.startswith("format: ") else f"column {what}" for what, _ in columns]

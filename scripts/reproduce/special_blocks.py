@@ -5,7 +5,7 @@ import json
 import re
 
 from recipes import MADE, RESULTS, ROOT, data, read_recipes
-from tables import as_number, filled, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
+from tables import as_number, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
 from validation_blocks import caught, closures, median_ratios, truth_free, validation_values
 
 REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
@@ -19,28 +19,19 @@ def version_words(entry):
     return f"{entry['commit']}, {entry['date']}" if entry else "not noted"
 
 
-MOST_SHOWN = 500  # characters of commands; longer ones stand in results.toml alone
-
-
 def made(spec):
-    """How results are made again, and by what they were made."""
-    return "\n\n".join(how_made(name) for name in spec.argument.split())
+    """How results are made again, and by what they were made; a list where there are several."""
+    lines = [how_made(name) for name in spec.argument.split()]
+    return lines[0] if len(lines) == 1 else "\n".join("- " + line for line in lines)
 
 
 def how_made(name):
     recipe, entry = read_recipes()[name], made_by().get(name, {})
     minutes = entry.get("cpu_minutes", recipe.cpu_minutes)
-    older = ", an older one: not made again since" if "or before" in entry.get("commit", "") else ""
-    head = f"`scripts/results {recipe.name}` (about {minutes:g} CPU minutes; the committed one is of commit {version_words(entry)}{older})"
-    commands = "\n".join("    " + command.replace("{out}/", "").replace(" --out {out}", " --out .")
-                         for command in recipe.commands)
-    if len(commands) > MOST_SHOWN:
-        return filled(f"{head} runs the commands of [results.toml](../results.toml).")
-    places = {name: entry["what"] for name, entry in data().items() if "{" + name + "}" in commands}
-    for name in places:
-        commands = commands.replace("{" + name + "}", name)
-    meaning = "".join(f"\n\n`{name}`: the folder of {what}, [not in the repository](../README.md#results)." for name, what in places.items())
-    return filled(f"{head} runs") + f"\n\n{commands}{meaning}"
+    commands = " ".join(recipe.commands)
+    places = [f"`{place}`" for place in data() if "{" + place + "}" in commands]
+    needs = f", needs {' and '.join(places)}" if places else ""
+    return f"`scripts/results {recipe.name}`: {minutes:g} CPU minutes{needs}; commit {version_words(entry)}"
 
 
 def largest_sigma(spec):
@@ -144,7 +135,7 @@ def better(spec):
 
 
 def one_at_a_time(spec):
-    """A row where every factor is at its usual level, and one for each other level; `only` picks estimators."""
+    """A row where every factor is at its usual level, and one for each other level; `only` picks estimators, `show` factors."""
     rows = read_table(spec.argument)
     factors = [name for name, _ in spec.parts("factors")]
     base = dict(zip(factors, [level for level, _ in spec.parts("base")]))
@@ -156,7 +147,7 @@ def one_at_a_time(spec):
         return [" / ".join(value_or_dash(here, estimator, cell) for cell in cells) for estimator in estimators]
 
     body = [["(usual)", "", *line(factors[0], base[factors[0]])]]
-    for factor in factors:
+    for factor in [name for name, _ in spec.parts("show")] or factors:
         body += [[factor, level, *line(factor, level)] for level in levels_of(rows, factor) if not is_level(level, base[factor])]
     return markdown(["factor", "level"] + estimators, body)
 
