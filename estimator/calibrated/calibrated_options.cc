@@ -46,6 +46,7 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
                  {"opposite_way", CalibratedStep::kOppositeWay},
                  {"direction_posterior", CalibratedStep::kDirectionPosterior},
                  {"noise_choice", CalibratedStep::kNoiseChoice},
+                 {"noise_shape", CalibratedStep::kNoiseShape},
                  {"usual_motions", CalibratedStep::kUsualMotions},
                  {"model_check", CalibratedStep::kModelCheck}},
                 "a step that is left out, for an ablation: what it costs to do without"),

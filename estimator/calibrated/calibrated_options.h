@@ -29,6 +29,7 @@ enum class CalibratedStep {
   kOppositeWay,
   kDirectionPosterior,
   kNoiseChoice,
+  kNoiseShape,    // the second fit with anisotropic noise (noise_shape.h)
   kUsualMotions,  // the prior of the motion (mode_weights.h)
   kModelCheck,
 };

@@ -324,6 +324,21 @@ const WeightedAxis& MostLikely(const std::vector<WeightedAxis>& axes) {
   return *std::ranges::max_element(axes, {}, [](const WeightedAxis& a) { return a.fit.log_likelihood; });
 }
 
+// The weight of the axes, relative to that with the log-likelihood `greatest`, within an angle of a
+// direction.
+double SumWeightNear(const Eigen::Vector3d& direction, double angle_rad,
+                     const std::vector<WeightedAxis>& axes, double greatest, const DisplacementSet& set) {
+  double sum = 0.0;
+  for (const WeightedAxis& axis : axes) {
+    const double weight = std::exp(axis.fit.log_likelihood - greatest + axis.log_area);
+    const TwoWays ways = DivideWeight(weight, axis.fit, set);
+    const double away = AngleBetween(axis.fit.direction, direction);
+    if (away <= angle_rad) sum += ways.ahead;
+    if (std::numbers::pi - away <= angle_rad) sum += ways.behind;
+  }
+  return sum;
+}
+
 // The second moment about the centre of the motions whose direction lies in the cell of an axis.
 Matrix5d ComputeSecondMoment(const WeightedAxis& axis, const RelativePose& centre, double all_over_used) {
   const Vector5d away =
@@ -403,10 +418,15 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
   }
   DirectionPosterior posterior;
   posterior.best = mode.mode;
-  if (total > 0.0) posterior.mass_within = within / total;
-  if (ahead > 0.0) posterior.covariance = moment / ahead;
   posterior.best.pose = {RotationFromVector(best.x.head<3>()) * mode.mode.pose.R,
                          is_behind ? Eigen::Vector3d(-best.direction) : best.direction};
+  if (total > 0.0) {
+    posterior.mass_within = within / total;
+    posterior.mass_near_best =
+        SumWeightNear(posterior.best.pose.t, angle_rad, axes, greatest.log_likelihood, set) / total;
+  }
+  posterior.covariance = ahead > 0.0 ? Matrix5d(moment / ahead)
+                                     : Matrix5d(std::numbers::pi * std::numbers::pi * Matrix5d::Identity());
   for (const Displacement& match : set.matches) {
     const Rest rest = ComputeRest(set, ComputeParts(best.direction, match), match, best);
     if (rest.far + rest.near > rest.wrong) continue;

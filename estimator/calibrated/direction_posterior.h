@@ -35,7 +35,8 @@
 namespace rcme {
 
 struct DirectionPosterior {
-  double mass_within = 0.0;  // probability that the direction lies within the angle of the centre
+  double mass_within = 0.0;     // probability that the direction lies within the angle of the centre
+  double mass_near_best = 0.0;  // that it lies within the angle of the most likely direction
   // 5x5 [rotation, direction], rad^2: the second moment about the mode's rotation and the centre, given that
   // the direction lies within 90 deg of the centre.
   Matrix5d covariance = Matrix5d::Zero();

@@ -49,7 +49,6 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
   const auto& [problem, matches, prior, modes, weights, weak_direction, check, options] = judged;
   const MotionBounds bounds = MakeMotionBounds(options);
   const Mode& answer = modes[weights.answer].mode;
-  const double of_direction = weak_direction ? weak_direction->weight : 0.0;
   double within = 0.0, success = 0.0;
   Matrix5d of_weak = Matrix5d::Zero();
   ModesVerdict verdict;
@@ -63,13 +62,12 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
     // Along a direction that the noise seems to determine, the observed curvature is below that from the
     // residuals' first derivatives. The score varies as the latter says: H_obs^-1 H H_obs^-1.
     const Matrix5d reach = curvature * mode.hessian * curvature;
-    const double by_direction = weights.is_second_motion[i] ? 0.0 : of_direction;
-    if (by_direction > 0.0) success += weight * by_direction * weak_direction->mass_within;
-    if (by_direction < 1.0)
-      success += weight * (1.0 - by_direction) * MassWithin(answer.pose, bounds, mode.pose, reach, rng);
+    success += weight * (weak_direction && !weights.is_second_motion[i]
+                             ? weak_direction->mass_within
+                             : MassWithin(answer.pose, bounds, mode.pose, reach, rng));
     const Matrix5d of_intrinsics = IntrinsicsCovariance(problem, options, mode, curvature);
     if (i == weights.answer) {
-      const Matrix5d exact = (1.0 - of_direction) * reach;
+      const Matrix5d exact = weak_direction ? Matrix5d(Matrix5d::Zero()) : reach;
       verdict.left_by_intrinsics = ComputeLeftByIntrinsics(judged, mode, of_intrinsics, exact, rng);
       if (weak_direction) of_weak = WidenWeakDirection(judged, of_intrinsics);
     }
@@ -84,7 +82,7 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
     within += weight;
   }
   verdict.pose_cov /= within;
-  verdict.pose_cov = (1.0 - of_direction) * verdict.pose_cov + of_direction * of_weak;
+  if (weak_direction) verdict.pose_cov = of_weak;
   verdict.mass_beyond = std::max(within - success, 0.0);
   verdict.by_modes = verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
   return verdict;

@@ -11,17 +11,16 @@ namespace rcme {
 struct WeakDirection {
   double mass_within = 0.0;  // probability that the direction is within the bound of the answer's
   Matrix5d covariance = Matrix5d::Zero();  // as DirectionPosterior's
-  // How far the two count against the modes. Below one where the law of the displacements prefers another
-  // direction than the weights of the modes do.
-  double weight = 1.0;
 };
 
 // The direction is not normal if fewer than a fifth of the matches have a parallax above six standard
 // deviations of its noise (UsualDepthInNoise). Then returns the probability, over the whole sphere, that the
 // direction lies within `angle_rad` of the answer's. If that is at most .8, the answer is compared with the
-// optimum near the most likely direction:
-// - If the log-odds of the modes (ComputeLogOdds) prefer the answer, it stays, and the result has the weight
-//   1 / (1 + odds). The law of the displacements knows neither the noise of each motion nor the usual ones.
+// optimum near the most likely direction, if that lies beyond the bound:
+// - If the log-odds of the modes (ComputeLogOdds) prefer the answer, it stays, and the odds divide the mass
+// of
+//   the directions near either. The law of the displacements knows neither the noise of each motion nor the
+//   usual ones.
 // - Otherwise the answer moves there, provided that this has a greater probability.
 //
 // Of a normal direction returns nullopt and leaves the answer; also if a prior determines the direction to

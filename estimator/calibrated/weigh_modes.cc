@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "estimator/calibrated/candidates.h"
 #include "estimator/geometry/pose.h"
 
 namespace rcme {
@@ -113,6 +114,15 @@ std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t ans
   for (const ExplainedMode& mode : modes)
     is_rival.push_back(!IsWithin(modes[answer].mode.pose, bounds, mode.mode.pose));
   return is_rival;
+}
+
+ModeWeights WithoutCopies(const std::vector<ExplainedMode>& modes, ModeWeights weights) {
+  for (size_t i = 0; i < modes.size(); ++i) {
+    if (i == weights.answer || !IsSameMode(modes[weights.answer].mode, modes[i].mode, 1.0)) continue;
+    weights.of_modes[weights.answer] += weights.of_modes[i];
+    weights.of_modes[i] = 0.0;
+  }
+  return weights;
 }
 
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,

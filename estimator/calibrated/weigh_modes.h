@@ -32,6 +32,10 @@ struct ModeWeights {
 ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBounds& bounds,
                        const MixturePrior& prior, const CalibratedOptions& options);
 
+// The weights after the answer has moved: another mode within one standard deviation of it is the same, and
+// its weight is the answer's.
+ModeWeights WithoutCopies(const std::vector<ExplainedMode>& modes, ModeWeights weights);
+
 // For each mode, whether it is beyond the bounds around the answer. Call it again after the answer has moved.
 std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t answer,
                              const MotionBounds& bounds);

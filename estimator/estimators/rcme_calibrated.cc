@@ -18,10 +18,12 @@
 #include "estimator/calibrated/mode_covariance.h"
 #include "estimator/calibrated/modes_verdict.h"
 #include "estimator/calibrated/noise_choice.h"
+#include "estimator/calibrated/noise_shape.h"
 #include "estimator/calibrated/prior_check.h"
 #include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
 #include "estimator/calibrated/weigh_modes.h"
+#include "estimator/calibrated/whitened_problem.h"
 #include "estimator/noise_scale.h"
 #include "estimator/problem_check.h"
 #include "estimator/robust_covariance/covariance_option.h"
@@ -177,10 +179,34 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   }
 
  private:
-  // Estimate. Leaves out a prior that the matches contradict (prior_check.h). `workings` and `posterior` may
-  // be null; otherwise they receive the intermediate results and the posterior.
+  // Estimate. If the residuals show that the noise is anisotropic, again in coordinates in which it is not.
+  // `workings` and `posterior` may be null; otherwise they receive the intermediate results and the
+  // posterior.
   MotionEstimate EstimateAndTell(const MotionProblem& problem, RandomStream& rng, Workings* workings,
                                  std::optional<MotionPosterior>* posterior) const {
+    Workings own;
+    if (workings == nullptr) workings = &own;
+    RandomStream same = rng;
+    MotionEstimate estimate = EstimateWithPrior(problem, rng, workings, posterior);
+    const NoiseShape shape = FindNoiseShape(*workings);
+    if (shape.gain == 0.0) return estimate;
+    const WhitenedProblem whitened(problem, shape.Covariance());
+    estimate = EstimateWithPrior(whitened.problem(), same, workings, posterior);
+    whitened.Restore(&estimate);
+    if (posterior != nullptr && *posterior) whitened.Restore(&**posterior);
+    return estimate;
+  }
+
+  // The shape of the noise about the answer; isotropic if something else may be the reason.
+  NoiseShape FindNoiseShape(const Workings& workings) const {
+    if (options_.leave_out == CalibratedStep::kNoiseShape || workings.modes.empty()) return {};
+    const NoiseShape shape = FitNoiseShape(workings.problem, workings.modes[workings.weights.answer]);
+    return IsNoiseAnisotropic(shape, workings.checked.check) ? shape : NoiseShape{};
+  }
+
+  // Estimate in the given coordinates. Leaves out a prior that the matches contradict (prior_check.h).
+  MotionEstimate EstimateWithPrior(const MotionProblem& problem, RandomStream& rng, Workings* workings,
+                                   std::optional<MotionPosterior>* posterior) const {
     if (!problem.prior || RefuseUnsolvable(problem, 6))
       return EstimateOnce(problem, rng, workings, posterior);
     MotionProblem without = problem;
@@ -223,12 +249,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       Matrix5d covariance = ComputeModeCovariance(
           modes[i], curvature, IntrinsicsCovariance(problem, options_, modes[i].mode, curvature),
           of_matches.checked.check, prior, options_);
-      if (of_matches.weak_direction && !weights.is_second_motion[i]) {
-        const double of_direction = of_matches.weak_direction->weight;
-        covariance =
-            (1.0 - of_direction) * covariance +
-            of_direction * SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
-      }
+      if (of_matches.weak_direction && !weights.is_second_motion[i])
+        covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
       beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i]});
     }
     return beliefs;
@@ -260,6 +282,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     if (options_.leave_out != CalibratedStep::kDirectionPosterior) {
       weak_direction = SettleDirection(shuffled, matches, prior, Bounds().direction_rad, options_.leave_out,
                                        &modes[weights.answer]);
+      weights = WithoutCopies(modes, std::move(weights));
       weights.is_rival = FindRivals(modes, weights.answer, Bounds());
     }
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
@@ -295,8 +318,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       }
     }
     if (posterior != nullptr)
-      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads,
-                                  weak_direction ? weak_direction->weight : 0.0, estimate);
+      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, weak_direction.has_value(), estimate);
     if (workings == nullptr) return estimate;
     workings->weights = std::move(weights);
     workings->weak_direction = weak_direction;
@@ -336,22 +358,21 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   // the estimate's is used for the whole answer.
   MotionPosterior BuildPosterior(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
                                  const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
-                                 double of_direction, const MotionEstimate& estimate) const {
+                                 bool is_direction_weak, const MotionEstimate& estimate) const {
     const bool is_whole = options_.covariance == CovarianceKind::kRobust;
     std::vector<MotionComponent> components;
     for (size_t i = 0; i < modes.size(); ++i) {
+      const double weight = weights.of_modes[i];
       const bool is_answer = IsWithin(estimate.cam2_from_cam1, Bounds(), modes[i].mode.pose);
-      const bool is_second_motion = weights.is_second_motion[i] && !is_answer;
-      const double weight = weights.of_modes[i] * (is_second_motion ? 1.0 : 1.0 - of_direction);
-      if (weight == 0.0 || (weight < kNegligibleWeight && i != weights.answer)) continue;
+      if (is_direction_weak && (is_answer || !weights.is_second_motion[i])) continue;
+      if (weight < kNegligibleWeight && i != weights.answer) continue;
       if (is_whole && is_answer && i != weights.answer) continue;
       components.push_back(
           {modes[i].mode.pose, is_whole && is_answer ? estimate.pose_cov : spreads[i], weight, is_answer});
     }
     std::vector<DirectionCell> cells;
-    if (of_direction > 0.0)
+    if (is_direction_weak)
       cells = ComputeDirectionCells(problem, modes[weights.answer], Bounds().direction_rad);
-    for (DirectionCell& cell : cells) cell.weight *= of_direction;
     return MakeMotionPosterior(estimate.cam2_from_cam1, Bounds(), estimate.failure_probability,
                                std::move(components), std::move(cells));
   }

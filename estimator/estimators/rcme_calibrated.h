@@ -19,6 +19,9 @@
 //   8  covariance    calibrated/mode_covariance.h      of the modes within the bounds
 //                    calibrated/judge_modes.h          steps 7 and 8 together
 //   9  posterior     calibrated/motion_posterior.h     all of this as one distribution, on request
+//
+// If the residuals show that the noise is anisotropic (calibrated/noise_shape.h), all steps run once more in
+// coordinates in which it is not (calibrated/whitened_problem.h).
 #pragma once
 
 #include <memory>

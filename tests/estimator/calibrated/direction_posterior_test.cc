@@ -152,6 +152,19 @@ TEST(PosteriorOfDirection, HasTheSecondMomentOfTheTruths) {
 }
 
 // A fifth of the explained matches exceeds it: rank floor(0.8 n) of n.
+// The mass near the most likely direction is that about it, up to the size of the cells.
+TEST(PosteriorOfDirection, MassNearTheBestIsThatAboutIt) {
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    const ParallaxCase c = MakeParallax(trial, 150, 2.0);
+    const double angle = 30.0 * kRadPerDeg;
+    const DirectionPosterior first =
+        PosteriorOfDirection(c.random.problem, c.mode, c.random.pose_true.t.unitOrthogonal(), angle);
+    const DirectionPosterior about = PosteriorOfDirection(c.random.problem, c.mode, first.best.pose.t, angle);
+    EXPECT_NEAR(first.mass_near_best, about.mass_within, 0.2) << trial;
+    EXPECT_GT(first.mass_near_best, 0.02) << trial;
+  }
+}
+
 TEST(UsualDepthInNoise, IsExceededByAFifthOfTheExplained) {
   Explanation explanation;
   EXPECT_EQ(UsualDepthInNoise(explanation), 0.0);

@@ -55,6 +55,16 @@ TEST(WeighModes, NoMotionIsNeverMoreThanSevenTimesAsLikely) {
   EXPECT_NEAR(weights.of_no_motion / weights.of_modes[0], std::exp(2.0), 1e-9);
 }
 
+// 0.5 standard deviations away is the same motion, 2 are another.
+TEST(WithoutCopies, AddsTheWeightOfACopyToTheAnswer) {
+  ModeWeights weights;
+  weights.answer = 1;
+  weights.of_modes = {0.2, 0.5, 0.1};
+  const std::vector<ExplainedMode> modes = {ModeAt(0.5), ModeAt(0.0), ModeAt(2.0)};
+  const ModeWeights merged = WithoutCopies(modes, weights);
+  EXPECT_EQ(merged.of_modes, (std::vector<double>{0.0, 0.7, 0.1}));
+}
+
 // The same motion found three times weighs as much as found once.
 TEST(WeighModes, ModesWithinTheBoundsAreOne) {
   CalibratedOptions options;

@@ -12,6 +12,7 @@
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
+#include "tests/test_support/anisotropic_noise.h"
 #include "tests/test_support/coverage_count.h"
 #include "tests/test_support/every_target.h"
 #include "tests/test_support/random_problem.h"
@@ -320,6 +321,39 @@ TEST_F(RcmeCalibratedOf, ACameraThatStandsStillHasNoDirection) {
   }
   EXPECT_GE(num_wide, kTrials * 3 / 5);
   EXPECT_GE(num_unsure, kTrials * 3 / 5);
+}
+
+// Noise four times as large along one axis. The errors of the direction shrink to some .8, and the regions
+// still hold. With isotropic noise the second fit does not take place, so that no bit changes.
+TEST_F(RcmeCalibratedOf, AnisotropicNoiseIsFitted) {
+  CalibratedOptions without;
+  without.leave_out = CalibratedStep::kNoiseShape;
+  const double b = 15.0 / 17.0;  // of a ratio of 4
+  double log_ratio = 0.0;
+  CoverageCount coverage;
+  constexpr int kTrials = 60;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2992});
+    Eigen::Matrix2d shape;
+    shape << 1.0, b, b, 1.0;
+    const RandomProblem random = ForwardProblem(300, shape, rng);
+    const MotionEstimate fitted = RunOn(random.problem, trial),
+                         isotropic = RunOn(random.problem, trial, without);
+    const auto error = [&](const MotionEstimate& e) {
+      return AngleBetween(e.cam2_from_cam1.t, random.pose_true.t);
+    };
+    EXPECT_NE(fitted.cam2_from_cam1.t, isotropic.cam2_from_cam1.t) << trial;
+    log_ratio += std::log(error(fitted) / error(isotropic)) / kTrials;
+    EXPECT_NEAR(fitted.sigma_estimated_px, 0.5, 0.1) << trial;
+    const Vector5d away = LocalCoordinates(fitted.cam2_from_cam1, random.pose_true);
+    coverage.Add(away.dot(fitted.pose_cov.llt().solve(away)) < ChiSquareQuantile(5, 0.95));
+    const RandomProblem round = ForwardProblem(300, Eigen::Matrix2d::Identity(), rng);
+    EXPECT_EQ(RunOn(round.problem, trial).cam2_from_cam1.t,
+              RunOn(round.problem, trial, without).cam2_from_cam1.t)
+        << trial;
+  }
+  EXPECT_LT(std::exp(log_ratio), 0.9);
+  EXPECT_TRUE(coverage.Admits(0.95)) << coverage;
 }
 
 TEST_F(RcmeCalibratedOf, OptionsThatContradictEachOtherAreRefused) {
