@@ -63,10 +63,10 @@ bool HasTruth(const HypothesisSearch& search, const RelativePose& pose_true) {
 struct RatesOfTruth {
   CoverageCount five, both;
 };
-RatesOfTruth CountTruth(double outlier_ratio, double sd_deg) {
+RatesOfTruth CountTruth(double outlier_ratio, double sd_deg, std::uint32_t num_trials) {
   constexpr int kSamples = 1000;
   RatesOfTruth rates;
-  for (std::uint32_t trial = 0; trial < 200; ++trial) {
+  for (std::uint32_t trial = 0; trial < num_trials; ++trial) {
     const UprightProblem made = MakeUprightProblem(outlier_ratio, sd_deg, trial);
     const BothSearches found = SearchBoth(made, kSamples, trial);
     rates.five.Add(HasTruth(found.five, made.pose_true));
@@ -78,12 +78,13 @@ RatesOfTruth CountTruth(double outlier_ratio, double sd_deg) {
 // 85 % wrong, 1000 samples of five matches: one of them is all right with probability .073, one of 250
 // samples of three with .57. Others come near enough, also with the help of the refinement: over 1000 trials
 // the truth was among the candidates of five matches in 24 %, with those of three in 91 % if gravity is known
-// to 0.1 deg and in 65 % if to 2 deg. At these rates 200 trials miss a bound with a probability below 1e-6.
+// to 0.1 deg and in 65 % if to 2 deg. At these rates the bounds are missed with a probability below 1e-4.
+// Ranked at the scale of the noise, the last rate would be 52 %; without refinement 41 %.
 TEST(UprightSearch, FindsTheMotionWhereFiveMatchesAreSeldomRight) {
-  const RatesOfTruth good = CountTruth(0.85, 0.1), rough = CountTruth(0.85, 2.0);
+  const RatesOfTruth good = CountTruth(0.85, 0.1, 200), rough = CountTruth(0.85, 2.0, 600);
   EXPECT_LT(good.five.rate(), 0.4) << good.five;
   EXPECT_GT(good.both.rate(), 0.8) << good.both;
-  EXPECT_GT(rough.both.rate(), 0.48) << rough.both;
+  EXPECT_GT(rough.both.rate(), 0.58) << rough.both;
 }
 
 void ExpectSameCandidates(const HypothesisSearch& a, const HypothesisSearch& b) {
@@ -132,6 +133,7 @@ TEST(UprightSearch, AddsEssentialMatricesAndRemovesNone) {
       EXPECT_EQ(both.candidates[i + first].E, five.candidates[i].E);
     for (const ScoredEssential& candidate : both.candidates) {
       const Eigen::Matrix3d& E = candidate.E;
+      EXPECT_LE(candidate.score, both.candidates[0].score);
       EXPECT_NEAR((E * E.transpose() * E - E).norm(), 0.0, 1e-5);  // singular values 1, 1, 0
     }
   }
