@@ -12,7 +12,10 @@ namespace rcme {
 namespace {
 
 constexpr int kUprightFirstMatches = 64, kUprightMatches = 192;  // to rank models, to refine the best
-constexpr size_t kUprightFullScores = 100, kUprightRefined = 16;
+constexpr size_t kUprightFullScores = 100;
+// Models to refine: at most so many, and one for so many samples. Refinement costs most where few are wrong.
+constexpr size_t kUprightRefined = 16;
+constexpr int kSamplesOfRefined = 8;
 // Above these values of |<E_a, E_b>| / 2, two models are alike before the refinement, and the same after it.
 constexpr double kUprightAlike = 0.995, kUprightSame = 0.9999;
 // Share of an error of gravity, times the focal length, that a usual residual of a good sample shows: the
@@ -71,14 +74,14 @@ class UprightModels {
     }
   }
 
-  // The best distinct models by their score on all matches.
-  std::vector<ScoredEssential> TakeBest() {
+  // The best distinct models by their score on all matches, at most `num_best`.
+  std::vector<ScoredEssential> TakeBest(size_t num_best) {
     const size_t count = std::min(kUprightFullScores, models_.size());
     std::ranges::nth_element(models_, models_.begin() + static_cast<std::ptrdiff_t>(count),
                              std::ranges::greater{}, &ScoredEssential::score);
     models_.resize(count);
     for (ScoredEssential& model : models_) model.score += Score(model.E, first_end_, scores_.num_matches());
-    return SelectBest(std::move(models_), kUprightRefined, kUprightAlike);
+    return SelectBest(std::move(models_), num_best, kUprightAlike);
   }
 
  private:
@@ -152,8 +155,9 @@ void AddUprightCandidates(const MatchBlocks& matches, const ScoreMatches& score_
   const double scale = ComputeRankingScale(gravity, matches.ray_scale());
   UprightModels models(matches, score_matches, gravity, scale);
   models.Draw(num_samples, rng, &search->counts);
+  const size_t num_refined = std::min(kUprightRefined, static_cast<size_t>(num_samples / kSamplesOfRefined));
   const std::vector<ScoredEssential> found =
-      RefineUpright(matches, score_matches, prior, scale, models.TakeBest(), count);
+      RefineUpright(matches, score_matches, prior, scale, models.TakeBest(num_refined), count);
   if (found.empty()) return;
   std::vector<ScoredEssential>& candidates = search->candidates;
   const bool is_first = candidates.empty() || found.front().score > candidates.front().score;
