@@ -94,6 +94,7 @@ class Rounds {
     ScoreBest(first_end);
   }
   double best_score() const { return best_score_; }
+  int num_drawn() const { return num_drawn_; }
   const LoopCounts& counts() const { return counts_; }
 
  private:
@@ -192,7 +193,7 @@ HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches
     num_samples = std::min(enough, 2 * num_samples);
   }
   return {SelectDistinct(&lists, matches.ray_scale(), static_cast<size_t>(options.num_candidates), prior),
-          rounds.counts()};
+          rounds.num_drawn(), rounds.counts()};
 }
 
 }  // namespace rcme

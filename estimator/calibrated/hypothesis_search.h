@@ -24,6 +24,7 @@ struct ScoredEssential {
 
 struct HypothesisSearch {
   std::vector<ScoredEssential> candidates;  // best first
+  int num_samples = 0;                      // of five matches
   LoopCounts counts;
 };
 

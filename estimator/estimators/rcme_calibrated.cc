@@ -22,6 +22,7 @@
 #include "estimator/calibrated/prior_check.h"
 #include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
+#include "estimator/calibrated/upright_search.h"
 #include "estimator/calibrated/weigh_modes.h"
 #include "estimator/calibrated/whitened_problem.h"
 #include "estimator/noise_scale.h"
@@ -333,8 +334,11 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   std::vector<ExplainedMode> FindExplained(const MotionProblem& problem, const MatchBlocks& matches,
                                            const MixturePrior& prior, RandomStream& rng,
                                            LoopCounts* counts) const {
-    const HypothesisSearch search =
-        SearchHypotheses(matches, ScoreMatches(matches), options_, rng, kSoftScale, prior.motion);
+    const ScoreMatches score_matches(matches);
+    HypothesisSearch search =
+        SearchHypotheses(matches, score_matches, options_, rng, kSoftScale, prior.motion);
+    AddUprightCandidates(matches, score_matches, prior, search.num_samples / 4,
+                         static_cast<size_t>((options_.num_candidates + 1) / 2), rng, &search);
     *counts = search.counts;
     std::vector<Mode> found =
         FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));

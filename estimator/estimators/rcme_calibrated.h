@@ -4,6 +4,7 @@
 //   0  prior         motion_prior.h                    of the motion, if the problem has one; for all steps
 //                    calibrated/prior_check.h          not used if the matches contradict it
 //   1  hypotheses    calibrated/hypothesis_search.h    five-point samples, ranked by a soft score
+//                    calibrated/upright_search.h       three-point samples too, if gravity is measured
 //   2  modes         calibrated/candidates.h           optima of a mixture likelihood (mixture_fit.h)
 //                    calibrated/split_mode.h           two motions in place of a compromise between them
 //   3  influence     calibrated/influence.h            discounts matches that determine a motion alone
