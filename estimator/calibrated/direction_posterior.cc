@@ -27,8 +27,10 @@ struct Displacement {
   size_t match;  // index of the match
   // unit ray of camera 1 in camera 2's frame; (b - a) projected onto the plane normal to a
   Eigen::Vector3d a, d;
-  // s^2 of this match, with its noise_scale, divided by the weight of its residual, rad^2
+  // Of this match, with its noise_scale, divided by the weight of its residual: s^2, and how much more the
+  // variance is along a unit vector u, u' excess u (zero if the pixels are square). rad^2
   double noise_variance;
+  Eigen::Matrix3d noise_excess;
 };
 
 struct DisplacementSet {
@@ -58,13 +60,27 @@ double PriorDensity(const Eigen::Vector3d& direction, const DisplacementSet& set
   return std::exp(-0.5 * away * away);
 }
 
+// Squared size of a pixel, rad^2: the mean over the image's axes, and what it is more along x, y and z.
+struct PixelSize {
+  double mean;
+  Eigen::Vector3d excess;
+};
+PixelSize ComputePixelSize(const Camera& camera) {
+  const double along_x = 1.0 / (camera.fx * camera.fx), along_y = 1.0 / (camera.fy * camera.fy);
+  const double excess = 0.5 * (along_x - along_y);
+  return {0.5 * (along_x + along_y), {excess, -excess, 0.0}};
+}
+
 DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode& mode) {
   const MixtureParameters& m = mode.mode.mixture;
   DisplacementSet set;
   const double sigma_px = problem.sigma_px * m.scale / m.noise.scale_of_gaussian;
-  const double inverse_f2 = 1.0 / (problem.camera2.fx * problem.camera2.fy);
-  const double inverse_f1 = 1.0 / (problem.camera1.fx * problem.camera1.fy);
-  const double noise_variance = sigma_px * sigma_px * (inverse_f1 + inverse_f2);
+  const PixelSize size1 = ComputePixelSize(problem.camera1), size2 = ComputePixelSize(problem.camera2);
+  const double noise_variance = sigma_px * sigma_px * (size1.mean + size2.mean);
+  const Eigen::Matrix3d& R = mode.mode.pose.R;
+  const Eigen::Matrix3d noise_excess =
+      sigma_px * sigma_px *
+      (R * size1.excess.asDiagonal() * R.transpose() + Eigen::Matrix3d(size2.excess.asDiagonal()));
   for (size_t i = 0; i < problem.matches.size() && set.matches.size() < kMostMatches; ++i) {
     const Explanation& e = mode.explanation;
     if (e.probability[i] < 0.5) continue;
@@ -72,7 +88,8 @@ DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode&
     const Eigen::Vector3d b = problem.camera2.Ray(problem.matches[i].x2_px).normalized();
     const double weight = std::min(NoiseWeight(m.noise, e.terms.residual[i] / m.scale), 1.0);
     const double w = NoiseScaleAt(problem, i);
-    set.matches.push_back({i, a, b - a.dot(b) * a, w * w * noise_variance / (weight * e.probability[i])});
+    const double factor = w * w / (weight * e.probability[i]);
+    set.matches.push_back({i, a, b - a.dot(b) * a, factor * noise_variance, factor * noise_excess});
   }
   const auto used = static_cast<double>(set.matches.size());
   set.all_over_used = std::max(mode.explanation.num_explained / std::max(used, 1.0), 1.0);
@@ -83,7 +100,7 @@ DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode&
     set.mean_ray = sum_of_rays.normalized();
     set.size_rad = std::max(std::sqrt(squares / used), 1e-9);
   }
-  set.image_rad = std::sqrt(problem.camera2.width * problem.camera2.height * inverse_f2);
+  set.image_rad = std::sqrt(problem.camera2.width * problem.camera2.height * size2.mean);
   AddPrior(problem, mode.mode.pose, &set);
   return set;
 }
@@ -92,6 +109,9 @@ DisplacementSet Displacements(const MotionProblem& problem, const ExplainedMode&
 struct Parts {
   Eigen::Vector3d unit_along, unit_across;
   double sin, along, across;
+  // Variances of the noise, rad^2: across the line, and along it given the residual across, of which `slope`
+  // is part of the residual along.
+  double noise_across, noise_along, slope;
 };
 Parts ComputeParts(const Eigen::Vector3d& direction, const Displacement& match) {
   const Eigen::Vector3d e = direction - direction.dot(match.a) * match.a;
@@ -101,6 +121,11 @@ Parts ComputeParts(const Eigen::Vector3d& direction, const Displacement& match) 
   parts.unit_across = match.a.cross(parts.unit_along);
   parts.along = parts.unit_along.dot(match.d);
   parts.across = parts.unit_across.dot(match.d);
+  const Eigen::Vector3d excess = match.noise_excess * parts.unit_across;
+  parts.noise_across = match.noise_variance + parts.unit_across.dot(excess);
+  parts.slope = parts.unit_along.dot(excess) / parts.noise_across;
+  parts.noise_along = match.noise_variance + parts.unit_along.dot(match.noise_excess * parts.unit_along) -
+                      parts.slope * parts.slope * parts.noise_across;
   return parts;
 }
 
@@ -159,18 +184,18 @@ struct Rest {
   double All() const { return far + near + wrong; }
 };
 Rest ComputeRest(const DisplacementSet& set, const Parts& p, const Displacement& match, const AxisFit& fit) {
-  const double noise_variance = match.noise_variance;
   Rest rest;
   const double across = p.across + fit.x.head<3>().dot(p.unit_along);
-  rest.along = p.along - fit.x.head<3>().dot(p.unit_across) - fit.x.tail<3>().dot(match.a) * p.sin;
-  rest.along_variance = noise_variance + fit.variance * p.sin * p.sin;
-  const double noise_rad = std::sqrt(noise_variance);
-  const double law_across = std::exp(-0.5 * across * across / noise_variance) / (kRootTwoPi * noise_rad);
+  rest.along =
+      p.along - fit.x.head<3>().dot(p.unit_across) - fit.x.tail<3>().dot(match.a) * p.sin - p.slope * across;
+  rest.along_variance = p.noise_along + fit.variance * p.sin * p.sin;
+  const double law_across =
+      std::exp(-0.5 * across * across / p.noise_across) / (kRootTwoPi * std::sqrt(p.noise_across));
   const double law_along = std::exp(-0.5 * rest.along * rest.along / rest.along_variance) /
                            (kRootTwoPi * std::sqrt(rest.along_variance));
   rest.far = (1.0 - kShareWrong - fit.near) * law_across * law_along;
   rest.near = fit.near * law_across / set.image_rad;
-  rest.wrong = kShareWrong / (kBand * noise_rad * set.image_rad);
+  rest.wrong = kShareWrong / (kBand * std::sqrt(match.noise_variance) * set.image_rad);
   return rest;
 }
 
@@ -216,7 +241,7 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
   double squares = 0.0, fourths = 0.0, sum_near = 0.0;
   for (size_t i = 0; i < parts.size(); ++i) {
     const Parts& p = parts[i];
-    const double noise = set.matches[i].noise_variance, sin2 = p.sin * p.sin;
+    const double sin2 = p.sin * p.sin;
     const Eigen::Vector3d& a = set.matches[i].a;
     const Rest rest = ComputeRest(set, p, set.matches[i], old);
     const double all = rest.All(), far = rest.far / all, near = rest.near / all;
@@ -225,11 +250,12 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
     Vector6d by_across, by_along;
     by_across << -p.unit_along, Eigen::Vector3d::Zero();
     by_along << p.unit_across, p.sin * a;
-    const double w_across = (far + near) / noise, w_along = far / rest.along_variance;
+    by_along -= p.slope * by_across;
+    const double w_across = (far + near) / p.noise_across, w_along = far / rest.along_variance;
     information += w_across * by_across * by_across.transpose() + w_along * by_along * by_along.transpose();
-    moment += w_across * p.across * by_across + w_along * p.along * by_along;
+    moment += w_across * p.across * by_across + w_along * (p.along - p.slope * p.across) * by_along;
     const double share = far * sin2 / (rest.along_variance * rest.along_variance);
-    squares += share * (rest.along * rest.along - noise);
+    squares += share * (rest.along * rest.along - p.noise_along);
     fourths += share * sin2;
   }
   // Priors are divided by all_over_used, which multiplies the sums over the matches below.
@@ -324,17 +350,18 @@ const WeightedAxis& MostLikely(const std::vector<WeightedAxis>& axes) {
   return *std::ranges::max_element(axes, {}, [](const WeightedAxis& a) { return a.fit.log_likelihood; });
 }
 
-// The weight of the axes, relative to that with the log-likelihood `greatest`, within an angle of a
+// The weight of the axes, relative to that with the log-likelihood `greatest`, within an angle of either
 // direction.
-double SumWeightNear(const Eigen::Vector3d& direction, double angle_rad,
+double SumWeightNear(const Eigen::Vector3d& one, const Eigen::Vector3d& other, double angle_rad,
                      const std::vector<WeightedAxis>& axes, double greatest, const DisplacementSet& set) {
   double sum = 0.0;
   for (const WeightedAxis& axis : axes) {
     const double weight = std::exp(axis.fit.log_likelihood - greatest + axis.log_area);
     const TwoWays ways = DivideWeight(weight, axis.fit, set);
-    const double away = AngleBetween(axis.fit.direction, direction);
-    if (away <= angle_rad) sum += ways.ahead;
-    if (std::numbers::pi - away <= angle_rad) sum += ways.behind;
+    const double from_one = AngleBetween(axis.fit.direction, one), kPi = std::numbers::pi;
+    const double from_other = AngleBetween(axis.fit.direction, other);
+    if (std::min(from_one, from_other) <= angle_rad) sum += ways.ahead;
+    if (kPi - std::max(from_one, from_other) <= angle_rad) sum += ways.behind;
   }
   return sum;
 }
@@ -422,8 +449,8 @@ DirectionPosterior PosteriorOfDirection(const MotionProblem& problem, const Expl
                          is_behind ? Eigen::Vector3d(-best.direction) : best.direction};
   if (total > 0.0) {
     posterior.mass_within = within / total;
-    posterior.mass_near_best =
-        SumWeightNear(posterior.best.pose.t, angle_rad, axes, greatest.log_likelihood, set) / total;
+    posterior.mass_of_both =
+        SumWeightNear(centre, posterior.best.pose.t, angle_rad, axes, greatest.log_likelihood, set) / total;
   }
   posterior.covariance = ahead > 0.0 ? Matrix5d(moment / ahead)
                                      : Matrix5d(std::numbers::pi * std::numbers::pi * Matrix5d::Identity());

@@ -11,6 +11,9 @@
 //   across   n (b - a) + w e'                ~ N(0, s^2)
 //   along    e' (b - a) - w n - (p a) sin    ~ N(0, s^2 + v sin^2)
 //
+// The noise of rays whose pixels are not square depends on the direction: s^2 then differs across and along,
+// and their correlation is taken into account.
+//
 // Here w is a small rotation, p a is the inverse depth, in baselines, of the plane p at ray a, v is the
 // variance of the inverse depths about the plane, and s is the noise of the angle between two rays. Without
 // parallax (p = v = 0) the density is the same for all directions. Without the plane's slopes the law would
@@ -35,8 +38,8 @@
 namespace rcme {
 
 struct DirectionPosterior {
-  double mass_within = 0.0;     // probability that the direction lies within the angle of the centre
-  double mass_near_best = 0.0;  // that it lies within the angle of the most likely direction
+  double mass_within = 0.0;   // probability that the direction lies within the angle of the centre
+  double mass_of_both = 0.0;  // that it lies within the angle of the centre or of the most likely direction
   // 5x5 [rotation, direction], rad^2: the second moment about the mode's rotation and the centre, given that
   // the direction lies within 90 deg of the centre.
   Matrix5d covariance = Matrix5d::Zero();

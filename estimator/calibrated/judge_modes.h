@@ -29,8 +29,8 @@ struct JudgedModes {
 MotionBounds MakeMotionBounds(const CalibratedOptions& options);
 
 // The verdict before the model check corrects the probability. The covariance is the second moment, about the
-// answer, of the modes within the bounds and, if the direction is weak, of the directions within 90 deg of
-// the answer's, by the weight of each (settle_direction.h). `spreads`, if not null, receives one matrix per
+// answer, of the modes within the bounds or, if the direction is weak, of the directions within 90 deg of the
+// answer's (settle_direction.h). `spreads`, if not null, receives one matrix per
 // mode: its covariance within the bounds, the reach of its likelihood beyond them, zero if the weight is
 // negligible.
 ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads);

@@ -3,8 +3,8 @@
 // all computed from it.
 //
 //   the answer    N(mode, its stated covariance) in the tangent at each mode within the failure bounds; if
-//                 the direction is weak (settle_direction.h), cells of the whole sphere instead or, where
-//                 the modes prefer another direction, as well, each with a normal law of the rotation
+//                 the direction is weak (settle_direction.h), cells of the whole sphere instead, each with a
+//                 normal law of the rotation
 //   rivals        N(mode, the covariance by its likelihood), with their weights after the check (verdict.h)
 //   none          the remaining weight: the check doubts the model itself, so that the motion is unknown. It
 //                 lies beyond any bounds. Over a population, 7 in 10 wrong answers are also beyond 10 and 40

@@ -16,6 +16,8 @@
 // sqrt(q), times a normal prior of b and c with standard deviation 1/2.
 #pragma once
 
+#include <optional>
+
 #include "estimator/calibrated/explain_matches.h"
 #include "estimator/calibrated/model_check.h"
 #include "estimator/motion_problem.h"
@@ -24,21 +26,22 @@ namespace rcme {
 
 struct NoiseShape {
   double b = 0.0, c = 0.0;
-  // Of the log-likelihood over b = c = 0, nats: of the matches used, and of as many as the mode explains.
+  // Of the log density of residuals and prior over that at b = c = 0 with its own s, nats: of the matches
+  // used, and of as many as the mode explains.
   double gain = 0.0, gain_of_all = 0.0;
   // S scaled to a trace of 2, as above.
   Eigen::Matrix2d Covariance() const;
 };
 
-// From the first 512 of the matches that the mode explains. Isotropic with a gain of 0 if the residuals do
-// not depend on the direction of the lines beyond chance. The order of the matches must be random.
-NoiseShape FitNoiseShape(const MotionProblem& problem, const ExplainedMode& mode);
+// From the first 512 of the matches that the mode explains; their order must be random. nullopt if there are
+// fewer than 20, or if the residuals hardly depend on the direction of the lines.
+std::optional<NoiseShape> FitNoiseShape(const MotionProblem& problem, const ExplainedMode& mode);
 
 // Whether the residuals show anisotropic noise: a gain of at least 12 nats and standard deviations that
 // differ by at least 30 % between the axes. Errors of the calibration also make residuals depend on the
-// direction of the lines. They must explain less (IntrinsicsCheck::root_gain), and neighbours must not share
-// their residuals. The bounds were chosen on 400 conditions drawn from documented_ranges with seed 4711, and
-// on the study anisotropic_noise.
+// direction of the lines. They must explain less (IntrinsicsCheck::root_gain, not clipped), and neighbours
+// must not share their residuals. The bounds were chosen on 400 conditions drawn from documented_ranges with
+// seed 4711, and on the study anisotropic_noise.
 bool IsNoiseAnisotropic(const NoiseShape& shape, const ModelCheck& check);
 
 }  // namespace rcme

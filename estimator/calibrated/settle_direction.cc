@@ -19,11 +19,11 @@ std::optional<ExplainedMode> MovedTo(const MatchBlocks& matches, const MixturePr
   return moved;
 }
 
-// The answer stays though the law prefers another direction: the odds of the modes divide the mass of both.
-WeakDirection KeptAgainst(const DirectionPosterior& found, double log_odds) {
+// If the answer stays though the law prefers another direction: the odds of the modes divide the mass of
+// both.
+WeakDirection DivideMass(const DirectionPosterior& found, double log_odds) {
   const double share = 1.0 / (1.0 + std::exp(-log_odds));
-  const double of_both = std::min(found.mass_within + found.mass_near_best, 1.0);
-  return {std::max(found.mass_within, share * of_both), found.covariance};
+  return {std::max(found.mass_within, share * found.mass_of_both), found.covariance};
 }
 
 }  // namespace
@@ -41,7 +41,7 @@ std::optional<WeakDirection> SettleDirection(const MotionProblem& problem, const
   if (!moved) return direction;
   const double log_odds = ComputeLogOdds(*answer, *moved, prior, leave_out);
   const bool is_far = AngleBetween(moved->mode.pose.t, answer->mode.pose.t) > angle_rad;
-  if (log_odds > 0.0) return is_far ? KeptAgainst(found, log_odds) : direction;
+  if (log_odds > 0.0) return is_far ? DivideMass(found, log_odds) : direction;
   const DirectionPosterior of_moved = PosteriorOfDirection(problem, *moved, moved->mode.pose.t, angle_rad);
   if (of_moved.mass_within <= found.mass_within) return direction;
   *answer = std::move(*moved);

@@ -16,11 +16,10 @@ struct WeakDirection {
 // The direction is not normal if fewer than a fifth of the matches have a parallax above six standard
 // deviations of its noise (UsualDepthInNoise). Then returns the probability, over the whole sphere, that the
 // direction lies within `angle_rad` of the answer's. If that is at most .8, the answer is compared with the
-// optimum near the most likely direction, if that lies beyond the bound:
-// - If the log-odds of the modes (ComputeLogOdds) prefer the answer, it stays, and the odds divide the mass
-// of
-//   the directions near either. The law of the displacements knows neither the noise of each motion nor the
-//   usual ones.
+// optimum near the most likely direction:
+// - If the log-odds of the modes (ComputeLogOdds) prefer the answer, it stays. If the optimum is beyond
+//   `angle_rad`, the odds divide the mass of the directions within `angle_rad` of either: the law of the
+//   displacements knows neither the noise of each motion nor the usual ones.
 // - Otherwise the answer moves there, provided that this has a greater probability.
 //
 // Of a normal direction returns nullopt and leaves the answer; also if a prior determines the direction to

@@ -6,8 +6,8 @@
 //
 // The error of the measured gravity moves the epipolar lines of a good sample by about focal length times
 // standard deviation, far more than the noise of the matches. Hence samples are ranked at a scale that admits
-// it, and the best are refined with the prior of the motion while this scale shrinks. A bad prior costs only
-// time: refined hypotheses are candidates among others.
+// it, and the best are refined with the prior of the motion while this scale shrinks. A bad prior costs
+// time: refined hypotheses are candidates among others, and the check of the prior comes later.
 #pragma once
 
 #include <vector>

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 
 namespace rcme {
 namespace {
@@ -14,24 +13,27 @@ struct TurnedCamera {
   Eigen::Matrix3d turn;       // T
   Eigen::Matrix2d of_pixels;  // from the offset from the original principal point to that from the new one
 };
-TurnedCamera Turn(const Camera& camera, const Eigen::Matrix2d& shape) {
+// Of the axes of the noise in either order and sign, those nearest to `near`.
+TurnedCamera Turn(const Camera& camera, const Eigen::Matrix2d& shape, const Eigen::Matrix2d& near) {
   const Eigen::Vector2d inverse_focal(1.0 / camera.fx, 1.0 / camera.fy);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> eigen(inverse_focal.asDiagonal() * shape *
                                                              inverse_focal.asDiagonal());
-  // Of the axes in either order, those nearer to the image's.
   Eigen::Matrix2d axes = eigen.eigenvectors();
   Eigen::Vector2d focal = eigen.eigenvalues().cwiseSqrt().cwiseInverse();
-  if (std::abs(axes(0, 0)) < std::abs(axes(0, 1))) {
+  if (std::abs(near.col(0).dot(axes.col(0))) < std::abs(near.col(0).dot(axes.col(1)))) {
     axes.col(0).swap(axes.col(1));
     std::swap(focal(0), focal(1));
   }
   for (int k = 0; k < 2; ++k)
-    if (axes(k, k) < 0.0) axes.col(k) *= -1.0;
+    if (near.col(k).dot(axes.col(k)) < 0.0) axes.col(k) *= -1.0;
   TurnedCamera turned{camera, Eigen::Matrix3d::Identity(),
                       focal.asDiagonal() * axes.transpose() * inverse_focal.asDiagonal()};
   turned.turn.topLeftCorner<2, 2>() = axes.transpose();
   turned.camera.fx = focal(0);
   turned.camera.fy = focal(1);
+  const double longer = std::pow(shape.determinant(), -0.25);  // lengths of the image, as its area grows
+  turned.camera.width = static_cast<int>(std::lround(longer * camera.width));
+  turned.camera.height = static_cast<int>(std::lround(longer * camera.height));
   return turned;
 }
 
@@ -57,9 +59,12 @@ MotionPrior TurnPrior(MotionPrior prior, const Eigen::Matrix3d& turn1, const Eig
 
 WhitenedProblem::WhitenedProblem(const MotionProblem& problem, const Eigen::Matrix2d& shape)
     : problem_(problem) {
-  const Eigen::Matrix2d unit = shape / std::sqrt(shape.determinant());
-  rms_over_sigma_ = std::sqrt(0.5 * unit.trace());
-  const TurnedCamera camera1 = Turn(problem.camera1, unit), camera2 = Turn(problem.camera2, unit);
+  const Eigen::Matrix2d scaled = 2.0 / shape.trace() * shape;
+  const TurnedCamera camera1 = Turn(problem.camera1, scaled, Eigen::Matrix2d::Identity());
+  const Eigen::Matrix2d axes1 = camera1.turn.topLeftCorner<2, 2>().transpose();
+  const TurnedCamera camera2 = Turn(problem.camera2, scaled, axes1);
+  of_pixels1_ = camera1.of_pixels;
+  of_pixels2_ = camera2.of_pixels;
   problem_.camera1 = camera1.camera;
   problem_.camera2 = camera2.camera;
   turn1_ = camera1.turn;
@@ -92,8 +97,6 @@ void WhitenedProblem::Restore(MotionEstimate* estimate) const {
   restore(&estimate->cam2_from_cam1, &estimate->pose_cov);
   estimate->initial_pose = Restored(estimate->initial_pose);
   for (MotionMode& mode : estimate->other_modes) restore(&mode.cam2_from_cam1, &mode.pose_cov);
-  estimate->sigma_estimated_px *= rms_over_sigma_;
-  estimate->sigma_estimated_sd_px *= rms_over_sigma_;
 }
 
 void WhitenedProblem::Restore(MotionPosterior* posterior) const {

@@ -4,7 +4,8 @@
 // K^-1 S K^-1 = V L V' with V a rotation. The noise of V' K^-1 x has the covariance s^2 L, so that
 // x' = L^(-1/2) V' K^-1 x has isotropic noise. x' is the pixel of a camera with the focal lengths L^(-1/2)
 // that is turned about its optical axis: a ray a becomes T a, T = diag(V', 1). With T1 and T2 for the two
-// cameras a motion [R t] becomes [T2 R T1', T2 t].
+// cameras a motion [R t] becomes [T2 R T1', T2 t]. Distances between points, and parts of the image, are then
+// those of turned and stretched pixels.
 #pragma once
 
 #include <optional>
@@ -17,11 +18,14 @@ namespace rcme {
 
 class WhitenedProblem {
  public:
-  // `shape`: S, 2x2, positive definite. It is scaled to a determinant of 1, so that sigma_px is the geometric
-  // mean of the standard deviations along the axes.
+  // `shape`: S, 2x2, positive definite. It is scaled to a trace of 2, so that sigma_px stays the root mean
+  // square of the noise per coordinate.
   WhitenedProblem(const MotionProblem& problem, const Eigen::Matrix2d& shape);
 
   const MotionProblem& problem() const { return problem_; }
+  // Maps a shift in the pixels of the original image to those of the problem.
+  const Eigen::Matrix2d& of_pixels1() const { return of_pixels1_; }
+  const Eigen::Matrix2d& of_pixels2() const { return of_pixels2_; }
   // The estimate and the posterior in the frames and pixels of the original problem.
   void Restore(MotionEstimate* estimate) const;
   void Restore(MotionPosterior* posterior) const;
@@ -33,7 +37,7 @@ class WhitenedProblem {
 
   MotionProblem problem_;
   Eigen::Matrix3d turn1_, turn2_;  // T1, T2
-  double rms_over_sigma_;          // root mean square of the noise per coordinate over sigma_px
+  Eigen::Matrix2d of_pixels1_, of_pixels2_;
 };
 
 }  // namespace rcme

@@ -136,7 +136,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   explicit RcmeCalibrated(const CalibratedOptions& options) : options_(options) { Validate(options); }
 
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
-    return EstimateAndTell(problem, rng, nullptr, nullptr);
+    Workings workings;
+    return EstimateAndTell(problem, rng, &workings, nullptr);
   }
 
   MotionEstimate EstimateChecked(const MotionProblem& problem, RandomStream& rng,
@@ -151,7 +152,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   MotionEstimate EstimateWithPosterior(const MotionProblem& problem, RandomStream& rng,
                                        std::optional<MotionPosterior>* posterior) const override {
     posterior->reset();
-    return EstimateAndTell(problem, rng, nullptr, posterior);
+    Workings workings;
+    return EstimateAndTell(problem, rng, &workings, posterior);
   }
 
   std::vector<ExplainedMode> ListModes(const MotionProblem& problem, RandomStream& rng) const override {
@@ -181,28 +183,45 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
 
  private:
   // Estimate. If the residuals show that the noise is anisotropic, again in coordinates in which it is not.
-  // `workings` and `posterior` may be null; otherwise they receive the intermediate results and the
-  // posterior.
+  // `workings` receives the intermediate results; `posterior` may be null.
   MotionEstimate EstimateAndTell(const MotionProblem& problem, RandomStream& rng, Workings* workings,
                                  std::optional<MotionPosterior>* posterior) const {
-    Workings own;
-    if (workings == nullptr) workings = &own;
     RandomStream same = rng;
     MotionEstimate estimate = EstimateWithPrior(problem, rng, workings, posterior);
-    const NoiseShape shape = FindNoiseShape(*workings);
-    if (shape.gain == 0.0) return estimate;
-    const WhitenedProblem whitened(problem, shape.Covariance());
-    estimate = EstimateWithPrior(whitened.problem(), same, workings, posterior);
-    whitened.Restore(&estimate);
-    if (posterior != nullptr && *posterior) whitened.Restore(&**posterior);
-    return estimate;
+    const std::optional<NoiseShape> shape = FindNoiseShape(*workings);
+    if (!shape) return estimate;
+    const WhitenedProblem whitened(problem, shape->Covariance());
+    Workings second;
+    std::optional<MotionPosterior> second_posterior;
+    MotionEstimate again = ForPixelsOf(whitened).EstimateWithPrior(
+        whitened.problem(), same, &second, posterior != nullptr ? &second_posterior : nullptr);
+    if (second.modes.empty()) return estimate;
+    whitened.Restore(&again);
+    if (again.probability_domain == ProbabilityDomain::kVerified)
+      again.probability_domain = ProbabilityDomain::kExtrapolated;  // the check was fitted to single passes
+    *workings = std::move(second);
+    if (second_posterior) {
+      whitened.Restore(&*second_posterior);
+      *posterior = std::move(second_posterior);
+    }
+    return again;
   }
 
-  // The shape of the noise about the answer; isotropic if something else may be the reason.
-  NoiseShape FindNoiseShape(const Workings& workings) const {
-    if (options_.leave_out == CalibratedStep::kNoiseShape || workings.modes.empty()) return {};
-    const NoiseShape shape = FitNoiseShape(workings.problem, workings.modes[workings.weights.answer]);
-    return IsNoiseAnisotropic(shape, workings.checked.check) ? shape : NoiseShape{};
+  RcmeCalibrated ForPixelsOf(const WhitenedProblem& whitened) const {
+    CalibratedOptions options = options_;
+    for (CalibrationPrior* prior : {&options.calibration, &options.robust.calibration}) {
+      prior->of_pixels1 = whitened.of_pixels1();
+      prior->of_pixels2 = whitened.of_pixels2();
+    }
+    return RcmeCalibrated(options);
+  }
+
+  // The shape of the noise about the answer, unless something else may be the reason for it.
+  std::optional<NoiseShape> FindNoiseShape(const Workings& workings) const {
+    if (options_.leave_out == CalibratedStep::kNoiseShape || workings.modes.empty()) return std::nullopt;
+    const std::optional<NoiseShape> shape =
+        FitNoiseShape(workings.problem, workings.modes[workings.weights.answer]);
+    return shape && IsNoiseAnisotropic(*shape, workings.checked.check) ? shape : std::nullopt;
   }
 
   // Estimate in the given coordinates. Leaves out a prior that the matches contradict (prior_check.h).
@@ -228,7 +247,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     }
     estimate.prior = is_contradicted ? PriorUse::kContradicted : PriorUse::kUsed;
     estimate.prior_p_value = p_value;
-    if (workings != nullptr) *workings = std::move(is_contradicted ? of_matches : of_both);
+    *workings = std::move(is_contradicted ? of_matches : of_both);
     return estimate;
   }
 
@@ -273,7 +292,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     if (modes.empty()) {
       estimate.status = MotionStatus::kNoCandidate;
       estimate.message = "no motion explains more than five matches";
-      if (workings != nullptr) workings->problem = std::move(shuffled);
+      workings->problem = std::move(shuffled);
       return estimate;
     }
     ModeWeights weights = WeighModes(modes, Bounds(), prior, options_);
@@ -292,7 +311,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     ModesVerdict verdict =
         JudgeModes({shuffled, matches, prior, modes, weights, weak_direction, check, options_}, rng,
                    posterior != nullptr ? &spreads : nullptr);
-    if (workings != nullptr) workings->checked = {check, verdict.by_modes};
+    workings->checked = {check, verdict.by_modes};
     if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
     verdict.failure_probability += (1.0 - verdict.left_by_intrinsics) * (1.0 - verdict.failure_probability);
     if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check, prior);
@@ -320,7 +339,6 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     }
     if (posterior != nullptr)
       *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, weak_direction.has_value(), estimate);
-    if (workings == nullptr) return estimate;
     workings->weights = std::move(weights);
     workings->weak_direction = weak_direction;
     workings->modes = std::move(modes);

@@ -63,7 +63,7 @@ class WeightInspection {
   // Estimate, and the parts of its failure probability; *verdict stays unchanged if there is no motion.
   virtual MotionEstimate EstimateChecked(const MotionProblem& problem, RandomStream& rng,
                                          CheckedVerdict* verdict) const = 0;
-  // The modes that Estimate weighs (steps 1 to 4); empty if it refuses earlier.
+  // The modes that Estimate weighs in its first pass (steps 1 to 4); empty if it refuses earlier.
   virtual std::vector<ExplainedMode> ListModes(const MotionProblem& problem, RandomStream& rng) const = 0;
   // Estimate, and the distribution from which its motion, covariance and probability are computed; nullopt if
   // there is no motion. Takes a few milliseconds more than Estimate, up to 0.1 s if the answer is narrowed

@@ -64,10 +64,13 @@ Matrix5d CalibrationCovariance(const MotionProblem& problem, const CalibrationPr
   };
   const double step_px = 0.01 * problem.sigma_px;
   add_each(prior.focal_sd, step_px / problem.camera1.fx, ScaleFocal);
-  for (double Camera::*coordinate : {&Camera::cx, &Camera::cy}) {
+  for (const int axis : {0, 1}) {
     add_each(prior.principal_point_sd_px, step_px,
-             [&](Camera& camera, Eigen::Vector2d Correspondence::*, double by, MotionProblem&) {
-               camera.*coordinate += by;
+             [&](Camera& camera, Eigen::Vector2d Correspondence::*x_px, double by, MotionProblem&) {
+               const bool is_image1 = x_px == &Correspondence::x1_px;
+               const Eigen::Vector2d shift = by * (is_image1 ? prior.of_pixels1 : prior.of_pixels2).col(axis);
+               camera.cx += shift.x();
+               camera.cy += shift.y();
              });
   }
   add_each(prior.distortion_sd, step_px / problem.camera1.fx, Undistort);

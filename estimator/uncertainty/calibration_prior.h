@@ -15,6 +15,8 @@ struct CalibrationPrior {
   double focal_sd = 0.0;               // relative
   double principal_point_sd_px = 0.0;  // per coordinate
   double distortion_sd = 0.0;          // of k1: a ray (x, y, 1) is imaged as (1 + k1 (x^2 + y^2)) (x, y)
+  // Maps a shift in the pixels of principal_point_sd_px to the problem's pixels of images 1 and 2.
+  Eigen::Matrix2d of_pixels1 = Eigen::Matrix2d::Identity(), of_pixels2 = Eigen::Matrix2d::Identity();
 
   bool IsNone() const { return focal_sd == 0.0 && principal_point_sd_px == 0.0 && distortion_sd == 0.0; }
 };

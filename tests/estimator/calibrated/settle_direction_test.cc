@@ -76,9 +76,8 @@ TEST(SettleDirection, MovesToMoreMassAlone) {
     const bool has_moved = far.answer.mode.pose.t != before.t;
     EXPECT_GE(direction->mass_within, at_first.mass_within) << trial;
     if (!has_moved && direction->mass_within > at_first.mass_within) {
-      const double of_both = std::min(at_first.mass_within + at_first.mass_near_best, 1.0);
-      EXPECT_GE(direction->mass_within, 0.5 * of_both) << trial;
-      EXPECT_LE(direction->mass_within, of_both) << trial;
+      EXPECT_GE(direction->mass_within, 0.5 * at_first.mass_of_both) << trial;
+      EXPECT_LE(direction->mass_within, at_first.mass_of_both) << trial;
       ++num_kept;
     }
     if (has_moved) {

@@ -58,9 +58,14 @@ TEST(WhitenedProblem, TurnsTheRays) {
       EXPECT_TRUE(turned.camera2.Ray(now.x2_px).isApprox(
           turns.of_camera2 * c.random.problem.camera2.Ray(match.x2_px), 1e-12));
     }
-    EXPECT_NEAR(turned.camera1.fx * turned.camera1.fy,
-                c.random.problem.camera1.fx * c.random.problem.camera1.fy, 1e-6)
-        << "sigma_px is the geometric mean";
+    const double stretched =
+        turned.camera1.fx * turned.camera1.fy / (c.random.problem.camera1.fx * c.random.problem.camera1.fy);
+    EXPECT_NEAR(stretched, 1.0 / std::sqrt(c.shape.determinant()), 1e-9 * stretched)
+        << "sigma_px is the root mean square over the axes";
+    EXPECT_NEAR(turned.camera1.width * turned.camera1.height, stretched * 640 * 480,
+                1e-2 * stretched * 640 * 480);
+    const double between = AngleBetween(turns.of_camera1.col(0), turns.of_camera2.col(0));
+    EXPECT_LT(between, 15.0 * kRadPerDeg) << "the cameras are not turned against each other";
   }
 }
 
@@ -68,7 +73,6 @@ TEST(WhitenedProblem, TurnsTheRays) {
 TEST(WhitenedProblem, ItsResidualsHaveTheStandardDeviationOfTheShape) {
   for (std::uint32_t trial = 0; trial < 30; ++trial) {
     const Case c = MakeCase(trial);
-    const Eigen::Matrix2d unit = c.shape / std::sqrt(c.shape.determinant());
     const WhitenedProblem whitened(c.random.problem, c.shape);
     const MotionProblem& turned = whitened.problem();
     const RelativePose& pose = c.random.pose_true;
@@ -80,7 +84,7 @@ TEST(WhitenedProblem, ItsResidualsHaveTheStandardDeviationOfTheShape) {
     for (size_t i = 0; i < turned.matches.size(); ++i) {
       const EpipolarConstraint constraint = EvaluateConstraint(F, c.random.problem.matches[i]);
       const Eigen::Vector2d j1 = constraint.gradient.head<2>(), j2 = constraint.gradient.tail<2>();
-      const double variance = j1.dot(unit * j1) + j2.dot(unit * j2);
+      const double variance = j1.dot(c.shape * j1) + j2.dot(c.shape * j2);
       const double expected = constraint.g * constraint.g / variance;
       EXPECT_NEAR(SquaredSampsonDistance(F_now, turned.matches[i]), expected, 1e-9 * (1.0 + expected));
     }
@@ -113,8 +117,7 @@ TEST(WhitenedProblem, RestoresMotionsAndCovariances) {
     const Matrix5d expected = away * away.transpose();
     EXPECT_LT((estimate.pose_cov - expected).norm(), 1e-4 * expected.norm()) << trial;
     EXPECT_LT((estimate.other_modes[0].pose_cov - expected).norm(), 1e-4 * expected.norm()) << trial;
-    const Eigen::Matrix2d unit = c.shape / std::sqrt(c.shape.determinant());
-    EXPECT_NEAR(estimate.sigma_estimated_px, std::sqrt(0.5 * unit.trace()), 1e-12);
+    EXPECT_EQ(estimate.sigma_estimated_px, 1.0);
   }
 }
 
