@@ -172,6 +172,29 @@ TEST(IntrinsicsCovariance, IsThatOfFitsWithOtherIntrinsics) {
   EXPECT_EQ(ComputeIntrinsics(f, {}).norm(), 0.0);
 }
 
+// The principal points are uncertain in other pixels than the problem's, as after a turn of the cameras.
+TEST(IntrinsicsCovariance, OfPrincipalPointsInOtherPixels) {
+  const FittedMode f = FitScene(300, 0.5, 0.0, 2);
+  constexpr double kShiftPx = 0.02;
+  Eigen::Matrix2d of_pixels;
+  of_pixels << 2.0, 0.3, -0.1, 0.5;
+  Matrix5d expected = Matrix5d::Zero();
+  for (Camera MotionProblem::*camera : {&MotionProblem::camera1, &MotionProblem::camera2}) {
+    for (const int axis : {0, 1}) {
+      MotionProblem shifted = f.problem;
+      (shifted.*camera).cx += kShiftPx * of_pixels(0, axis);
+      (shifted.*camera).cy += kShiftPx * of_pixels(1, axis);
+      const Vector5d moved = MovedBy(f, shifted);
+      expected += moved * moved.transpose();
+    }
+  }
+  CalibratedOptions options;
+  options.calibration.principal_point_sd_px = kShiftPx;
+  options.calibration.of_pixels1 = options.calibration.of_pixels2 = of_pixels;
+  const Matrix5d found = ComputeIntrinsics(f, options);
+  EXPECT_LT((found - expected).norm(), 0.2 * expected.norm()) << found << "\n\n" << expected;
+}
+
 // One camera took both images: its error is common to them.
 TEST(IntrinsicsCovariance, OfOneCameraIsOfACommonError) {
   RandomStream rng({.seed = 1, .purpose = 2770});

@@ -356,6 +356,29 @@ TEST_F(RcmeCalibratedOf, AnisotropicNoiseIsFitted) {
   EXPECT_TRUE(coverage.Admits(0.95)) << coverage;
 }
 
+// The posterior of the second pass is in the frames of the problem, as the answer is.
+TEST_F(RcmeCalibratedOf, TheSecondPassIsRestoredWhole) {
+  const auto estimator = MakeRcmeCalibrated({});
+  const WeightInspection* inspection = FindWeightInspection(*estimator);
+  const MotionBounds bounds{3.0 * kRadPerDeg, 15.0 * kRadPerDeg};
+  for (std::uint32_t trial = 0; trial < 10; ++trial) {
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2993});
+    Eigen::Matrix2d shape;
+    shape << 1.0, 0.88, 0.88, 1.0;
+    const RandomProblem random = ForwardProblem(300, shape, rng);
+    RandomStream stream({1, 0, trial, 4});
+    std::optional<MotionPosterior> posterior;
+    const MotionEstimate e = inspection->EstimateWithPosterior(random.problem, stream, &posterior);
+    ASSERT_TRUE(posterior);
+    EXPECT_EQ(e.cam2_from_cam1.t, RunOn(random.problem, trial).cam2_from_cam1.t) << "asking changes nothing";
+    EXPECT_TRUE(posterior->answer.R.isApprox(e.cam2_from_cam1.R, 1e-9));
+    EXPECT_NEAR(FailureProbability(*posterior, e.cam2_from_cam1, bounds), e.failure_probability, 1e-6);
+    const Matrix5d of_answer = Covariance(*posterior).of_answer;
+    EXPECT_LT((of_answer - e.pose_cov).norm(), 0.05 * e.pose_cov.norm()) << trial;
+    EXPECT_EQ(e.probability_domain, ProbabilityDomain::kExtrapolated);
+  }
+}
+
 TEST_F(RcmeCalibratedOf, OptionsThatContradictEachOtherAreRefused) {
   CalibratedOptions options;
   options.min_samples = 200;
