@@ -25,9 +25,8 @@
 // w and p are integrated out, w under a uniform prior. The prior of p is that of the parallax (p a) sin, the
 // same for every direction. The plane lies in front: t has the weight of its axis times Phi(x), x the least
 // inverse depth of the plane among the matches in its standard deviations, and -t times Phi(-x) of the
-// greatest. A prior of
-// the motion (MotionProblem::prior) multiplies the density of the matches: rotation and gravity as a normal
-// law of w, the direction as a factor of the weights of t and -t.
+// greatest. A prior of the motion (MotionProblem::prior) multiplies the density of the matches: rotation and
+// gravity as a normal law of w, the direction as a factor of the weights of t and -t.
 #pragma once
 
 #include <vector>

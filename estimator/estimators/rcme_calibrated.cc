@@ -193,7 +193,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     const WhitenedProblem whitened(problem, shape->Covariance());
     Workings second;
     std::optional<MotionPosterior> second_posterior;
-    MotionEstimate again = ForPixelsOf(whitened).EstimateWithPrior(
+    MotionEstimate again = MakeForPixels(whitened).EstimateWithPrior(
         whitened.problem(), same, &second, posterior != nullptr ? &second_posterior : nullptr);
     if (second.modes.empty()) return estimate;
     whitened.Restore(&again);
@@ -207,12 +207,11 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     return again;
   }
 
-  RcmeCalibrated ForPixelsOf(const WhitenedProblem& whitened) const {
+  // The same estimator, with the uncertainty of the principal points in the whitened problem's pixels.
+  RcmeCalibrated MakeForPixels(const WhitenedProblem& whitened) const {
     CalibratedOptions options = options_;
-    for (CalibrationPrior* prior : {&options.calibration, &options.robust.calibration}) {
-      prior->of_pixels1 = whitened.of_pixels1();
-      prior->of_pixels2 = whitened.of_pixels2();
-    }
+    options.calibration.of_pixels1 = whitened.of_pixels1();
+    options.calibration.of_pixels2 = whitened.of_pixels2();
     return RcmeCalibrated(options);
   }
 

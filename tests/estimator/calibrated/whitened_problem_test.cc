@@ -29,7 +29,7 @@ Case MakeCase(std::uint32_t trial) {
 }
 
 // T of a camera, from the definition: the rotation about the axis under which the rays of all matches turn.
-Eigen::Matrix3d TurnOf(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+Eigen::Matrix3d FindTurn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const double angle = std::atan2(to.y(), to.x()) - std::atan2(from.y(), from.x());
   return RotationFromVector({0.0, 0.0, angle});
 }
@@ -38,8 +38,8 @@ struct Turns {
 };
 Turns FindTurns(const MotionProblem& problem, const MotionProblem& whitened) {
   const Correspondence &match = problem.matches[0], &other = whitened.matches[0];
-  return {TurnOf(problem.camera1.Ray(match.x1_px), whitened.camera1.Ray(other.x1_px)),
-          TurnOf(problem.camera2.Ray(match.x2_px), whitened.camera2.Ray(other.x2_px))};
+  return {FindTurn(problem.camera1.Ray(match.x1_px), whitened.camera1.Ray(other.x1_px)),
+          FindTurn(problem.camera2.Ray(match.x2_px), whitened.camera2.Ray(other.x2_px))};
 }
 RelativePose Turn(const RelativePose& pose, const Turns& turns) {
   return {turns.of_camera2 * pose.R * turns.of_camera1.transpose(), turns.of_camera2 * pose.t};
