@@ -53,15 +53,14 @@ MeasuredMotion MotionSensors::Measure(const ViewPair& view, RandomStream& rng) c
 
 std::vector<Parameter> Parameters(MotionSensors& sensors) {
   const Parameter::Range range{kLeastSdDeg, kGreatestSdDeg};
-  return {
-      Parameter::RealOrWord("prior_rotation_sd_deg", &sensors.rotation_sd_deg, range, "none", "deg",
-                            "noise about each axis of a measured rotation, for estimators that take priors"),
-      Parameter::RealOrWord("prior_gravity_sd_deg", &sensors.gravity_sd_deg, range, "none", "deg",
-                            "noise of the direction of gravity in each camera, likewise"),
-      Parameter::RealOrWord("prior_direction_sd_deg", &sensors.direction_sd_deg, range, "none", "deg",
-                            "noise of a measured direction of translation, likewise"),
-      Parameter::Real("prior_bias_deg", &sensors.bias_deg, {0.0, 180.0}, "deg",
-                      "turn of these measurements that their noise does not account for")};
+  return {Parameter::RealOrWord("prior_rotation_sd_deg", &sensors.rotation_sd_deg, range, "none", "deg",
+                                "noise of a measured rotation about each axis, for priors"),
+          Parameter::RealOrWord("prior_gravity_sd_deg", &sensors.gravity_sd_deg, range, "none", "deg",
+                                "noise of measured gravity in each camera, for priors"),
+          Parameter::RealOrWord("prior_direction_sd_deg", &sensors.direction_sd_deg, range, "none", "deg",
+                                "noise of a measured direction of translation, for priors"),
+          Parameter::Real("prior_bias_deg", &sensors.bias_deg, {0.0, 180.0}, "deg",
+                          "rotation of these measurements beyond their noise")};
 }
 
 }  // namespace rcme

@@ -15,6 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = ROOT / "docs" / "reference"
 SCHEMA = ROOT / "docs" / "study.schema.json"
 MERGED = ("options", "settings")  # lists of what many take: one row for all whose other columns are equal
+GROUPS = {"*loop*": ("standard", "prcme", "rcme", "msac", "mlesac", "lo_ransac", "cov_ransac", "m_estimator")}  # docs/reference/estimators.md
 TABLE = re.compile(r"(<!-- begin list: (\S+) -->\n).*?(<!-- end list: \2 -->)", re.DOTALL)
 
 
@@ -27,14 +28,27 @@ def list_as_markdown(program, name):
     return "\n".join(merged(lines) if name in MERGED else lines) + "\n"
 
 
+def short_names(names, all_names):
+    """The names as a list; "all but NAME", and the name of a group of estimators, where these are shorter."""
+    others = [name for name in all_names if name not in names]
+    if len(names) > 4 and len(others) < 3:
+        return "all but " + " and ".join(others) if others else "all"
+    for group, members in GROUPS.items():
+        if set(members) <= set(names):
+            names = [group, *(name for name in names if name not in members)]
+    return ", ".join(names)
+
+
 def merged(lines):
     """Rows that differ only in their first cell as one, with these cells in a list: "scene: plane, room; motion: forward"."""
-    takers = {}
+    takers, of_kind = {}, {}
     for line in lines[2:]:
         first, rest = line.removeprefix("| ").split(" | ", 1)
         kind, colon, name = first.rpartition(": ")
         takers.setdefault(rest, {}).setdefault(kind + colon, []).append(name)
-    rows = ["; ".join(kind + ", ".join(names) for kind, names in kinds.items()) + " | " + rest for rest, kinds in takers.items()]
+        of_kind.setdefault(kind + colon, {})[name] = None
+    rows = ["; ".join(kind + short_names(names, of_kind[kind]) for kind, names in kinds.items()) + " | " + rest
+            for rest, kinds in takers.items()]
     return [*lines[:2], *("| " + row for row in rows)]
 
 
