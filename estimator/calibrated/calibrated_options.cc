@@ -13,13 +13,11 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
   std::vector<P> all = {
       P::Integer("min_samples", &o.min_samples, {8, 1e6}, "least number of minimal samples"),
       P::Integer("max_samples", &o.max_samples, {8, 1e6},
-                 "greatest number; enough for a sample without wrong matches with probability 0.999, by the "
-                 "best hypothesis"),
-      P::Integer("num_candidates", &o.num_candidates, {1, 1000}, "hypotheses that are refined briefly"),
-      P::Integer("num_modes", &o.num_modes, {1, 100}, "of these, hypotheses that are refined to the optimum"),
+                 "greatest number; stops when one sample is without wrong matches with probability 0.999"),
+      P::Integer("num_candidates", &o.num_candidates, {1, 1000}, "hypotheses refined briefly"),
+      P::Integer("num_modes", &o.num_modes, {1, 100}, "of these, refined to the optimum"),
       P::Real("max_rotation_error_deg", &o.max_rotation_error_deg, {1e-6, 180.0}, "deg",
-              "rotation error beyond which a motion counts as failed; in a study by default its failure "
-              "bound"),
+              "bound of the stated probability of failure; in a study by default the study's"),
       P::Real("max_direction_error_deg", &o.max_direction_error_deg, {1e-6, 180.0}, "deg",
               "the same for the direction of translation"),
       P::Real("max_failure_probability", &o.max_failure_probability, {0.0, 1.0}, "",

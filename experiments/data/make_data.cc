@@ -42,8 +42,8 @@ std::vector<Parameter> Parameters(MatchFolderSettings& settings, double* sigma_p
 
 Parameter TruthInDoubtParameter(MatchFolderSettings& settings) {
   return Parameter::Text(kTruthInDoubtKey, &settings.truth_in_doubt,
-                         "pairs not scored, as `rcme check-truth` doubts their truth",
-                         "a CSV file with the columns scene and pair_id, seen from the study's folder");
+                         "a CSV file with the columns scene and pair_id, seen from the study's folder",
+                         "pairs not scored, as `rcme check-truth` doubts their truth");
 }
 
 // Adds the entries of a registry whose models have the parameter.

@@ -67,9 +67,9 @@ void SceneSplit::AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* row
 std::vector<QuantityHelp> SceneSplitQuantities() {
   std::vector<QuantityHelp> help;
   const std::string kind = KindName(SummaryRow::Kind::kVarianceShare);
-  const std::string base = "scenes with every repeat (repeats_per_scene)";
+  const std::string base = "repeated scenes";
   for (const TrialEvent& event : TrialEvents()) {
-    const std::string share = "share of the variance of " + event.name;
+    const std::string share = "variance of " + event.name;
     help.push_back({event.name + kBetween, kind, share + " between scenes", base});
     help.push_back({event.name + kWithin, kind, share + " within scenes, from the sampler", base});
     help.push_back({event.name + kFlips, KindName(SummaryRow::Kind::kRate),

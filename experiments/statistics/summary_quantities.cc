@@ -100,7 +100,7 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       StatusRate(MotionStatus::kInvalidCovariance,
                  "failure: not finite, symmetric and positive semidefinite"),
       StatusRate(MotionStatus::kNotSimulated,
-                 "the simulator could not make the trial of a draw; no other quantity counts it"),
+                 "the simulator could not make the draw's trial; no other quantity counts it"),
       {"kappa_flag", kRate, "the paper's failure flag n*_I / n_I <= kappa", kReturned,
        [](R r, B) { return If(IsOk(r), r.failed_by_kappa); }},
       {"nees_coverage", kRate, "truth within the 95 % region of the covariance; not if invalid", kReturned,

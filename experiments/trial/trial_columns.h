@@ -11,12 +11,12 @@
 
 namespace rcme {
 
-inline constexpr StoredColumn kConditionColumn = {"condition", "", "number of the condition, from 0",
-                                                  kAnyNumber, StoredColumn::Role::kKey};
-inline constexpr StoredColumn kTrialColumn = {"trial", "", "number within its condition, from 0", kAnyNumber,
+inline constexpr StoredColumn kConditionColumn = {"condition", "", "number, from 0", kAnyNumber,
+                                                  StoredColumn::Role::kKey};
+inline constexpr StoredColumn kTrialColumn = {"trial", "", "number in its condition, from 0", kAnyNumber,
                                               StoredColumn::Role::kKey};
-inline constexpr StoredColumn kEstimatorColumn = {"estimator", "", "number of the estimator, from 0",
-                                                  kAnyNumber, StoredColumn::Role::kKey};
+inline constexpr StoredColumn kEstimatorColumn = {"estimator", "", "number, from 0", kAnyNumber,
+                                                  StoredColumn::Role::kKey};
 
 template <typename Record, typename Wanted>
 concept IsRecord = std::is_same_v<std::remove_const_t<Record>, Wanted>;

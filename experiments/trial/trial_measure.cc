@@ -33,7 +33,7 @@ std::vector<TrialMeasure> WithAnswered(const std::vector<TrialMeasure>& of_all) 
   std::vector<TrialMeasure> measures = of_all;
   for (TrialMeasure measure : of_all) {
     measure.name += "_answered";
-    measure.base = "scored answers, invalid ones as wrong";
+    measure.base = "scored answers";
     measure.leaves_out_refusals = true;
     measures.push_back(measure);
   }

@@ -25,7 +25,7 @@ class OutlierMixture : public OutlierLaw {
     std::vector<Parameter> all;
     for (Part& part : parts_) {
       all.push_back(Parameter::Real("weight_" + part.name, &part.weight, {0.0, 1e6}, "",
-                                    "share of " + part.name + ", over the sum of weights"));
+                                    "share of these wrong matches, over the sum of weights"));
     }
     std::vector<std::vector<Parameter>> by_name;
     for (Part& part : parts_) {

@@ -50,8 +50,7 @@ ResultColumn KeyColumn(const StoredColumn& column) {
 
 std::vector<ResultColumn> ProblemColumns() {
   std::vector<ResultColumn> columns = RecordColumns<ProblemRecord>();
-  columns.push_back(
-      {"checksum", "INTEGER", "", "CRC-32 of the study's identity, the problem and its trials"});
+  columns.push_back({"checksum", "INTEGER", "", "CRC-32 of identity, problem and its trials"});
   return columns;
 }
 
@@ -65,7 +64,7 @@ const std::vector<ResultTable>& ResultTables() {
        {"key"}},
       {"factors",
        "The factors of the study; match files add `pair_scene`.",
-       {{"factor", "INTEGER", "", "number of the factor, from 0"}, {"name", "TEXT", "", "the data key"}},
+       {{"factor", "INTEGER", "", "number, from 0"}, {"name", "TEXT", "", "the data key"}},
        {"factor"}},
       {"conditions",
        "One row per condition.",
@@ -74,7 +73,7 @@ const std::vector<ResultTable>& ResultTables() {
       {"levels",
        "One row per factor of a condition.",
        {KeyColumn(kConditionColumn),
-        {"factor", "INTEGER", "", "number of the factor, from 0"},
+        {"factor", "INTEGER", "", "number, from 0"},
         {"level", "TEXT", "of the factor", "as in the study"}},
        {"condition", "factor"}},
       {"estimators",
@@ -97,15 +96,15 @@ const std::vector<ResultTable>& ResultTables() {
         {"checksum", "INTEGER", "", "sum of their checksums"}},
        {"condition"}},
       {"counted",
-       "The trials that the counts cover; empty unless the run keeps counts.",
+       "The trials that the counts cover, if the run keeps counts.",
        {KeyColumn(kConditionColumn),
         {"shard", "TEXT", "", "such as `3/64`; empty: all trials"},
         {"places", "TEXT", "", "places in the shard, from 0: `0-499,600`"},
-        {"checksum", "INTEGER", "", "CRC-32 of the study's identity and the row"}},
+        {"checksum", "INTEGER", "", "CRC-32 of identity and row"}},
        {"condition", "shard"}},
       {"counts",
-       "The exact sums of the summary; empty unless the run keeps counts. A sum is a hexadecimal "
-       "whole number and a power of two, `-1a3p-20`.",
+       "The exact sums of the summary, if the run keeps counts: hexadecimal whole numbers with a "
+       "power of two, `-1a3p-20`.",
        {KeyColumn(kConditionColumn),
         {"estimator", "INTEGER", "", "number of the estimator; after the last: the problems"},
         {"quantity", "TEXT", "", "name in `rcme list quantities`"},
@@ -115,7 +114,7 @@ const std::vector<ResultTable>& ResultTables() {
         {"cells", "TEXT", "",
          "median: count, least and greatest value per cell (`stats/stream_median.h`); score: parts on "
          "a grid (`stats/exact_scores.h`); else empty"},
-        {"checksum", "INTEGER", "", "CRC-32 of the study's identity and the row"}},
+        {"checksum", "INTEGER", "", "CRC-32 of identity and row"}},
        {"condition", "estimator", "quantity"}},
       {"problems", "One row per trial: its problem.", ProblemColumns(), {"condition", "trial"}},
       {"trials",
@@ -127,9 +126,9 @@ const std::vector<ResultTable>& ResultTables() {
 
 const std::vector<RunKey>& RunKeys() {
   static const std::vector<RunKey> keys = {
-      {"format", "format of the file"},
-      {"name", "name of the study"},
-      {"description", "description of the study"},
+      {"format", "of the file"},
+      {"name", "of the study"},
+      {"description", "of the study"},
       {"ademp_aims", "the study's aims; empty without an ADEMP block, as the next four"},
       {"ademp_data", "how its data are made"},
       {"ademp_estimands", "what is estimated"},
@@ -140,7 +139,7 @@ const std::vector<RunKey>& RunKeys() {
       {"repeats_per_scene", "trial k has scene k / repeats_per_scene"},
       {"max_rotation_error_deg", "failure bound"},
       {"max_direction_error_deg", "failure bound"},
-      {"stopping_rule", "how the number of trials depended on outcomes; empty: not"},
+      {"stopping_rule", "how the number of trials depended on outcomes; empty: it did not"},
       {"stopping_rule_checksum", "CRC-32 of identity and stopping_rule"},
       {"until_options", "options of `rcme run --until` if these alone made the trials; else empty"},
       {"until_trials", "number of trials that they made"},
@@ -156,7 +155,7 @@ const std::vector<RunKey>& RunKeys() {
       {"program", "programs that computed trials, with versions, by commas; empty: unknown"},
       {"instruction_set", "their instruction sets, likewise"},
       {"study", "the study in full (YAML)"},
-      {"identity", "what runs that share a file have in common: study, seed, digest of real data"},
+      {"identity", "common to runs that share a file: study, seed, digest of real data"},
       {"checksum", "CRC-32 of all other rows of run, factors, conditions, levels, estimators and options"}};
   return keys;
 }

@@ -412,7 +412,7 @@ TEST_F(SummarizeTest, RowsAreComplete) {
   EXPECT_EQ(summary.num_trials_done, 10);
   EXPECT_EQ(summary.num_trials_planned, 12);
   const auto is_left_out = [](const QuantityHelp& q) {
-    return q.base.ends_with("(repeats_per_scene)") || q.name == "timed_out" || q.name == "no_answer" ||
+    return q.base == "repeated scenes" || q.name == "timed_out" || q.name == "no_answer" ||
            q.name == "unreadable_answer" || q.name == "not_simulated";
   };
   EXPECT_EQ(summary.rows.size(),
