@@ -120,8 +120,8 @@ Rows ListKeys() {
 }
 
 Rows ListQuantities() {
-  Rows rows = {{"quantity", "kind", "what it is", "of"}};
-  for (const QuantityHelp& q : SummaryQuantities()) rows.push_back({q.name, q.kind, q.doc, q.base});
+  Rows rows = {{"quantity", "kind", "of", "what it is"}};
+  for (const QuantityHelp& q : SummaryQuantities()) rows.push_back({q.name, q.kind, q.base, q.doc});
   return rows;
 }
 

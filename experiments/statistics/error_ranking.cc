@@ -77,11 +77,11 @@ void ErrorRanking::AppendRows(const SummaryRow& cell, bool counts_clusters,
 const std::vector<QuantityHelp>& ErrorRankingQuantities() {
   static const std::vector<QuantityHelp> all = [] {
     const std::string kind = KindName(SummaryRow::Kind::kArea);
-    const std::string base = "motions of energy_score_deg; not of counts";
+    const std::string base = "as energy_score_deg";
     return std::vector<QuantityHelp>{
         {"rotation_ause", kind,
          "area between the sparsification curves by rotation_sd_deg and by rotation error, over the "
-         "mean error; 0 best",
+         "mean error; 0 best; not of counts",
          base},
         {"rotation_ause_random", kind, "the same for a random order", base},
         {"direction_ause", kind, "rotation_ause for direction errors and direction_sd_deg", base},

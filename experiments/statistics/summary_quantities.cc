@@ -26,7 +26,7 @@ constexpr const char* kScored = "scored trials";
 constexpr const char* kReturned = "returned motions";
 constexpr const char* kSuccesses = "successes";
 constexpr const char* kWithCovariance = "returned motions with a covariance";
-constexpr const char* kWithCovarianceAndTruth = "returned motions with a covariance and a known truth";
+constexpr const char* kWithCovarianceAndTruth = "covariances with a known truth";
 constexpr const char* kMeasured = "measured problems";
 
 bool IsOk(const TrialRecord& r) { return r.status == MotionStatus::kOk; }
@@ -125,7 +125,7 @@ const std::vector<TrialQuantity>& OwnQuantities() {
       {"energy_score_deg", kMean, "energy score of the stated density, 0 best", kWithCovarianceAndTruth,
        [](R r, B) { return If(IsOk(r), r.density.energy_score_deg); }},
       {"log_score", kMean, "-ln p(error) of the stated density, nats; less is better",
-       "the same without singular_covariance", [](R r, B) { return If(IsOk(r), r.density.log_score); }},
+       "the same without singular ones", [](R r, B) { return If(IsOk(r), r.density.log_score); }},
       {"singular_covariance", kRate, "singular covariance, hence no density and no log_score",
        kWithCovariance,
        [](R r, B) { return If(IsOk(r) && r.density.HasCovariance(), r.density.IsSingular()); }},
