@@ -38,24 +38,19 @@ std::vector<EstimatorEntry> UsingNoiseScale(std::vector<EstimatorEntry> entries)
 
 std::vector<EstimatorEntry>& Table() {
   static std::vector<EstimatorEntry> registry = WithCommonOptions(UsingNoiseScale({
-      {"standard", "RANSAC by inlier count, then Gold Standard refinement", StandardModel},
-      {"prcme", "RCME without the test of the model against its sample",
-       [] { return RcmeModel(SampleTest::kOff); }},
+      {"standard", "RANSAC by inlier count, Gold Standard refinement", StandardModel},
+      {"prcme", "RCME without the model-sample test", [] { return RcmeModel(SampleTest::kOff); }},
       {"rcme", "RCME: model-sample test, inlier set quality test, selection by entropy, refinement",
        [] { return RcmeModel(SampleTest::kOn); }},
       {"rcme_calibrated",
-       "RCME that estimates the noise, keeps several explanations and states the probability that it is "
-       "wrong",
+       "RCME that estimates noise, keeps several modes and states a probability of failure",
        RcmeCalibratedModel, /*is_peer=*/false, /*is_audited=*/true, /*uses_noise_scale=*/true},
-      {"msac", "RANSAC by truncated squared distances (MSAC), then refinement", MsacModel, false, false},
-      {"mlesac", "RANSAC by the likelihood of a mixture of right and wrong matches (MLESAC), then refinement",
-       MlesacModel, false, false},
-      {"lo_ransac", "RANSAC by inlier count, its best hypotheses optimised by inner refits (LO-RANSAC)",
-       LoRansacModel, false, false},
-      {"cov_ransac",
-       "RANSAC by inlier count, its best hypotheses refitted within their uncertainty (Cov-RANSAC)",
+      {"msac", "RANSAC by truncated squared distances (MSAC)", MsacModel, false, false},
+      {"mlesac", "RANSAC by mixture likelihood (MLESAC)", MlesacModel, false, false},
+      {"lo_ransac", "RANSAC by inlier count with inner refits (LO-RANSAC)", LoRansacModel, false, false},
+      {"cov_ransac", "RANSAC by inlier count with refits within the motion's uncertainty (Cov-RANSAC)",
        CovRansacModel, false, false},
-      {"m_estimator", "M-estimation over all matches (Huber, Tukey) from the best MSAC hypothesis",
+      {"m_estimator", "M-estimation (Huber, Tukey) over all matches from the best MSAC hypothesis",
        MEstimatorModel, false, false},
   }));
   return registry;

@@ -48,35 +48,34 @@ double RansacOptions::ChanceLevelOrDefault() const {
 std::vector<Parameter> Parameters(RansacOptions& o) {
   return {
       Parameter::Choice<MinimalSolver>("solver", &o.solver, SolverNames(),
-                                       "matches of a sample -> motion; one_point: a car on a plane"),
+                                       "minimal solver; one_point: a car on a plane"),
       Parameter::Integer("num_iterations", &o.num_iterations, {1, 1e6}, "samples N of Algorithm 1"),
       Parameter::Real("significance_level", &o.significance_level, {1e-9, 0.5}, "",
-                      "alpha of the tests of the loop, and of which matches agree with the refined motion"),
+                      "alpha of the loop's tests and of agreement with the refined motion"),
       Parameter::Real("lambda", &o.lambda, {0.0, 1.0}, "", "least inlier share as a fraction of omega_p"),
       Parameter::RealOrWord("inlier_ratio", &o.inlier_ratio, {0.0, 1.0}, "inferred", "",
                             "omega_p, the expected share of inliers"),
       Parameter::Choice<Refinement>(
           "refinement", &o.refinement,
           {{"none", Refinement::kNone}, {"mle", Refinement::kMle}, {"robust", Refinement::kRobust}},
-          "what follows the selection: nothing, the paper's MLE, or a robust loss and then the MLE"),
+          "none, the paper's MLE, or a robust loss and then the MLE"),
       Parameter::Choice<RefinementError>(
           "refinement_error", &o.refinement_error,
           {{"sampson", RefinementError::kSampson}, {"reprojection", RefinementError::kReprojection}},
-          "what the refinement minimises: Sampson distance (fast), or reprojection error (bundle "
-          "adjustment)"),
+          "Sampson distance (fast) or reprojection error (bundle adjustment)"),
       Parameter::Choice<Implementation>(
           "implementation", &o.implementation,
           {{"automatic", Implementation::kAutomatic},
            {"fast", Implementation::kFast},
            {"reference", Implementation::kReference}},
-          "fast: vectorised, of eight_point and five_point; reference: the same mathematics one match at a "
-          "time, an independent check, hundreds of times slower; automatic: fast where there is one"),
+          "fast: vectorised, for eight_point and five_point alone; reference: independent, one match "
+          "at a time; automatic: fast where there is one"),
       Parameter::Integer("num_refined", &o.num_refined, {1, 1000},
-                         "number of top candidates refined; the motion that explains the most matches wins"),
+                         "top candidates refined; the one that explains most matches wins"),
       Parameter::Real("least_explained_share", &o.least_explained_share, {0.0, 1.0}, "",
-                      "refuse a refined motion that explains a smaller share of the matches"),
+                      "a refined motion that explains less is refused"),
       Parameter::Real("kappa", &o.kappa, {0.0, 1.0}, "",
-                      "failure flag: consistent matches after over before the refinement <= kappa"),
+                      "failure flag: consistent matches after / before refinement <= kappa"),
   };
 }
 
@@ -84,25 +83,25 @@ std::vector<Parameter> EntropyParameters(RansacOptions& o) {
   return {
       Parameter::Choice<Reading>("reading", &o.reading,
                                  {{"as_printed", Reading::kAsPrinted}, {"rank_aware", Reading::kRankAware}},
-                                 "how the covariance of the Sampson vector is read"),
+                                 "of the covariance of the Sampson vector"),
       Parameter::RealOrWord("mu", &o.mu, {-1000.0, 1000.0}, "auto", "nats",
-                            "entropy threshold; auto: -3.53 as printed, 6 nats of excess entropy rank-aware"),
+                            "entropy threshold; auto: -3.53 as printed, excess entropy 6 rank-aware"),
       Parameter::Choice<QualityTest>(
           "quality_test", &o.quality_test,
           {{"as_printed", QualityTest::kAsPrinted}, {"level_alpha", QualityTest::kLevelAlpha}},
-          "Z-test of the mean entropy: Z <= +1.645 (as printed) or Z <= -1.645 (level alpha)"),
+          "mean entropy's Z <= +1.645 (as printed) or <= -1.645 (level alpha)"),
       Parameter::Choice<Selection>("selection", &o.selection,
                                    {{"mean_entropy", Selection::kMeanEntropy},
                                     {"predictive_likelihood", Selection::kPredictiveLikelihood}},
-                                   "which candidate wins"),
+                                   "criterion of the winning candidate"),
       Parameter::RealOrWord("early_stop_entropy", &o.early_stop_entropy, {-1000.0, 1000.0}, "off", "nats",
-                            "stop at the first candidate whose mean entropy is at most this"),
+                            "stop at the first candidate with at most this mean entropy"),
   };
 }
 
 Parameter SampleTestParameter(RansacOptions& o) {
   return Parameter::RealOrWord("sample_significance_level", &o.sample_significance_level, {1e-9, 0.5},
-                               "significance_level", "", "alpha of the sample test, where it has its own");
+                               "significance_level", "", "alpha of the sample test");
 }
 
 std::vector<Parameter> MotionTestParameters(RansacOptions& o, bool depend_on_reading) {
@@ -113,16 +112,12 @@ std::vector<Parameter> MotionTestParameters(RansacOptions& o, bool depend_on_rea
     rule = "; auto: off as printed, 0.001 rank-aware";
   }
   return {
-      Parameter::RealOrWords("observability_significance_level", &o.observability_significance_level,
-                             {1e-9, 1.0}, words, "",
-                             "a rotation without a translation is taken for a motion with at most this "
-                             "probability, else the answer is direction_not_observable" +
-                                 rule),
-      Parameter::RealOrWords("chance_significance_level", &o.chance_significance_level, {1e-9, 1.0}, words,
-                             "",
-                             "random matches are taken for a motion with at most this probability, else the "
-                             "answer is not_better_than_chance" +
-                                 rule),
+      Parameter::RealOrWords(
+          "observability_significance_level", &o.observability_significance_level, {1e-9, 1.0}, words, "",
+          "greatest probability that a pure rotation passes; refusal: direction_not_observable" + rule),
+      Parameter::RealOrWords(
+          "chance_significance_level", &o.chance_significance_level, {1e-9, 1.0}, words, "",
+          "greatest probability that random matches pass; refusal: not_better_than_chance" + rule),
   };
 }
 

@@ -85,17 +85,18 @@ class FundamentalModel : public EstimatorModel {
     std::vector<Parameter> all;
     const bool is_ransac = o.method == cv::FM_RANSAC;
     if (is_ransac) {
-      all.push_back(Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
-                                    "a match is an inlier up to so many standard deviations of its distance; "
-                                    "with fewer than 15 matches OpenCV takes LMedS and no threshold"));
+      all.push_back(Parameter::Real(
+          "threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
+          "inlier threshold in standard deviations of the distance; with fewer than 15 matches OpenCV "
+          "takes LMedS instead"));
     }
-    all.push_back(Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
-                                  is_ransac
-                                      ? "that a sample without a wrong match was drawn, when the loop ends"
-                                      : "that a sample without a wrong match is drawn where 45 % are wrong; "
-                                        "sets the number of samples"));
+    all.push_back(Parameter::Real(
+        "confidence", &o.confidence, {0.01, 0.999999}, "",
+        is_ransac ? "probability of a sample without wrong matches at which the loop ends"
+                  : "probability of a sample without wrong matches where 45 % are wrong; sets the number of "
+                    "samples"));
     all.push_back(
-        Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples"));
+        Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "greatest number of samples"));
     all.push_back(MaxDepthParameter(&o.max_depth));
     return all;
   }

@@ -105,29 +105,26 @@ class UsacModel : public EstimatorModel {
                           {{"msac", cv::SCORE_METHOD_MSAC},
                            {"magsac", cv::SCORE_METHOD_MAGSAC},
                            {"lmeds", cv::SCORE_METHOD_LMEDS}},
-                          "what a hypothesis is chosen by"),
+                          "criterion of the best hypothesis"),
         Parameter::Choice("local_optimisation", &o.local_optimisation,
                           {{"none", cv::LOCAL_OPTIM_NULL},
                            {"inner", cv::LOCAL_OPTIM_INNER_LO},
                            {"inner_and_iterative", cv::LOCAL_OPTIM_INNER_AND_ITER_LO},
                            {"graph_cut", cv::LOCAL_OPTIM_GC},
                            {"sigma", cv::LOCAL_OPTIM_SIGMA}},
-                          "what is done to a hypothesis that is better than those before; sigma: MAGSAC++"),
+                          "of each new best hypothesis; sigma: MAGSAC++"),
         Parameter::Choice(
             "sampler", &o.sampler,
             {{"uniform", cv::SAMPLING_UNIFORM},
              {"prosac", cv::SAMPLING_PROSAC},
              {"napsac", cv::SAMPLING_NAPSAC},
              {"progressive_napsac", cv::SAMPLING_PROGRESSIVE_NAPSAC}},
-            "how samples are drawn; prosac and progressive_napsac take the best matches first: by "
-            "the column score of a match file, else as listed, which is a random order in a "
-            "simulation"),
+            "prosac, progressive_napsac: best matches first, by the match file's score, else as listed"),
         Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
-                        "a match is an inlier up to so many standard deviations of its distance; magsac "
-                        "looks up to 3.2 times as far"),
+                        "inlier threshold in standard deviations of the distance; magsac: 3.2 times that"),
         Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
-                        "that a sample without a wrong match was drawn, when the loop ends early"),
-        Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples"),
+                        "probability of a sample without wrong matches at which the loop ends"),
+        Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "greatest number of samples"),
         MaxDepthParameter(&o.max_depth)};
   }
   std::optional<Effort> EffortOption() const override { return Effort{"max_iterations", true}; }

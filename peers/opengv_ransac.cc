@@ -121,24 +121,23 @@ class OpenGvModel : public EstimatorModel {
  public:
   std::vector<Parameter> Parameters() override {
     OpenGvOptions& o = options_;
-    return {
-        Parameter::Choice("algorithm", &o.algorithm,
-                          {{"five_point_nister", SacProblem::NISTER},
-                           {"five_point_stewenius", SacProblem::STEWENIUS},
-                           {"seven_point", SacProblem::SEVENPT},
-                           {"eight_point", SacProblem::EIGHTPT}},
-                          "what makes a hypothesis of a sample, which holds one to three matches more to "
-                          "tell models apart"),
-        Parameter::Choice(
-            "refinement", &o.refinement,
-            {{"none", OpenGvRefinement::kNone}, {"nonlinear", OpenGvRefinement::kNonlinear}},
-            "of the best hypothesis over its inliers, which are then chosen again; OpenGV's sums the fourth "
-            "powers of the distances, so that the farthest decide"),
-        Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
-                        "a match is an inlier up to so many standard deviations of its distance"),
-        Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
-                        "that a sample without a wrong match was drawn, when the loop ends early"),
-        Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples")};
+    return {Parameter::Choice(
+                "algorithm", &o.algorithm,
+                {{"five_point_nister", SacProblem::NISTER},
+                 {"five_point_stewenius", SacProblem::STEWENIUS},
+                 {"seven_point", SacProblem::SEVENPT},
+                 {"eight_point", SacProblem::EIGHTPT}},
+                "minimal solver; a sample has one to three more matches to choose among its models"),
+            Parameter::Choice(
+                "refinement", &o.refinement,
+                {{"none", OpenGvRefinement::kNone}, {"nonlinear", OpenGvRefinement::kNonlinear}},
+                "of the best hypothesis over its inliers, chosen again afterwards; OpenGV sums fourth powers "
+                "of distances"),
+            Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
+                            "inlier threshold in standard deviations of the distance"),
+            Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
+                            "probability of a sample without wrong matches at which the loop ends"),
+            Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "greatest number of samples")};
   }
   std::optional<Effort> EffortOption() const override { return Effort{"max_iterations", true}; }
   std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<OpenGvRansac>(options_); }

@@ -108,9 +108,8 @@ class ProcessModel : public EstimatorModel {
  public:
   std::vector<Parameter> Parameters() override {
     return {
-        Parameter::Text("command", &command_, "a command of the shell",
-                        "answers each line of JSON with one (docs/estimators_in_any_language.md)"),
-        Parameter::Real("timeout_s", &timeout_s_, {1e-3, 1e5}, "s", "an answer that takes longer is none")};
+        Parameter::Text("command", &command_, "a command of the shell", "answers each line of JSON with one"),
+        Parameter::Real("timeout_s", &timeout_s_, {1e-3, 1e5}, "s", "a slower answer is none")};
   }
   std::unique_ptr<MotionEstimator> Make() const override {
     return std::make_unique<ProcessEstimator>(command_, timeout_s_);
@@ -200,9 +199,9 @@ class AnswersModel : public EstimatorModel {
  public:
   std::vector<Parameter> Parameters() override {
     return {Parameter::Text("file", &file_, "the path of a file of answers",
-                            "lines of JSON, of problems that `rcme export` wrote"),
+                            "lines of JSON, for problems of `rcme export`"),
             Parameter::Text("digest", &digest_, "16 hexadecimal digits",
-                            "of the file's content: a file that has changed is refused")};
+                            "of the file; a changed file is refused")};
   }
   std::unique_ptr<MotionEstimator> Make() const override {
     if (file_ == kNone) return std::make_unique<AnswersEstimator>(std::make_shared<AnswersFile>());
@@ -242,11 +241,11 @@ void RequireCommandAnswers(const std::string& command, double timeout_s) {
 }
 
 void AddOutsideEstimators() {
-  AddEstimator({"process", "a process of yours that answers lines of JSON",
+  AddEstimator({"process", "your process, which answers lines of JSON",
                 [] { return std::make_unique<ProcessModel>(); }, /*is_peer=*/false, /*is_audited=*/false});
-  AddEstimator({"answers", "a file of answers that were made elsewhere (rcme import)",
+  AddEstimator({"answers", "a file of answers made elsewhere (rcme import)",
                 [] { return std::make_unique<AnswersModel>(); }, /*is_peer=*/false, /*is_audited=*/false});
-  AddEstimator({kConformEstimator, "another estimator, made to keep its word (rcme conform)", ConformModel,
+  AddEstimator({kConformEstimator, "another estimator, calibrated by rcme conform", ConformModel,
                 /*is_peer=*/false, /*is_audited=*/false, /*uses_noise_scale=*/false,
                 /*takes_common_options=*/false});
 }

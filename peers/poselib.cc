@@ -95,12 +95,12 @@ class PoseLibEstimatorModel : public EstimatorModel {
   std::vector<Parameter> Parameters() override {
     PoseLibOptions& o = options_;
     return {Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
-                            "a match is an inlier up to so many standard deviations of its distance"),
+                            "inlier threshold in standard deviations of the distance"),
             Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
-                            "that a sample without a wrong match was drawn, when the loop ends early"),
+                            "probability of a sample without wrong matches at which the loop ends"),
             Parameter::Integer("min_iterations", &o.min_iterations, {0, 1e6},
-                               "at least so many samples, if max_iterations lets it"),
-            Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "at most so many samples")};
+                               "least number of samples, up to max_iterations"),
+            Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "greatest number of samples")};
   }
   std::optional<Effort> EffortOption() const override { return Effort{"max_iterations", true}; }
   std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<PoseLib>(options_); }

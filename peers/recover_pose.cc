@@ -44,9 +44,10 @@ std::optional<PeerAnswer> RecoverPose(const MotionProblem& problem, const cv::Ma
 }
 
 Parameter MaxDepthParameter(double* max_depth) {
-  return Parameter::Real("max_depth", max_depth, {1e-3, 1e9}, "baselines",
-                         "a point farther away is no inlier and has no vote on the sign of the direction "
-                         "(recoverPose's distanceThresh)");
+  return Parameter::Real(
+      "max_depth", max_depth, {1e-3, 1e9}, "baselines",
+      "farther points are no inliers and do not vote on the direction's sign (recoverPose's "
+      "distanceThresh)");
 }
 
 }  // namespace rcme

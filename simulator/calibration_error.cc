@@ -18,11 +18,11 @@ Camera CalibrationError::AssumedCamera(Camera camera_true) const {
 
 std::vector<Parameter> Parameters(CalibrationError& error) {
   return {Parameter::RealOrWord("assumed_sigma_px", &error.assumed_sigma_px, {1e-9, 1000.0}, "true", "px",
-                                "standard deviation of the noise that the estimators assume"),
+                                "noise that the estimators assume"),
           Parameter::Real("focal_error", &error.focal_error, {-0.9, 9.0}, "",
-                          "relative error of the focal lengths that the estimators assume"),
+                          "relative error of the assumed focal lengths"),
           Parameter::Real("principal_point_error_px", &error.principal_point_error_px, {-1e5, 1e5}, "px",
-                          "error of the principal points (x and y) that the estimators assume")};
+                          "error of the assumed principal points in x and y")};
 }
 
 }  // namespace rcme

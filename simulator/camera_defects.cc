@@ -42,10 +42,9 @@ Eigen::Vector2d ImagedPoint(const ViewPair& view, const SceneCamera& camera, dou
 
 std::vector<Parameter> Parameters(CameraDefects& defects) {
   return {Parameter::Real("distortion_k1", &defects.distortion_k1, {-0.5, 0.5}, "",
-                          "radial distortion of both images that the estimators do not know"),
+                          "radial distortion of both images, unknown to estimators"),
           Parameter::Real("rolling_shutter", &defects.rolling_shutter, {-0.5, 0.5}, "",
-                          "time to read an image row by row over the time between the images; a negative one "
-                          "reads upwards")};
+                          "readout time over the time between the images; negative: upwards")};
 }
 
 Correspondence ImagedMatch(const ViewPair& view, const CameraDefects& defects,

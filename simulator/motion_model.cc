@@ -14,12 +14,9 @@ double Baseline::Length() const {
 }
 
 std::vector<Parameter> Parameters(Baseline& baseline) {
-  return {
-      Parameter::Real("baseline_m", &baseline.baseline_m, {1e-9, 1e6}, "m", "length of the translation"),
-      Parameter::RealOrWord(
-          "parallax_deg", &baseline.parallax_deg, {1e-9, 120.0}, "none", "deg",
-          "the length as an angle instead: the parallax angle at a point between the rays to the two camera "
-          "centres, median over the points, averaged over trials")};
+  return {Parameter::Real("baseline_m", &baseline.baseline_m, {1e-9, 1e6}, "m", "length of the translation"),
+          Parameter::RealOrWord("parallax_deg", &baseline.parallax_deg, {1e-9, 120.0}, "none", "deg",
+                                "length as a parallax angle instead: median over points, mean over trials")};
 }
 
 Eigen::Vector3d DrawDirection(RandomStream& rng) {

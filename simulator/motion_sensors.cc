@@ -53,15 +53,14 @@ MeasuredMotion MotionSensors::Measure(const ViewPair& view, RandomStream& rng) c
 
 std::vector<Parameter> Parameters(MotionSensors& sensors) {
   const Parameter::Range range{kLeastSdDeg, kGreatestSdDeg};
-  return {
-      Parameter::RealOrWord("prior_rotation_sd_deg", &sensors.rotation_sd_deg, range, "none", "deg",
-                            "noise about each axis of a measured rotation, for estimators that take priors"),
-      Parameter::RealOrWord("prior_gravity_sd_deg", &sensors.gravity_sd_deg, range, "none", "deg",
-                            "noise of the direction of gravity in each camera, likewise"),
-      Parameter::RealOrWord("prior_direction_sd_deg", &sensors.direction_sd_deg, range, "none", "deg",
-                            "noise of a measured direction of translation, likewise"),
-      Parameter::Real("prior_bias_deg", &sensors.bias_deg, {0.0, 180.0}, "deg",
-                      "turn of these measurements that their noise does not account for")};
+  return {Parameter::RealOrWord("prior_rotation_sd_deg", &sensors.rotation_sd_deg, range, "none", "deg",
+                                "noise of the rotation prior about each axis"),
+          Parameter::RealOrWord("prior_gravity_sd_deg", &sensors.gravity_sd_deg, range, "none", "deg",
+                                "noise of the gravity prior in each camera"),
+          Parameter::RealOrWord("prior_direction_sd_deg", &sensors.direction_sd_deg, range, "none", "deg",
+                                "noise of the direction prior"),
+          Parameter::Real("prior_bias_deg", &sensors.bias_deg, {0.0, 180.0}, "deg",
+                          "rotation of the priors beyond their noise")};
 }
 
 }  // namespace rcme

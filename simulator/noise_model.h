@@ -37,8 +37,7 @@ class NoiseModel {
 
 // The key sigma_px that every law has.
 inline Parameter SigmaParameter(double* sigma_px) {
-  return Parameter::Real("sigma_px", sigma_px, {1e-9, 1000.0}, "px",
-                         "standard deviation of the noise per coordinate (root mean square)");
+  return Parameter::Real("sigma_px", sigma_px, {1e-9, 1000.0}, "px", "rms noise per coordinate");
 }
 
 }  // namespace rcme

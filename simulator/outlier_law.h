@@ -51,7 +51,7 @@ inline Correspondence ComputeMatchNoise(const MatchedScene& matched, std::uint32
 // A parameter shared by several laws.
 inline Parameter MinShiftParameter(double* min_shift_px) {
   return Parameter::Real("outlier_min_shift_px", min_shift_px, {0.0, 1e5}, "px",
-                         "least distance between the wrong and the true point in image 2, before noise");
+                         "least distance of the wrong from the true point, before noise");
 }
 
 // Uniform over the image, whose border runs half a pixel outside the outermost pixel centres. With a lens:

@@ -36,12 +36,11 @@ std::vector<Parameter> Parameters(OutlierModel& outliers) {
       Parameter::Choice<OutlierModel::Count>(
           "outlier_count", &outliers.count,
           {{"exact", OutlierModel::Count::kExact}, {"bernoulli", OutlierModel::Count::kBernoulli}},
-          "exact: the share to one match; bernoulli: each match is wrong with that probability"),
+          "exact: the share to one match; bernoulli: each match with that probability"),
       Parameter::RealOrWord(
           "tilted_to", &outliers.tilted_to, {0.0, 1.0}, "none", "",
-          "with outlier_count bernoulli: the number of wrong matches is drawn as if their "
-          "share were anywhere between outlier_ratio and this, and the trial gets the weight "
-          "that makes up for it")};
+          "with bernoulli: importance sampling of the number of wrong matches, by shares from "
+          "outlier_ratio to this")};
   const std::vector<Parameter> more = outliers.law->Parameters();
   all.insert(all.end(), more.begin(), more.end());
   return all;

@@ -11,32 +11,28 @@ namespace rcme {
 std::vector<Parameter> Parameters(CalibratedOptions& o) {
   using P = Parameter;
   std::vector<P> all = {
-      P::Integer("min_samples", &o.min_samples, {8, 1e6}, "least number of minimal samples of five matches"),
+      P::Integer("min_samples", &o.min_samples, {8, 1e6}, "least number of minimal samples"),
       P::Integer("max_samples", &o.max_samples, {8, 1e6},
-                 "greatest number; as many are drawn as find a sample without a wrong match with probability "
-                 "0.999, by the share of matches that the best hypothesis explains"),
-      P::Integer("num_candidates", &o.num_candidates, {1, 1000}, "hypotheses that are refined a little"),
-      P::Integer("num_modes", &o.num_modes, {1, 100}, "of these, how many are refined to the optimum"),
+                 "greatest number; stops when one sample is without wrong matches with probability 0.999"),
+      P::Integer("num_candidates", &o.num_candidates, {1, 1000}, "hypotheses refined briefly"),
+      P::Integer("num_modes", &o.num_modes, {1, 100}, "of these, refined to the optimum"),
       P::Real("max_rotation_error_deg", &o.max_rotation_error_deg, {1e-6, 180.0}, "deg",
-              "the stated probability of failure is that of a greater error of the rotation; in a study its "
-              "own bound, "
-              "where no other is given"),
+              "bound of the stated probability of failure; in a study by default the study's"),
       P::Real("max_direction_error_deg", &o.max_direction_error_deg, {1e-6, 180.0}, "deg",
-              "or of a greater error of the direction, likewise"),
+              "the same for the direction of translation"),
       P::Real("max_failure_probability", &o.max_failure_probability, {0.0, 1.0}, "",
-              "a motion that is more likely than this to be wrong is refused (too_uncertain); 1: none is"),
+              "a motion with a greater probability of failure is refused (too_uncertain); 1: none"),
       P::Choice("sigma", &o.sigma,
                 {{"estimated", SigmaKnowledge::kEstimated}, {"assumed", SigmaKnowledge::kAssumed}},
-                "noise level: estimated from the residuals, begun at the assumed one, or taken as known"),
-      P::Choice(
-          "covariance", &o.covariance,
-          {{"information", CovarianceKind::kInformation},
-           {"sandwich", CovarianceKind::kSandwich},
-           {"robust", CovarianceKind::kRobust}},
-          "of the motion: inverse information, from the residuals themselves (HC3), or one that holds where "
-          "errors are correlated and matches repeated, too"),
+                "noise level: estimated from the residuals, or the assumed one"),
+      P::Choice("covariance", &o.covariance,
+                {{"information", CovarianceKind::kInformation},
+                 {"sandwich", CovarianceKind::kSandwich},
+                 {"robust", CovarianceKind::kRobust}},
+                "inverse information, from the residuals (HC3), or one that allows correlated errors and "
+                "repeated matches"),
       P::Real("second_motion_odds", &o.second_motion_odds, {0.0, 1.0}, "",
-              "odds that a second motion which explains as many matches as the answer is the camera's own"),
+              "odds that a second motion with as many matches is the camera's own"),
       P::Choice("leave_out", &o.leave_out,
                 {{"none", CalibratedStep::kNone},
                  {"split", CalibratedStep::kSplit},
@@ -49,7 +45,7 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
                  {"noise_shape", CalibratedStep::kNoiseShape},
                  {"usual_motions", CalibratedStep::kUsualMotions},
                  {"model_check", CalibratedStep::kModelCheck}},
-                "a step that is left out, for an ablation: what it costs to do without"),
+                "step that is left out, for an ablation"),
       FocalParameter(&o.calibration.focal_sd),
       PrincipalPointParameter(&o.calibration.principal_point_sd_px),
       DistortionParameter(&o.calibration.distortion_sd),

@@ -45,11 +45,11 @@ class Model : public EstimatorModel {
  public:
   std::vector<Parameter> Parameters() override {
     return {Parameter::Text("file", &file_, "the path of a file that `rcme conform` wrote",
-                            "the estimator, and what is known of its answers"),
+                            "the estimator and its calibration"),
             Parameter::Text("digest", &digest_, "16 hexadecimal digits",
-                            "of the file's content: a file that has changed is refused"),
+                            "of the file; a changed file is refused"),
             Parameter::Choice<bool>("accept_rule", &refuses_, {{"apply", true}, {"ignore", false}},
-                                    "refuse what the rule does not accept, or state its probability alone")};
+                                    "refuse what the rule does not accept, or only state its probability")};
   }
   void LiftLimits() override { refuses_ = false; }
 

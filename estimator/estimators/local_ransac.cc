@@ -138,16 +138,16 @@ class LocalRansacModel : public PlainRansacModel {
   static std::vector<Parameter> OwnParameters(ByInnerRansac& optimise) {
     InnerRansac& o = optimise.options;
     return {Parameter::Integer("inner_samples", &o.num_samples, {0, 1000},
-                               "samples of the inliers of a hypothesis that is better than all before it"),
+                               "inlier samples per new best hypothesis"),
             Parameter::Integer("inner_refits", &o.num_refits, {0, 100},
-                               "refits of each such sample to the matches within a falling threshold"),
+                               "refits per inlier sample, with a falling threshold"),
             Parameter::Real("inner_first_threshold", &o.first_threshold, {1.0, 100.0}, "",
-                            "threshold of the first refit, in thresholds of the inlier test")};
+                            "threshold of the first refit, in inlier thresholds")};
   }
   static std::vector<Parameter> OwnParameters(ByUncertainty& optimise) {
-    return {Parameter::Integer("progressive_refits", &optimise.num_refits, {0, 100},
-                               "most refits to the matches within the threshold that the motion's covariance "
-                               "widens, of a hypothesis that is better than all before it")};
+    return {Parameter::Integer(
+        "progressive_refits", &optimise.num_refits, {0, 100},
+        "most refits per new best hypothesis, to matches within a threshold widened by its covariance")};
   }
 
   Optimise optimise_;

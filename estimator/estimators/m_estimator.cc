@@ -96,10 +96,10 @@ class Model : public PlainRansacModel {
     std::vector<Parameter> all = ParametersWithout({"implementation", "refinement", "refinement_error"});
     all.push_back(Parameter::Choice<RobustLoss>(
         "loss", &estimation_.loss, {{"huber", RobustLoss::kHuber}, {"tukey", RobustLoss::kTukey}},
-        "what the M-estimation minimises the sum of"));
-    all.push_back(Parameter::RealOrWords(
-        "tuning_constant", &estimation_.tuning_constant, {0.1, 100.0}, {{"auto", 0.0}}, "sigma",
-        "where the loss begins to doubt a match; auto: 95 % efficient, 1.345 (huber) or 4.685 (tukey)"));
+        "function of the distances that is summed"));
+    all.push_back(
+        Parameter::RealOrWords("tuning_constant", &estimation_.tuning_constant, {0.1, 100.0}, {{"auto", 0.0}},
+                               "sigma", "of the loss; auto: 95 % efficient, 1.345 (huber) or 4.685 (tukey)"));
     return all;
   }
   std::unique_ptr<MotionEstimator> Make() const override {

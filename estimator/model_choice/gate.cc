@@ -70,10 +70,10 @@ class GatedModel : public EstimatorModel {
     std::vector<Parameter> all = model_->Parameters();
     all.push_back(Parameter::Choice<std::optional<ModelCriterion>>(
         kGateOption, &options_.criterion, Criteria(),
-        "refuse a rotation alone, too little parallax and planes, by this criterion"));
+        "criterion that refuses pure rotations, too little parallax and planes"));
     all.push_back(Parameter::Choice<bool>("planar_scenes", &options_.refuses_planes,
                                           {{"refused", true}, {"answered", false}},
-                                          "what model_choice does where all points lie on a plane"));
+                                          "model_choice's answer for points on a plane"));
     for (Parameter& parameter : ParallaxParameters(options_.choice)) all.push_back(std::move(parameter));
     return all;
   }

@@ -186,13 +186,10 @@ const std::vector<std::pair<std::string, ModelCriterion>>& CriterionNames() {
 }
 
 std::vector<Parameter> ParallaxParameters(ModelChoiceOptions& options) {
-  return {Parameter::Real(
-              "parallax_significance_level", &options.parallax_significance_level, {1e-9, 0.5}, "",
-              "model_choice: a match shows parallax if a rotation's lies so far off with at most this "
-              "probability"),
-          Parameter::Real(
-              "least_parallax_share", &options.least_parallax_share, {0.0, 1.0}, "",
-              "model_choice: too_little_parallax if a smaller share of the matches that agree shows any")};
+  return {Parameter::Real("parallax_significance_level", &options.parallax_significance_level, {1e-9, 0.5},
+                          "", "model_choice: level at which a match shows parallax"),
+          Parameter::Real("least_parallax_share", &options.least_parallax_share, {0.0, 1.0}, "",
+                          "model_choice: too_little_parallax if fewer agreeing matches show parallax")};
 }
 
 std::vector<ModelChoice> ChooseModels(const MotionProblem& problem,

@@ -53,10 +53,9 @@ class ModelWithRobust : public EstimatorModel {
 
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all = model_->Parameters();
-    all.push_back(
-        Parameter::Choice<bool>(kOption, &is_robust_, {{"own", false}, {"robust", true}},
-                                "of the motion: the estimator's own, or one that holds where errors are "
-                                "correlated and matches repeated"));
+    all.push_back(Parameter::Choice<bool>(
+        kOption, &is_robust_, {{"own", false}, {"robust", true}},
+        "the estimator's own, or one that allows correlated errors and repeated matches"));
     CalibrationPrior& calibration = options_.calibration;
     std::vector<Parameter> more = rcme::Parameters(options_);
     more.push_back(FocalParameter(&calibration.focal_sd));

@@ -106,10 +106,10 @@ std::optional<Matrix5d> IndependentCovariance(const MatchScores& scores) {
 
 std::vector<Parameter> Parameters(RobustCovarianceOptions& options) {
   return {Parameter::Real("covariance_factor", &options.factor, {1e-3, 1e3}, "",
-                          "of the robust covariance: times this, for errors that reach from block to block"),
+                          "scales the robust covariance, for errors that reach across blocks"),
           Parameter::Choice<bool>(
               "covariance_jackknife", &options.adds_jackknife, {{"off", false}, {"added", true}},
-              "of the robust covariance: the jackknife of 4x4 image blocks on top, conservative")};
+              "adds the jackknife of 4x4 image blocks to the robust covariance, conservative")};
 }
 
 AgreeingFit FitAgreeing(const MotionProblem& problem, const RelativePose& pose,

@@ -25,19 +25,18 @@ void Undistort(Camera& camera, Eigen::Vector2d Correspondence::*x_px, double k1,
 Parameter FocalParameter(double* focal_sd) {
   return Parameter::Real(
       "focal_sd", focal_sd, {0.0, 0.5}, "",
-      "relative standard deviation of the focal lengths; widens the covariance and, in rcme_calibrated, raises "
-      "the probability of failure");
+      "relative standard deviation; widens the covariance, raises rcme_calibrated's probability of "
+      "failure");
 }
 
 Parameter PrincipalPointParameter(double* principal_point_sd_px) {
   return Parameter::Real("principal_point_sd_px", principal_point_sd_px, {0.0, 1e4}, "px",
-                         "standard deviation of the principal points per coordinate, likewise");
+                         "standard deviation per coordinate, likewise");
 }
 
 Parameter DistortionParameter(double* distortion_sd) {
-  return Parameter::Real(
-      "distortion_sd", distortion_sd, {0.0, 0.5}, "",
-      "standard deviation of the radial distortion k1 that is left in the images, likewise");
+  return Parameter::Real("distortion_sd", distortion_sd, {0.0, 0.5}, "",
+                         "standard deviation of the remaining radial distortion k1, likewise");
 }
 
 Matrix5d CalibrationCovariance(const MotionProblem& problem, const CalibrationPrior& prior,

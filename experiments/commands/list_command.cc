@@ -72,7 +72,7 @@ Rows ListScenes() {
 
 Rows ListCameras() {
   Rows rows = ListRegistry("cameras", CameraRegistry());
-  rows.push_back({kCamerasFromFile, "two cameras given by the user, from the file of the key calibration"});
+  rows.push_back({kCamerasFromFile, "two cameras of the file `calibration`"});
   return rows;
 }
 Rows ListMotions() { return ListRegistry("motion", MotionRegistry()); }
@@ -120,8 +120,8 @@ Rows ListKeys() {
 }
 
 Rows ListQuantities() {
-  Rows rows = {{"quantity", "kind", "what it is"}};
-  for (const QuantityHelp& q : SummaryQuantities()) rows.push_back({q.name, q.kind, q.doc});
+  Rows rows = {{"quantity", "kind", "of", "what it is"}};
+  for (const QuantityHelp& q : SummaryQuantities()) rows.push_back({q.name, q.kind, q.base, q.doc});
   return rows;
 }
 

@@ -51,7 +51,7 @@ Settings IntrinsicsIn(const std::string& path) {
 SettingHelp CalibrationHelp() {
   return {kCalibrationKey, "", "",
           "a file with the header lines of a match file: # size1: w h, # K1_fx_fy_cx_cy: ..., and 2",
-          "whose cameras, seen from the study's folder"};
+          "path seen from the study's folder"};
 }
 
 Settings WithCalibration(const Settings& settings) {

@@ -24,18 +24,16 @@ namespace {
 
 // `sigma_px`: null if the settings leave the noise level to the files.
 std::vector<Parameter> Parameters(MatchFolderSettings& settings, double* sigma_px) {
-  std::vector<Parameter> all = {
-      Parameter::Text("folder", &settings.folder, "a folder of match files",
-                      "folder with *.csv or *.csv.gz, seen from the study's folder")};
+  std::vector<Parameter> all = {Parameter::Text("folder", &settings.folder, "a folder of match files",
+                                                "*.csv or *.csv.gz, seen from the study's folder")};
   if (sigma_px)
     all.push_back(Parameter::Real("sigma_px", sigma_px, {1e-9, 1000.0}, "px",
-                                  "noise standard deviation that the estimators assume, in place of the "
-                                  "header sigma_px of the files"));
+                                  "noise that the estimators assume, in place of the files' sigma_px"));
   const std::vector<Parameter> of_truth = {
       Parameter::Real("truth_rotation_sd_deg", &settings.truth.rotation_deg, {0.0, 90.0}, "deg",
-                      "error of each true pose about each axis, for files without truth_sd"),
+                      "error of true poses about each axis, for files without truth_sd"),
       Parameter::Real("truth_position_sd", &settings.truth.position, {0.0, 1e6}, "",
-                      "error of each true position along each axis, in the unit of the files' baselines")};
+                      "error of true positions along each axis, in the unit of the baselines")};
   all.insert(all.end(), of_truth.begin(), of_truth.end());
   const std::vector<Parameter> of_redraw = Parameters(settings.redraw);
   all.insert(all.end(), of_redraw.begin(), of_redraw.end());
@@ -43,10 +41,9 @@ std::vector<Parameter> Parameters(MatchFolderSettings& settings, double* sigma_p
 }
 
 Parameter TruthInDoubtParameter(MatchFolderSettings& settings) {
-  return Parameter::Text(
-      kTruthInDoubtKey, &settings.truth_in_doubt,
-      "pairs that are listed and not scored, as their truth is in doubt (`rcme check-truth`)",
-      "a CSV file with the columns scene and pair_id, seen from the study's folder");
+  return Parameter::Text(kTruthInDoubtKey, &settings.truth_in_doubt,
+                         "a CSV file with the columns scene and pair_id, seen from the study's folder",
+                         "pairs not scored, as `rcme check-truth` doubts their truth");
 }
 
 // Adds the entries of a registry whose models have the parameter.

@@ -48,24 +48,21 @@ std::shared_ptr<const NoiseModel> SharedNoise(double sigma_px, double length_px)
 std::vector<Parameter> Parameters(RedrawSettings& s) {
   return {
       Parameter::Real("redraw_noise_px", &s.noise_px, {0.0, 1000.0}, "px",
-                      "0: matches as the files have them; else those that satisfy the file's true motion get "
-                      "noise of this standard deviation (rcme twin writes such files)"),
-      Parameter::Real(
-          "redraw_student_dof", &s.student_dof, {0.0, 1000.0}, "",
-          "degrees of freedom of Student's t, the law of that noise in 32 steps, large for all of "
-          "a match at once; 0: normal"),
+                      "new noise of the matches that satisfy the true motion (rcme twin); 0: the files' own"),
+      Parameter::Real("redraw_student_dof", &s.student_dof, {0.0, 1000.0}, "",
+                      "degrees of freedom of its Student's t in 32 steps, common to a match; 0: normal"),
       Parameter::Real("redraw_within_px", &s.within_px, {0.0, 1000.0}, "px",
-                      "noise that takes a right match farther from its epipolar line is drawn again, and a "
-                      "wrong match that is dealt out nearer is exchanged; 0: never"),
+                      "right matches farther from their epipolar line get new noise, wrong ones nearer are "
+                      "exchanged; 0: never"),
       Parameter::Real("redraw_near_share", &s.near_share, {0.0, 1.0}, "",
-                      "share of its variance that key points within 1 or 2 px have in common"),
+                      "share of its variance common within 1 or 2 px"),
       Parameter::Real("redraw_far_share", &s.far_share, {0.0, 1.0}, "",
-                      "share of its variance that key points within redraw_far_length_px have in common"),
+                      "share of its variance common within redraw_far_length_px"),
       Parameter::Real("redraw_far_length_px", &s.far_length_px, {0.01, 1e5}, "px",
-                      "distance at which that correlation has fallen to 0.045 of its greatest"),
-      Parameter::Choice<WrongMatches>(
-          "redraw_wrong", &s.wrong, {{"kept", WrongMatches::kKept}, {"shuffled", WrongMatches::kShuffled}},
-          "the other matches: as they are, or their second points dealt out again among them")};
+                      "distance at which that correlation is 0.045 of its greatest"),
+      Parameter::Choice<WrongMatches>("redraw_wrong", &s.wrong,
+                                      {{"kept", WrongMatches::kKept}, {"shuffled", WrongMatches::kShuffled}},
+                                      "the other matches: as they are, or with second points shuffled")};
 }
 
 Redraw::Redraw(const RedrawSettings& settings) : settings_(settings), scales_(settings.student_dof) {

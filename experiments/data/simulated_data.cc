@@ -94,7 +94,7 @@ std::vector<Parameter> SimulatedData::Parameters() {
   }
   all.push_back(Parameter::Choice<bool>("severity", &measures_severity_,
                                         {{"measured", true}, {"skipped", false}},
-                                        "whether each trial's severity is measured and stored"));
+                                        "whether trials store the severity of their problem"));
   return all;
 }
 

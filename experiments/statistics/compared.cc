@@ -24,7 +24,7 @@ Compared Event(const TrialEvent& event) {
 }
 
 Compared Measure(ComparedKind kind, const TrialMeasure& measure) {
-  return {kind, measure.name, measure.doc,
+  return {kind, measure.name, measure.doc + ", of " + measure.base,
           [measure](const TrialRecord& record, const FailureBounds&) { return measure.Of(record); }};
 }
 

@@ -77,17 +77,15 @@ void ErrorRanking::AppendRows(const SummaryRow& cell, bool counts_clusters,
 const std::vector<QuantityHelp>& ErrorRankingQuantities() {
   static const std::vector<QuantityHelp> all = [] {
     const std::string kind = KindName(SummaryRow::Kind::kArea);
-    const std::string of = ", of returned motions with a covariance and a known truth; not of counts";
+    const std::string base = "as energy_score_deg";
     return std::vector<QuantityHelp>{
         {"rotation_ause", kind,
-         "area between the sparsification curves of rotation errors ranked by rotation_sd_deg and by "
-         "themselves "
-         "(the oracle), over the mean error; 0 best" +
-             of},
-        {"rotation_ause_random", kind,
-         "the same of a random order: what a ranking without knowledge has" + of},
-        {"direction_ause", kind, "rotation_ause, of direction errors ranked by direction_sd_deg" + of},
-        {"direction_ause_random", kind, "the same of a random order" + of}};
+         "area between the sparsification curves by rotation_sd_deg and by rotation error, over the "
+         "mean error; 0 best; not of counts",
+         base},
+        {"rotation_ause_random", kind, "the same for a random order", base},
+        {"direction_ause", kind, "rotation_ause for direction errors and direction_sd_deg", base},
+        {"direction_ause_random", kind, "the same for a random order", base}};
   }();
   return all;
 }

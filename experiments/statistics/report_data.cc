@@ -83,7 +83,7 @@ Json RunAsJson(const std::string& path, const ResultStore& store) {
   Json estimators = Json::array(), quantities = Json::array(), events = Json::array(), bounds = Json::array();
   for (const DescribedEstimator& estimator : run.estimators) estimators.push_back(estimator.label);
   for (const QuantityHelp& q : SummaryQuantities()) {
-    quantities.push_back({{"name", q.name}, {"kind", q.kind}, {"doc", q.doc}});
+    quantities.push_back({{"name", q.name}, {"kind", q.kind}, {"doc", q.doc + ", of " + q.base}});
   }
   for (const TrialEvent& event : TrialEvents()) {
     events.push_back({{"name", event.name}, {"doc", event.doc}});

@@ -66,16 +66,14 @@ void SceneSplit::AppendRows(const SummaryRow& cell, std::vector<SummaryRow>* row
 
 std::vector<QuantityHelp> SceneSplitQuantities() {
   std::vector<QuantityHelp> help;
-  const std::string only = "; only of runs with repeats per scene";
+  const std::string kind = KindName(SummaryRow::Kind::kVarianceShare);
+  const std::string base = "repeated scenes";
   for (const TrialEvent& event : TrialEvents()) {
-    const std::string of = "share of the variance of " + event.name + " that is ";
-    help.push_back(
-        {event.name + kBetween, KindName(SummaryRow::Kind::kVarianceShare), of + "between scenes" + only});
-    help.push_back({event.name + kWithin, KindName(SummaryRow::Kind::kVarianceShare),
-                    of + "within them, the sampler's" + only});
+    const std::string share = "variance of " + event.name;
+    help.push_back({event.name + kBetween, kind, share + " between scenes", base});
+    help.push_back({event.name + kWithin, kind, share + " within scenes, from the sampler", base});
     help.push_back({event.name + kFlips, KindName(SummaryRow::Kind::kRate),
-                    "scenes in which " + event.name +
-                        " depends on the sampler's seed, of all scenes with every repeat" + only});
+                    event.name + " depends on the sampler's seed", base});
   }
   return help;
 }

@@ -21,7 +21,7 @@ namespace {
 template <typename Record>
 void AppendHelp(const std::vector<Quantity<Record>>& quantities, std::vector<QuantityHelp>* rows) {
   for (const Quantity<Record>& q : quantities) {
-    rows->push_back({q.name, KindName(q.kind), q.doc});
+    rows->push_back({q.name, KindName(q.kind), q.doc, q.base});
   }
 }
 

@@ -118,6 +118,7 @@ std::vector<std::string> FindAlwaysRefusing(const Summary& summary);
 // A quantity of the summary, for `rcme list quantities`.
 struct QuantityHelp {
   std::string name, kind, doc;
+  std::string base;  // the trials, answers or problems that count, in words
 };
 const std::vector<QuantityHelp>& SummaryQuantities();
 

@@ -20,9 +20,14 @@ std::optional<double> If(bool is_of_interest, double value) {
 
 std::optional<double> Yes(bool value) { return value ? 1.0 : 0.0; }
 
-constexpr const char* kNotSimulatedDoc =
-    "the simulator could not make the trial of a draw (only where that happened; no other quantity counts "
-    "it)";
+// Bases: what counts for a quantity.
+constexpr const char* kAllTrials = "all trials";
+constexpr const char* kScored = "scored trials";
+constexpr const char* kReturned = "returned motions";
+constexpr const char* kSuccesses = "successes";
+constexpr const char* kWithCovariance = "returned motions with a covariance";
+constexpr const char* kWithCovarianceAndTruth = "covariances with a known truth";
+constexpr const char* kMeasured = "measured problems";
 
 bool IsOk(const TrialRecord& r) { return r.status == MotionStatus::kOk; }
 
@@ -47,12 +52,12 @@ bool IsSure(const TrialRecord& r) {
 }
 
 TrialQuantity StatusRate(MotionStatus status, const std::string& doc) {
-  return {StatusName(status), SummaryRow::Kind::kRate, doc + ", of all trials",
+  return {StatusName(status), SummaryRow::Kind::kRate, doc, kAllTrials,
           [status](const TrialRecord& r, const FailureBounds&) { return Yes(r.status == status); }};
 }
 
 TrialQuantity MakeQuantity(const TrialMeasure& measure, SummaryRow::Kind kind) {
-  return {measure.name, kind, measure.doc,
+  return {measure.name, kind, measure.doc, measure.base,
           [measure](const TrialRecord& r, const FailureBounds&) { return measure.Of(r); }};
 }
 
@@ -60,111 +65,98 @@ const std::vector<TrialQuantity>& OwnQuantities() {
   constexpr auto kRate = SummaryRow::Kind::kRate;
   constexpr auto kMean = SummaryRow::Kind::kMean;
   constexpr auto kMedian = SummaryRow::Kind::kMedian;
+  constexpr auto kScore = SummaryRow::Kind::kScore;
   using R = const TrialRecord&;
   using B = const FailureBounds&;
   static const double nees_bound = ChiSquareQuantile(5, 0.95);
   static const std::vector<TrialQuantity> all = {
-      {"not_scored", kRate,
-       "a motion whose truth is not known, or a trial whose truth is in doubt, of all trials",
+      {"not_scored", kRate, "truth unknown or in doubt", kAllTrials,
        [](R r, B) { return Yes(!IsScored(r)); }},
-      {"success", kRate, "a motion within the failure bounds, of all trials but those not scored",
+      {"success", kRate, "motion within the failure bounds", kScored,
        [](R r, B b) { return If(IsScored(r), HasSucceeded(r, b)); }},
-      {"failure", kRate,
-       "a motion beyond a failure bound or an answer that is not valid, of all trials but those not scored",
+      {"failure", kRate, "motion beyond a failure bound, or invalid answer", kScored,
        [](R r, B b) { return If(IsScored(r), HasFailed(r, b)); }},
-      {"failure_or_refusal", kRate, "no success: a failure or no motion, of all trials but those not scored",
+      {"failure_or_refusal", kRate, "failure, or no motion", kScored,
        [](R r, B b) { return If(IsScored(r), HasFailedOrRefused(r, b)); }},
-      StatusRate(MotionStatus::kNoCandidate, "no candidate, the paper's detect-fail"),
-      {"other_refusal", kRate, "no motion for any other reason (the sum of the next fifteen), of all trials",
+      StatusRate(MotionStatus::kNoCandidate, "the paper's detect-fail"),
+      {"other_refusal", kRate, "no motion for any other reason: the sum of the next fifteen", kAllTrials,
        [](R r, B) { return Yes(HasRefused(r) && r.status != MotionStatus::kNoCandidate); }},
       StatusRate(MotionStatus::kTooFewMatches, "too few distinct matches"),
-      StatusRate(MotionStatus::kDegenerateMatches, "matches that determine no motion"),
+      StatusRate(MotionStatus::kDegenerateMatches, "matches determine no motion"),
       StatusRate(MotionStatus::kRefinementDiverged, "refinement without a finite optimum"),
-      StatusRate(MotionStatus::kTooFewExplained, "a refined motion that explains too few matches"),
-      StatusRate(MotionStatus::kDirectionNotObservable, "parallax within its noise, no direction"),
+      StatusRate(MotionStatus::kTooFewExplained, "refined motion explains too few matches"),
+      StatusRate(MotionStatus::kDirectionNotObservable, "parallax within its noise"),
       StatusRate(MotionStatus::kNotBetterThanChance, "no more matches agree than by chance"),
-      StatusRate(MotionStatus::kTooUncertain, "a probability of failure greater than what is allowed"),
-      StatusRate(MotionStatus::kPlanarScene, "model choice: the matches lie on a plane"),
+      StatusRate(MotionStatus::kTooUncertain, "probability of failure above the allowed one"),
+      StatusRate(MotionStatus::kPlanarScene, "model choice: matches on a plane"),
       StatusRate(MotionStatus::kRotationOnly, "model choice: no translation to be seen"),
       StatusRate(MotionStatus::kTooLittleParallax, "model choice: too few matches show parallax"),
-      StatusRate(MotionStatus::kInvalidInput, "coordinates, cameras or a noise level that are not valid"),
-      StatusRate(MotionStatus::kLibraryError, "another library that the estimator calls failed"),
-      StatusRate(MotionStatus::kTimedOut, "an estimator outside the program gave no answer in time"),
-      StatusRate(MotionStatus::kNoAnswer, "an estimator outside the program gave no answer: it ended"),
-      StatusRate(MotionStatus::kUnreadableAnswer, "an estimator outside the program gave what is no answer"),
-      StatusRate(MotionStatus::kInvalidMotion, "a failure: not a rotation and a unit vector, or not finite"),
-      StatusRate(MotionStatus::kInvalidCovariance, "a failure: not finite, symmetric, positive semidefinite"),
-      StatusRate(MotionStatus::kNotSimulated, kNotSimulatedDoc),
-      {"kappa_flag", kRate, "the paper's failure flag n*_I / n_I <= kappa, of returned motions",
+      StatusRate(MotionStatus::kInvalidInput, "invalid coordinates, cameras or noise level"),
+      StatusRate(MotionStatus::kLibraryError, "a library that the estimator calls failed"),
+      StatusRate(MotionStatus::kTimedOut, "outside estimator: no answer in time"),
+      StatusRate(MotionStatus::kNoAnswer, "outside estimator: ended without an answer"),
+      StatusRate(MotionStatus::kUnreadableAnswer, "outside estimator: malformed answer"),
+      StatusRate(MotionStatus::kInvalidMotion, "failure: not a rotation and a unit vector, or not finite"),
+      StatusRate(MotionStatus::kInvalidCovariance,
+                 "failure: not finite, symmetric and positive semidefinite"),
+      StatusRate(MotionStatus::kNotSimulated,
+                 "the simulator could not make the draw's trial; no other quantity counts it"),
+      {"kappa_flag", kRate, "the paper's failure flag n*_I / n_I <= kappa", kReturned,
        [](R r, B) { return If(IsOk(r), r.failed_by_kappa); }},
-      {"nees_coverage", kRate,
-       "truth within the 95 % region of the reported covariance (never of an answer that is not valid), of "
-       "returned motions",
+      {"nees_coverage", kRate, "truth within the 95 % region of the covariance; not if invalid", kReturned,
        [](R r, B) { return If(!HasRefused(r) && !std::isnan(r.nees), r.nees <= nees_bound); }},
-      {"nees_median", kMedian,
-       "normalised estimation error squared (4.35 expected; infinite where not valid), of returned motions",
-       [](R r, B) { return If(!HasRefused(r), r.nees); }},
-      {"nees", kMean, "the same, its mean (below 5 expected: without failures it is truncated), of successes",
+      {"nees_median", kMedian, "normalised estimation error squared; 4.35 expected, infinite if invalid",
+       kReturned, [](R r, B) { return If(!HasRefused(r), r.nees); }},
+      {"nees", kMean, "the same; below 5 expected, as the bounds truncate it", kSuccesses,
        [](R r, B b) { return If(HasSucceeded(r, b), r.nees); }},
-      {"rotation_error_deg", kMean, "rotation error, of successes",
+      {"rotation_error_deg", kMean, "rotation error", kSuccesses,
        [](R r, B b) { return If(HasSucceeded(r, b), r.rotation_error_deg); }},
-      {"direction_error_deg", kMean, "error of the translation direction, of successes",
+      {"direction_error_deg", kMean, "error of the translation direction", kSuccesses,
        [](R r, B b) { return If(HasSucceeded(r, b), r.direction_error_deg); }},
-      {"rotation_sd_deg", kMedian,
-       "stated by the covariance: root of the trace of the rotation's block, of returned motions with one",
+      {"rotation_sd_deg", kMedian, "root of the trace of the covariance's rotation block", kWithCovariance,
        [](R r, B) { return If(IsOk(r), r.density.rotation_sd_deg); }},
-      {"direction_sd_deg", kMedian, "the same of the direction of translation",
+      {"direction_sd_deg", kMedian, "the same for the direction", kWithCovariance,
        [](R r, B) { return If(IsOk(r), r.density.direction_sd_deg); }},
       {"sd_over_crb", kMedian,
-       "sharpness: geometric mean of the two over their Cramer-Rao bounds (below 1 none is right), of "
-       "returned motions with a bound",
-       [](R r, B) { return If(IsOk(r), r.density.sd_over_crb); }},
-      {"log_det_cov", kMean, "ln det of the stated covariance (5x5, rad), of returned motions with a density",
+       "sharpness: geometric mean of both over their Cramer-Rao bounds; below 1 is too small",
+       "returned motions with bounds", [](R r, B) { return If(IsOk(r), r.density.sd_over_crb); }},
+      {"log_det_cov", kMean, "ln det of the covariance (5x5, rad)", "returned motions with a density",
        [](R r, B) { return If(IsOk(r), r.density.log_det_cov); }},
-      {"energy_score_deg", kMean,
-       "energy score of the stated density, 0 best, of returned motions with a covariance and a known truth",
+      {"energy_score_deg", kMean, "energy score of the stated density, 0 best", kWithCovarianceAndTruth,
        [](R r, B) { return If(IsOk(r), r.density.energy_score_deg); }},
-      {"log_score", kMean,
-       "logarithmic score -ln p(error) of the stated density (nats), less is better, of the same but "
-       "singular_covariance",
-       [](R r, B) { return If(IsOk(r), r.density.log_score); }},
-      {"singular_covariance", kRate,
-       "a covariance that is singular, with no density and no log_score, of returned motions with one",
+      {"log_score", kMean, "-ln p(error) of the stated density, nats; less is better",
+       "the same without singular ones", [](R r, B) { return If(IsOk(r), r.density.log_score); }},
+      {"singular_covariance", kRate, "singular covariance, hence no density and no log_score",
+       kWithCovariance,
        [](R r, B) { return If(IsOk(r) && r.density.HasCovariance(), r.density.IsSingular()); }},
-      {"available", kRate, "both protection levels (risk 0.01) within the failure bounds, of all trials",
+      {"available", kRate, "both protection levels (risk 0.01) within the failure bounds", kAllTrials,
        [](R r, B b) { return Yes(IsOk(r) && IsAvailable(r, b)); }},
-      {"misleading", kRate,
-       "an error beyond its protection level (risk 0.01 each, so that at most 0.02 is right), of returned "
-       "motions with a known truth",
-       [](R r, B) { return If(HasKnownLevels(r), IsMisleading(r)); }},
-      {"inlier_precision", kMean, "true ones among the final inliers, of returned motions",
+      {"misleading", kRate, "error beyond its protection level; at most 0.02 is right",
+       "returned motions with a known truth", [](R r, B) { return If(HasKnownLevels(r), IsMisleading(r)); }},
+      {"inlier_precision", kMean, "true ones among the final inliers", kReturned,
        [](R r, B) { return If(IsOk(r), r.inlier_precision); }},
-      {"inlier_recall", kMean, "final inliers among the true ones, of returned motions",
+      {"inlier_recall", kMean, "final inliers among the true ones", kReturned,
        [](R r, B) { return If(IsOk(r), r.inlier_recall); }},
-      {"num_support", kMean, "n_j of the selected hypothesis, of returned motions",
+      {"num_support", kMean, "n_j of the selected hypothesis", kReturned,
        [](R r, B) { return If(IsOk(r), r.num_support); }},
-      {"mean_entropy", kMean, "psi_j of the selected hypothesis (nats), of returned motions",
+      {"mean_entropy", kMean, "psi_j of the selected hypothesis, nats", kReturned,
        [](R r, B) { return If(IsOk(r), r.mean_entropy); }},
-      {"explained_share", kMean, "matches that agree with the refined motion, of returned motions",
+      {"explained_share", kMean, "matches that agree with the refined motion", kReturned,
        [](R r, B) { return If(IsOk(r), static_cast<double>(r.num_explained) / r.num_matches); }},
-      {"num_candidates", kMean, "hypotheses that passed every test, of all trials",
+      {"num_candidates", kMean, "hypotheses that passed every test", kAllTrials,
        [](R r, B) { return std::optional<double>(r.counts.num_candidates); }},
-      {"sigma_estimated_px", kMean,
-       "noise level estimated from the residuals, of returned motions that have one",
+      {"sigma_estimated_px", kMean, "noise level estimated from the residuals", "returned motions with one",
        [](R r, B) { return If(IsOk(r), r.sigma_estimated_px); }},
-      {"inlier_brier", SummaryRow::Kind::kScore,
-       "mean squared error of the inlier probabilities, 0 best; of returned motions that have them",
-       [](R r, B) { return If(IsOk(r), r.inlier_brier); }},
-      {"failure_probability", SummaryRow::Kind::kScore,
-       "stated probability of failure, its mean; of answers that have one and whose true rotation and "
-       "direction are known, as the next two",
+      {"inlier_brier", kScore, "mean squared error of the inlier probabilities, 0 best",
+       "returned motions with them", [](R r, B) { return If(IsOk(r), r.inlier_brier); }},
+      {"failure_probability", kScore, "stated probability of failure P", "answers with P and a known truth",
        [](R r, B) { return StatedFailureProbability(r); }},
-      {"brier", SummaryRow::Kind::kScore, "Brier score (P - y)^2 of that, 0 best", BrierOfStated},
-      {"failure_of_sure", kRate, "failure, of those with P at most 0.1",
+      {"brier", kScore, "Brier score (P - y)^2, 0 best", "the same", BrierOfStated},
+      {"failure_of_sure", kRate, "failure", "the same with P at most 0.1",
        [](R r, B b) { return If(IsSure(r), HasFailed(r, b)); }},
-      {"time_ms", kMedian, "processor time of the call, of all trials; only with --times",
+      {"time_ms", kMedian, "processor time of the call; only with --times", kAllTrials,
        [](R r, B) { return std::optional<double>(1e3 * r.seconds); }},
-      {"mean_time_ms", kMean, "the same, its mean, which `rcme budget` sets; only with --times",
+      {"mean_time_ms", kMean, "the same, set by `rcme budget`; only with --times", kAllTrials,
        [](R r, B) { return std::optional<double>(1e3 * r.seconds); }},
   };
   return all;
@@ -230,16 +222,14 @@ const std::vector<TrialQuantity>& TrialQuantities() {
 const std::vector<ProblemQuantity>& ProblemQuantities() {
   static const std::vector<ProblemQuantity> all = [] {
     std::vector<ProblemQuantity> quantities = {
-        {"impossible", SummaryRow::Kind::kRate,
-         "Cramer-Rao bound beyond a failure bound, of measured problems",
+        {"impossible", SummaryRow::Kind::kRate, "Cramer-Rao bound beyond a failure bound", kMeasured,
          [](const ProblemRecord& p, const FailureBounds& b) {
            return If(!std::isnan(p.severity.crb_rotation_deg), IsImpossible(p, b));
          }},
-        {"num_inliers_true", SummaryRow::Kind::kMean, "true matches",
+        {"num_inliers_true", SummaryRow::Kind::kMean, "true matches", "simulated problems",
          [](const ProblemRecord& p, const FailureBounds&) { return If(true, p.num_inliers_true); }}};
     for (const SeverityColumn& column : kSeverityColumns) {
-      quantities.push_back({column.name, SummaryRow::Kind::kMean,
-                            "severity of the problem (simulator/severity)",
+      quantities.push_back({column.name, SummaryRow::Kind::kMean, column.meaning, kMeasured,
                             [field = column.field](const ProblemRecord& p, const FailureBounds&) {
                               return If(true, p.severity.*field);
                             }});

@@ -17,6 +17,7 @@ struct Quantity {
   std::string name;
   SummaryRow::Kind kind;
   std::string doc;
+  std::string base;  // the records that count, in words
   // Returns the value of a record (0 or 1 for a rate), or nothing if it does not count for the quantity.
   std::function<std::optional<double>(const Record&, const FailureBounds&)> contribution;
   bool (*is_of)(const Record&) = nullptr;  // records that may contribute; null: all

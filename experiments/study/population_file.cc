@@ -94,13 +94,11 @@ Parameter PopulationDesignParameter(PointSet* design) {
       {{"sobol", PointSet::kSobol},
        {"latin_hypercube", PointSet::kLatinHypercube},
        {"random", PointSet::kRandom}},
-      "how draws fill the ranges; more draws leave the earlier ones of sobol and "
-      "random as they are");
+      "how draws fill the ranges; sobol and random keep earlier draws when number grows");
 }
 
 Parameter PopulationNumberParameter(int* number) {
-  return Parameter::Integer("number", number, {1, kMaxDraws},
-                            "draws; each that is not refused is a condition");
+  return Parameter::Integer("number", number, {1, kMaxDraws}, "draws; each one not refused is a condition");
 }
 
 Population LoadPopulation(const std::string& name, PopulationText* text) {

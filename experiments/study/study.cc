@@ -69,9 +69,9 @@ std::vector<std::string> JoinLevels(const PopulationDraw& draw, const std::vecto
 
 std::vector<Parameter> Parameters(FailureBounds& bounds) {
   return {Parameter::Real("max_rotation_error_deg", &bounds.max_rotation_error_deg, {0.0, 180.0}, "deg",
-                          "a motion with a greater rotation error has failed"),
+                          "greatest rotation error of a success"),
           Parameter::Real("max_direction_error_deg", &bounds.max_direction_error_deg, {0.0, 180.0}, "deg",
-                          "a motion with a greater error of the translation direction has failed")};
+                          "greatest direction error of a success")};
 }
 
 std::vector<std::pair<std::string, std::string*>> Parts(Ademp& ademp) {

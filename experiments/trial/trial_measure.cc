@@ -30,15 +30,10 @@ double ErrorDeg(const TrialRecord& record, Quantity quantity) {
 
 // Returns the measures, then the same without refusals.
 std::vector<TrialMeasure> WithAnswered(const std::vector<TrialMeasure>& of_all) {
-  std::vector<TrialMeasure> measures;
-  for (TrialMeasure measure : of_all) {
-    measure.doc +=
-        "; refusals and answers that are not valid count as wrong, of all trials but those not scored";
-    measures.push_back(measure);
-  }
+  std::vector<TrialMeasure> measures = of_all;
   for (TrialMeasure measure : of_all) {
     measure.name += "_answered";
-    measure.doc += "; the same with refusals left out";
+    measure.base = "scored answers";
     measure.leaves_out_refusals = true;
     measures.push_back(measure);
   }
@@ -56,22 +51,20 @@ std::optional<double> TrialMeasure::Of(const TrialRecord& record) const {
 
 const std::vector<TrialMeasure>& TrialScores() {
   static const std::vector<TrialMeasure> scores = WithAnswered(
-      {{"auc_5_deg", "AUC@5: mean of max(0, 1 - e / 5 deg), e the greater of rotation and direction error",
-        Quantity::kScore, AreaUnderRecall<5>},
+      {{"auc_5_deg", "AUC@5: mean of max(0, 1 - e / 5 deg), e the greater of both errors", Quantity::kScore,
+        AreaUnderRecall<5>},
        {"auc_10_deg", "AUC@10: mean of max(0, 1 - e / 10 deg)", Quantity::kScore, AreaUnderRecall<10>},
        {"auc_20_deg", "AUC@20: mean of max(0, 1 - e / 20 deg)", Quantity::kScore, AreaUnderRecall<20>},
-       {"maa_10_deg", "mAA(10): mean over the thresholds 1, 2, ..., 10 deg of the share with e at most that",
-        Quantity::kScore, AccuracyUpTo10}});
+       {"maa_10_deg", "mAA(10): mean share with e at most 1, 2, ..., 10 deg", Quantity::kScore,
+        AccuracyUpTo10}});
   return scores;
 }
 
 const std::vector<TrialMeasure>& TrialErrors() {
-  static const std::vector<TrialMeasure> errors =
-      WithAnswered({{"rotation_error_median_deg", "rotation error (median)", Quantity::kRotationError},
-                    {"direction_error_median_deg", "error of the translation direction (median)",
-                     Quantity::kDirectionError},
-                    {"max_error_median_deg", "the greater of rotation and direction error (median)",
-                     Quantity::kMaxError}});
+  static const std::vector<TrialMeasure> errors = WithAnswered(
+      {{"rotation_error_median_deg", "rotation error", Quantity::kRotationError},
+       {"direction_error_median_deg", "error of the translation direction", Quantity::kDirectionError},
+       {"max_error_median_deg", "the greater of both errors", Quantity::kMaxError}});
   return errors;
 }
 

@@ -30,6 +30,7 @@ struct TrialMeasure {
   Quantity quantity = Quantity::kScore;
   double (*score)(double max_error_deg) = nullptr;  // in [0, 1]; for Quantity::kScore
   bool leaves_out_refusals = false;
+  std::string base = "scored trials";  // the trials that count
 
   // Returns what the trial contributes: a score, or an error in degrees. Nothing if the measure leaves the
   // trial out.

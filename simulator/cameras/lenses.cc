@@ -31,13 +31,13 @@ class LensPair : public CameraModel {
  private:
   std::vector<std::pair<std::string, std::string>> CoefficientNames() const {
     if (lens_.model == LensModel::kRadtan) {
-      return {{"lens_k1", "radial distortion of the lens: coefficient of r^2, OpenCV's k1"},
-              {"lens_k2", "coefficient of r^4, OpenCV's k2"},
-              {"lens_p1", "tangential distortion of the lens, OpenCV's p1"},
-              {"lens_p2", "tangential distortion of the lens, OpenCV's p2"},
-              {"lens_k3", "coefficient of r^6, OpenCV's k3"}};
+      return {{"lens_k1", "radial coefficient of r^2, OpenCV's k1"},
+              {"lens_k2", "radial coefficient of r^4, OpenCV's k2"},
+              {"lens_p1", "tangential coefficient, OpenCV's p1"},
+              {"lens_p2", "tangential coefficient, OpenCV's p2"},
+              {"lens_k3", "radial coefficient of r^6, OpenCV's k3"}};
     }
-    return {{"lens_k1", "of the angle theta from the axis: coefficient of theta^3, OpenCV's k1"},
+    return {{"lens_k1", "coefficient of theta^3, OpenCV's k1; theta: angle from the axis"},
             {"lens_k2", "coefficient of theta^5, OpenCV's k2"},
             {"lens_k3", "coefficient of theta^7, OpenCV's k3"},
             {"lens_k4", "coefficient of theta^9, OpenCV's k4"}};

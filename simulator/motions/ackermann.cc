@@ -24,12 +24,10 @@ class Ackermann : public MotionModel {
 
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all = {Parameter::Real("max_yaw_deg", &max_yaw_deg_, {0.0, 90.0}, "deg",
-                                                  "bound of the yaw angle, uniform to either side")};
+                                                  "greatest yaw, uniform to either side")};
     if (is_jittered_) {
-      all.push_back(
-          Parameter::Real("jitter_deg", &jitter_deg_, {0.0, 45.0}, "deg",
-                          "standard deviation of pitch, of roll, and of the slip of the direction in both "
-                          "angles"));
+      all.push_back(Parameter::Real("jitter_deg", &jitter_deg_, {0.0, 45.0}, "deg",
+                                    "standard deviation of pitch, roll and both angles of slip"));
     }
     const std::vector<Parameter> more = rcme::Parameters(baseline_);
     all.insert(all.end(), more.begin(), more.end());

@@ -26,9 +26,9 @@ class DirectedMotion : public MotionModel {
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all = {
         Parameter::Real("max_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
-                        "bound of the rotation angle, uniform from 0, about any axis"),
+                        "greatest rotation, uniform from 0"),
         Parameter::Real("max_deviation_deg", &max_deviation_deg_, {0.0, 90.0}, "deg",
-                        "half opening angle of the cone around the axis in which camera 2 stands, uniform")};
+                        "half angle of the cone around the axis that holds camera 2")};
     const std::vector<Parameter> more = rcme::Parameters(baseline_);
     all.insert(all.end(), more.begin(), more.end());
     return all;

@@ -11,7 +11,7 @@ class GeneralMotion : public MotionModel {
 
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all = {Parameter::Real("max_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
-                                                  "bound of the rotation angle, uniform from 0")};
+                                                  "greatest rotation, uniform from 0")};
     const std::vector<Parameter> more = rcme::Parameters(baseline_);
     all.insert(all.end(), more.begin(), more.end());
     return all;

@@ -14,7 +14,7 @@ class HandHeld : public MotionModel {
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all = {
         Parameter::Real("rotation_sd_deg", &rotation_sd_deg_, {0.0, 60.0}, "deg",
-                        "standard deviation of the yaw; pitch and roll have half of it")};
+                        "standard deviation of yaw; half of it for pitch and roll")};
     const std::vector<Parameter> more = rcme::Parameters(baseline_);
     all.insert(all.end(), more.begin(), more.end());
     return all;

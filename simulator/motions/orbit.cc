@@ -11,8 +11,8 @@ namespace {
 class Orbit : public MotionModel {
  public:
   std::vector<Parameter> Parameters() override {
-    std::vector<Parameter> all = {Parameter::Real("orbit_deg", &orbit_deg_, {1e-6, 120.0}, "deg",
-                                                  "angle of the orbit, to either side; horizontal")};
+    std::vector<Parameter> all = {
+        Parameter::Real("orbit_deg", &orbit_deg_, {1e-6, 120.0}, "deg", "horizontal, to either side")};
     const std::vector<Parameter> more = rcme::Parameters(baseline_);
     all.insert(all.end(), more.begin(), more.end());
     return all;

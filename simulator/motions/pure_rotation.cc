@@ -9,7 +9,7 @@ class PureRotation : public MotionModel {
  public:
   std::vector<Parameter> Parameters() override {
     return {Parameter::Real("max_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
-                            "bound of the rotation angle, uniform from 0, about any axis")};
+                            "greatest rotation, uniform from 0")};
   }
   Motion Draw(RandomStream& rng) const override {
     return {{DrawRotation(RadFromDeg(max_rotation_deg_), rng), Eigen::Vector3d::UnitX()}, 0.0};

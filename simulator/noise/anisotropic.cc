@@ -14,12 +14,11 @@ class AnisotropicNoise : public NoiseModel {
   std::vector<Parameter> Parameters() override {
     return {SigmaParameter(&sigma_px_),
             Parameter::Real("noise_axis_ratio", &axis_ratio_, {1.0, 1000.0}, "",
-                            "standard deviation along the major axis over that along the minor axis"),
+                            "standard deviation along the major over the minor axis"),
             Parameter::Real("noise_axis_deg", &axis_deg_, {0.0, 180.0}, "deg",
-                            "direction of the major axis from the x axis towards the y axis (down); between "
-                            "0, 90 and 180 the noise of x and y is correlated"),
+                            "major axis, from x towards y (down); 0, 90 and 180: x and y uncorrelated"),
             Parameter::Real("image_correlation", &image_correlation_, {-1.0, 1.0}, "",
-                            "correlation of the noise of image 1 and image 2 along each axis")};
+                            "correlation between the images along each axis")};
   }
   double sigma_px() const override { return sigma_px_; }
 

@@ -14,9 +14,9 @@ class ContaminatedNoise : public NoiseModel {
   std::vector<Parameter> Parameters() override {
     return {SigmaParameter(&sigma_px_),
             Parameter::Real("contaminated_share", &share_, {0.0, 1.0}, "",
-                            "probability that a match is one of the bad ones"),
+                            "probability that a match has the larger noise"),
             Parameter::Real("contaminated_scale", &scale_, {1.0, 1000.0}, "",
-                            "standard deviation of the bad ones over that of the others")};
+                            "larger over smaller standard deviation")};
   }
   double sigma_px() const override { return sigma_px_; }
 

@@ -52,12 +52,12 @@ class CorrelatedNoise : public NoiseModel {
   std::vector<Parameter> Parameters() override {
     return {SigmaParameter(&sigma_px_),
             Parameter::Real("noise_correlation", &correlation_, {0.0, 1.0}, "",
-                            "correlation of the errors of two points at one place of an image"),
+                            "correlation of errors at one place of an image"),
             Parameter::Real("noise_correlation_length_px", &length_px_, {0.01, 1e5}, "px",
-                            "distance at which it has fallen to 0.045 of that; none beyond 1.41 times"),
-            Parameter::Real("noise_student_dof", &student_dof_, {0.0, 1000.0}, "",
-                            "tails: a match's errors are larger or smaller together, as those of Student's t "
-                            "with these degrees of freedom, in 32 steps; 0: normal")};
+                            "distance at which it is 0.045 of that; 0 beyond 1.41 times"),
+            Parameter::Real(
+                "noise_student_dof", &student_dof_, {0.0, 1000.0}, "",
+                "degrees of freedom of Student's t in 32 steps, common to a match's errors; 0: normal")};
   }
   double sigma_px() const override { return sigma_px_; }
 

@@ -38,13 +38,11 @@ namespace {
 class DisplacementFieldNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
-    return {
-        SigmaParameter(&sigma_px_),
-        Parameter::Real("displacement_share", &share_, {0.0, 1.0}, "",
-                        "share of the noise's variance that is a field over the image, the same for all "
-                        "points at one place"),
-        Parameter::Real("displacement_reach_px", &reach_px_, {0.1, 1e5}, "px",
-                        "distance at which the field's correlation, exp(-d / reach), has fallen to 0.37")};
+    return {SigmaParameter(&sigma_px_),
+            Parameter::Real("displacement_share", &share_, {0.0, 1.0}, "",
+                            "share of the variance from a field over the image"),
+            Parameter::Real("displacement_reach_px", &reach_px_, {0.1, 1e5}, "px",
+                            "reach of the field's correlation exp(-d / reach)")};
   }
   double sigma_px() const override { return sigma_px_; }
 

@@ -16,9 +16,9 @@ class DuplicatedNoise : public NoiseModel {
   std::vector<Parameter> Parameters() override {
     return {SigmaParameter(&sigma_px_),
             Parameter::Real("duplicated_share", &share_, {0.0, 0.95}, "",
-                            "probability that a match is of a point that was matched already"),
+                            "probability that a match repeats a matched point"),
             Parameter::Real("duplicated_correlation", &correlation_, {0.0, 1.0}, "",
-                            "correlation of the errors of two matches of one point")};
+                            "correlation of errors between matches of one point")};
   }
   double sigma_px() const override { return sigma_px_; }
 

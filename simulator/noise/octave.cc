@@ -22,12 +22,11 @@ class OctaveNoise : public NoiseModel {
     return {SigmaParameter(&sigma_px_),
             Parameter::Integer("num_octave_levels", &num_levels_, {1, 32}, "levels of the image pyramid"),
             Parameter::Real("octave_factor", &factor_, {1.0, 4.0}, "",
-                            "scale of one level of the pyramid over that of the next finer one"),
+                            "scale of a level over the next finer one"),
             Parameter::Real("octave_growth", &growth_, {0.0, 4.0}, "",
-                            "noise grows with this power of a level's scale"),
+                            "power of the level's scale by which noise grows"),
             Parameter::Real("stated_growth", &stated_growth_, {0.0, 4.0}, "",
-                            "estimators are given that it grows with this power (of each match, relative to "
-                            "the median); 0: they are given nothing")};
+                            "power that estimators are told, per match relative to the median; 0: nothing")};
   }
   double sigma_px() const override { return sigma_px_; }
 

@@ -14,12 +14,10 @@ namespace {
 class QuantisedNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
-    return {
-        Parameter::Real("sigma_px", &sigma_px_, {1e-9, 1000.0}, "px",
-                        "standard deviation of the noise per coordinate before it is rounded"),
-        Parameter::Real("quantisation_step_px", &step_px_, {1e-6, 1000.0}, "px",
-                        "distance of the detector's grid lines; adds a variance of step^2 / 12 that sigma_px "
-                        "does not include")};
+    return {Parameter::Real("sigma_px", &sigma_px_, {1e-9, 1000.0}, "px",
+                            "rms noise per coordinate before rounding"),
+            Parameter::Real("quantisation_step_px", &step_px_, {1e-6, 1000.0}, "px",
+                            "detector's grid step; adds variance step^2 / 12 to that of sigma_px")};
   }
   double sigma_px() const override { return sigma_px_; }
 

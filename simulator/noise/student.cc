@@ -27,9 +27,8 @@ double DrawGamma(double shape, RandomStream& rng) {
 class StudentNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override {
-    return {SigmaParameter(&sigma_px_),
-            Parameter::Real("student_dof", &dof_, {2.01, 1e6}, "",
-                            "degrees of freedom; the fewer, the longer the tails (2: no variance)")};
+    return {SigmaParameter(&sigma_px_), Parameter::Real("student_dof", &dof_, {2.01, 1e6}, "",
+                                                        "degrees of freedom; 2: infinite variance")};
   }
   double sigma_px() const override { return sigma_px_; }
 

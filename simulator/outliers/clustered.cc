@@ -22,7 +22,7 @@ class ClusteredOutliers : public OutlierLaw {
   std::vector<Parameter> Parameters() override {
     return {Parameter::Integer("num_outlier_clusters", &num_clusters_, {1, 1e6}, "clusters of wrong matches"),
             Parameter::Real("outlier_spread_px", &spread_px_, {1e-3, 1e4}, "px",
-                            "standard deviation of a cluster of wrong matches, in x and in y")};
+                            "standard deviation of a cluster in x and y")};
   }
 
   void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,

@@ -16,7 +16,7 @@ class DisplacedOutliers : public OutlierLaw {
   std::vector<Parameter> Parameters() override {
     return {MinShiftParameter(&min_shift_px_),
             Parameter::Real("outlier_max_shift_px", &max_shift_px_, {0.0, 1e5}, "px",
-                            "greatest distance between the wrong and the true point in image 2")};
+                            "greatest distance of the wrong from the true point")};
   }
 
   void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,

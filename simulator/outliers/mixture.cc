@@ -24,9 +24,8 @@ class OutlierMixture : public OutlierLaw {
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all;
     for (Part& part : parts_) {
-      all.push_back(
-          Parameter::Real("weight_" + part.name, &part.weight, {0.0, 1e6}, "",
-                          "share of " + part.name + " among the wrong matches, over the sum of weights"));
+      all.push_back(Parameter::Real("weight_" + part.name, &part.weight, {0.0, 1e6}, "",
+                                    "share of these wrong matches, over the sum of weights"));
     }
     std::vector<std::vector<Parameter>> by_name;
     for (Part& part : parts_) {

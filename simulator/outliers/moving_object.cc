@@ -33,11 +33,11 @@ class MovingObject : public OutlierLaw {
  public:
   std::vector<Parameter> Parameters() override {
     return {Parameter::Real("object_size_m", &size_m_, {1e-9, 1e6}, "m",
-                            "standard deviation of the object's points around its centre, per axis"),
+                            "standard deviation of the object's points per axis"),
             Parameter::Real("object_shift_m", &shift_m_, {1e-9, 1e6}, "m",
-                            "length of the object's translation between the images"),
+                            "translation of the object between the images"),
             Parameter::Real("object_rotation_deg", &max_rotation_deg_, {0.0, 180.0}, "deg",
-                            "bound of the object's rotation about its centre, uniform from 0")};
+                            "greatest rotation about the object's centre, uniform from 0")};
   }
 
   void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,

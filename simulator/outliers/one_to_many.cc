@@ -11,7 +11,7 @@ class OneToManyOutliers : public OutlierLaw {
  public:
   std::vector<Parameter> Parameters() override {
     return {Parameter::Integer("outlier_fan_out", &fan_out_, {1, 1e6},
-                               "wrong matches that share their point in image 1 with the same true match")};
+                               "wrong matches that share the image 1 point of one true match")};
   }
 
   void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,

@@ -16,12 +16,11 @@ namespace {
 class RepeatedTexture : public OutlierLaw {
  public:
   std::vector<Parameter> Parameters() override {
-    return {
-        Parameter::RealOrWord("repeat_step_m", &step_m_, {1e-9, 1e6}, "scene", "m",
-                              "distance of the repetitions along camera 1's x axis; scene: the steps of a "
-                              "scene that repeats itself"),
-        Parameter::Integer("max_repeat_steps", &max_steps_, {1, 1000},
-                           "greatest number of steps between the true and the wrong repetition")};
+    return {Parameter::RealOrWord(
+                "repeat_step_m", &step_m_, {1e-9, 1e6}, "scene", "m",
+                "step of the repetitions along camera 1's x axis; scene: the scene's own steps"),
+            Parameter::Integer("max_repeat_steps", &max_steps_, {1, 1000},
+                               "most steps between the true and the wrong repetition")};
   }
 
   void Replace(std::span<const std::uint32_t> points, const MatchedScene& matched,

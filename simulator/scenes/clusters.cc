@@ -50,15 +50,14 @@ class Clusters : public SceneModel {
     std::vector<Parameter> all = rcme::Parameters(depths_);
     all.insert(all.end(),
                {Parameter::Integer("num_clusters", &num_clusters_, {1, 1000},
-                                   "clusters; their centres lie between the depths"),
+                                   "clusters, their centres between the depths"),
                 Parameter::Real("cluster_spread_m", &spread_m_, {1e-9, 1e6}, "m",
-                                "standard deviation of a cluster's points in each axis"),
+                                "standard deviation of a cluster per axis"),
                 Parameter::Real("clustered_share", &clustered_share_, {0.0, 1.0}, "",
-                                "share of the points that lie in clusters; the others fill the volume"),
+                                "share of points in clusters; the rest fill the volume"),
                 Parameter::RealOrWord(
                     "largest_share", &largest_share_, {0.0, 1.0}, "equal", "",
-                    "share of the clustered points that lie in one cluster; the other clusters share "
-                    "the rest equally")});
+                    "share of clustered points in one cluster; the others share the rest equally")});
     return all;
   }
 

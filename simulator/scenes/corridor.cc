@@ -34,20 +34,17 @@ class CorridorWorld : public World {
 class Corridor : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
-    return {
-        Parameter::Real("corridor_width_m", &width_m_, {1e-3, 1e6}, "m", "distance of the walls"),
-        Parameter::Real("corridor_height_m", &height_m_, {1e-3, 1e6}, "m", "from the floor to the ceiling"),
-        Parameter::Real("corridor_length_m", &length_m_, {1e-3, 1e6}, "m",
-                        "how far from camera 1 there are points, along the corridor"),
-        Parameter::Real("camera_height_m", &camera_height_m_, {1e-3, 1e6}, "m",
-                        "height of camera 1 above the floor; across the corridor it stands anywhere in the "
-                        "middle half"),
-        Parameter::Real(
-            "max_heading_deg", &max_heading_deg_, {0.0, 45.0}, "deg",
-            "bound of the angle between the optical axis and the corridor, uniform to either side"),
-        Parameter::Real("walls_share", &walls_share_, {0.0, 1.0}, "", "share of the points on both walls"),
-        Parameter::Real("floor_share", &floor_share_, {0.0, 1.0}, "",
-                        "share of the points on the floor; those on neither are on the ceiling")};
+    return {Parameter::Real("corridor_width_m", &width_m_, {1e-3, 1e6}, "m", "distance of the walls"),
+            Parameter::Real("corridor_height_m", &height_m_, {1e-3, 1e6}, "m", "floor to ceiling"),
+            Parameter::Real("corridor_length_m", &length_m_, {1e-3, 1e6}, "m",
+                            "reach of the points along the corridor"),
+            Parameter::Real("camera_height_m", &camera_height_m_, {1e-3, 1e6}, "m",
+                            "height above the floor, anywhere in the corridor's middle half"),
+            Parameter::Real("max_heading_deg", &max_heading_deg_, {0.0, 45.0}, "deg",
+                            "greatest angle to the corridor, uniform to either side"),
+            Parameter::Real("walls_share", &walls_share_, {0.0, 1.0}, "", "share of points on both walls"),
+            Parameter::Real("floor_share", &floor_share_, {0.0, 1.0}, "",
+                            "share of points on the floor; the rest are on the ceiling")};
   }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {

@@ -34,10 +34,9 @@ class FarPoints : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all = rcme::Parameters(near_);
-    all.push_back(
-        Parameter::Real("far_share", &far_share_, {0.0, 1.0}, "", "share of the points that lie far away"));
+    all.push_back(Parameter::Real("far_share", &far_share_, {0.0, 1.0}, "", "share of far points"));
     all.push_back(Parameter::Real("far_depth_m", &far_depth_m_, {1e-6, 1e12}, "m",
-                                  "least depth of the far points in camera 1, uniform up to ten times that"));
+                                  "least depth of far points, uniform up to ten times that"));
     return all;
   }
 

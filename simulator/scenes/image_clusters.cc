@@ -67,15 +67,13 @@ class ImageClusters : public SceneModel {
     all.insert(
         all.end(),
         {Parameter::Integer("num_clusters", &num_clusters_, {1, 100'000}, "clusters in image 1"),
-         Parameter::Real(
-             "cluster_spread_px", &spread_px_, {1e-6, 1e5}, "px",
-             "size of a cluster in image 1: gaussian: standard deviation in x and y, disc: radius"),
+         Parameter::Real("cluster_spread_px", &spread_px_, {1e-6, 1e5}, "px",
+                         "gaussian: standard deviation in x and y; disc: radius"),
          Parameter::Real("clustered_share", &clustered_share_, {0.0, 1.0}, "",
-                         "share of the points that lie in clusters; the others are uniform over image 1"),
+                         "share of points in clusters; the rest are uniform over image 1"),
          Parameter::Choice<ClusterShape>(
              "cluster_shape", &shape_, {{"gaussian", ClusterShape::kGaussian}, {"disc", ClusterShape::kDisc}},
-             "how points lie around the middle of a cluster: Gaussian (Thomas) or uniform in a disc "
-             "(Matern)")});
+             "Gaussian (Thomas) or uniform in a disc (Matern)")});
     return all;
   }
 

@@ -66,18 +66,15 @@ class ImageRegion : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
     std::vector<Parameter> all = rcme::Parameters(depths_);
-    all.push_back(
-        Parameter::Choice<Region>("region", &region_,
-                                  {{"half", Region::kHalf},
-                                   {"corner", Region::kCorner},
-                                   {"band", Region::kBand},
-                                   {"full", Region::kFull}},
-                                  "the left of image 1, its upper left corner (in the image's shape), a "
-                                  "level band across its middle, or all of it"));
-    all.push_back(
-        Parameter::RealOrWord("region_share", &region_share_, {1e-6, 1.0}, "usual", "",
-                              "share of the area of image 1 that the region covers; usual: half 0.5, "
-                              "corner and band 0.25, full 1"));
+    all.push_back(Parameter::Choice<Region>(
+        "region", &region_,
+        {{"half", Region::kHalf},
+         {"corner", Region::kCorner},
+         {"band", Region::kBand},
+         {"full", Region::kFull}},
+        "of image 1: left, upper left corner of the image's shape, level middle band, or all"));
+    all.push_back(Parameter::RealOrWord("region_share", &region_share_, {1e-6, 1.0}, "usual", "",
+                                        "share of image 1; usual: half 0.5, corner and band 0.25, full 1"));
     return all;
   }
 

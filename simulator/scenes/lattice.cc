@@ -46,15 +46,12 @@ class Lattice : public SceneModel {
         Parameter::Integer("lattice_columns", &shape_.num_columns, {1, 10'000}, "cells from left to right"),
         Parameter::Integer("lattice_rows", &shape_.num_rows, {1, 10'000}, "cells from top to bottom"),
         Parameter::Real("lattice_step_m", &shape_.step_m, {1e-9, 1e6}, "m", "side of a square cell"),
-        Parameter::Real(
-            "lattice_depth_m", &shape_.depth_m, {1e-6, 1e9}, "m",
-            "depth of the facade in camera 1; its middle is within half a cell of the optical axis"),
+        Parameter::Real("lattice_depth_m", &shape_.depth_m, {1e-6, 1e9}, "m",
+                        "depth of the facade, its middle within half a cell of the optical axis"),
         Parameter::Integer("motif_points", &shape_.num_motif_points, {1, 10'000},
-                           "points of the motif, uniform in the cell, new in each trial"),
-        Parameter::Real(
-            "relief_m", &shape_.relief_m, {0.0, 1e6}, "m",
-            "greatest distance of a point of the motif from the facade's plane, uniform to either "
-            "side")};
+                           "uniform in the cell, new in each trial"),
+        Parameter::Real("relief_m", &shape_.relief_m, {0.0, 1e6}, "m",
+                        "greatest distance from the facade's plane, uniform to either side")};
   }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {

@@ -45,13 +45,13 @@ class PlaneScene : public SceneModel {
 
   std::vector<Parameter> Parameters() override {
     return {Parameter::Real("plane_depth_m", &plane_depth_m_, {1e-6, 1e9}, "m",
-                            "depth at which the optical axis of camera 1 meets the plane"),
+                            "depth on camera 1's optical axis"),
             Parameter::Real("plane_tilt_deg", &plane_tilt_deg_, {0.0, 89.0}, "deg",
-                            "angle between the plane's normal and the optical axis, towards any side"),
+                            "angle of the plane's normal to the optical axis, towards any side"),
             Parameter::Real("off_plane_share", &off_plane_share_, {0.0, 1.0}, "",
-                            "share of the points that lie off the plane"),
+                            "share of points off the plane"),
             Parameter::Real("off_plane_m", &off_plane_m_, {1e-9, 1e9}, "m",
-                            "greatest distance of those points from the plane, uniform to either side")};
+                            "greatest distance from the plane, uniform to either side")};
   }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {

@@ -50,15 +50,14 @@ class Room : public SceneModel {
     return {
         Parameter::Real("room_width_m", &width_m_, {1e-3, 1e6}, "m", "one side of the room"),
         Parameter::Real("room_length_m", &length_m_, {1e-3, 1e6}, "m", "the other side of the room"),
-        Parameter::Real("room_height_m", &height_m_, {1e-3, 1e6}, "m", "from the floor to the ceiling"),
+        Parameter::Real("room_height_m", &height_m_, {1e-3, 1e6}, "m", "floor to ceiling"),
         Parameter::Real("camera_height_m", &camera_height_m_, {1e-3, 1e6}, "m",
-                        "height of camera 1 above the floor; it stands anywhere in the middle half of the "
-                        "room, both ways, and looks in any level direction"),
-        Parameter::Integer("num_boxes", &num_boxes_, {0, 1000}, "boxes on the floor, anywhere"),
+                        "height above the floor, anywhere in the room's middle half, level in any direction"),
+        Parameter::Integer("num_boxes", &num_boxes_, {0, 1000}, "boxes anywhere on the floor"),
         Parameter::Real("max_box_size_m", &max_box_size_m_, {1e-3, 1e6}, "m",
-                        "greatest side of a box; its three sides are uniform from a quarter of that"),
+                        "greatest side of a box; sides are uniform from a quarter of it"),
         Parameter::Real("free_radius_m", &free_radius_m_, {0.0, 1e6}, "m",
-                        "no box is nearer to camera 1 than this, measured on the floor")};
+                        "least distance of boxes from camera 1 on the floor")};
   }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {

@@ -59,20 +59,17 @@ class Street : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
     return {
-        Parameter::Real("camera_height_m", &size_.camera_height_m, {1e-3, 1e6}, "m",
-                        "height of camera 1 above the road"),
+        Parameter::Real("camera_height_m", &size_.camera_height_m, {1e-3, 1e6}, "m", "height above the road"),
         Parameter::Real("facade_distance_m", &size_.facade_distance_m, {1e-3, 1e6}, "m",
-                        "distance of the facades from the middle of the street, where camera 1 is"),
-        Parameter::Real("facade_height_m", &size_.facade_height_m, {1e-3, 1e6}, "m",
-                        "height of the facades above the road"),
-        Parameter::Real(
-            "street_length_m", &size_.street_length_m, {1e-3, 1e6}, "m",
-            "how far from camera 1 the street runs; far points have one to five times that depth"),
+                        "distance from camera 1, in the middle of the street"),
+        Parameter::Real("facade_height_m", &size_.facade_height_m, {1e-3, 1e6}, "m", "height above the road"),
+        Parameter::Real("street_length_m", &size_.street_length_m, {1e-3, 1e6}, "m",
+                        "length ahead of camera 1; far points are one to five times as deep"),
         Parameter::Real("max_heading_deg", &max_heading_deg_, {0.0, 45.0}, "deg",
-                        "bound of the angle between the optical axis and the street, uniform to either side"),
-        Parameter::Real("road_share", &road_share_, {0.0, 1.0}, "", "share of the points on the road"),
+                        "greatest angle to the street, uniform to either side"),
+        Parameter::Real("road_share", &road_share_, {0.0, 1.0}, "", "share of points on the road"),
         Parameter::Real("facade_share", &facade_share_, {0.0, 1.0}, "",
-                        "share of the points on both facades; those on neither are far away")};
+                        "share of points on both facades; the rest are far away")};
   }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {

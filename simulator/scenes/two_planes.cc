@@ -55,18 +55,16 @@ class TwoPlanesWorld : public World {
 class TwoPlanes : public SceneModel {
  public:
   std::vector<Parameter> Parameters() override {
-    return {
-        Parameter::Real("edge_depth_m", &edge_depth_m_, {1e-6, 1e9}, "m",
-                        "depth at which the optical axis of camera 1 meets the edge of the two planes"),
-        Parameter::Real(
-            "dihedral_deg", &dihedral_deg_, {2.0, 358.0}, "deg",
-            "angle between the planes on the camera's side: below 180 the inner corner of a room, "
-            "above the outer corner of a house"),
-        Parameter::Real("max_corner_turn_deg", &max_corner_turn_deg_, {0.0, 89.0}, "deg",
-                        "bound of the corner's turn about its edge, uniform to either side; at 0 both planes "
-                        "make the same angle with the optical axis"),
-        Parameter::Real("first_plane_share", &first_plane_share_, {0.0, 1.0}, "",
-                        "share of the points on the left plane; the others lie on the right one")};
+    return {Parameter::Real("edge_depth_m", &edge_depth_m_, {1e-6, 1e9}, "m",
+                            "depth of the edge on camera 1's optical axis"),
+            Parameter::Real(
+                "dihedral_deg", &dihedral_deg_, {2.0, 358.0}, "deg",
+                "angle on the camera's side: below 180 a room's inner corner, above a house's outer one"),
+            Parameter::Real(
+                "max_corner_turn_deg", &max_corner_turn_deg_, {0.0, 89.0}, "deg",
+                "greatest turn about the edge, uniform to either side; 0: symmetric to the optical axis"),
+            Parameter::Real("first_plane_share", &first_plane_share_, {0.0, 1.0}, "",
+                            "share of points on the left plane")};
   }
 
   std::unique_ptr<const World> DrawWorld(const ViewPair& view, RandomStream& rng) const override {

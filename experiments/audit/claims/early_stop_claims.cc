@@ -21,8 +21,8 @@ Claim EarlyStopClaim(const std::string& reading, const std::string& mu, const st
   return {"early_stop." + reading,
           "Sec. early-terminate",
           name,
-          "Stopping at psi <= mu saves at least a tenth of the hypotheses and costs at most one trial in a "
-          "hundred",
+          "Stopping at psi <= mu saves at least 10 % of the hypotheses and costs at most 1 % of the "
+          "trials",
           "hypotheses not drawn; trials in which only the early one fails or refuses",
           "outlier_ratio",
           {MakeCheck({{"num_matches", "200"}, {"outlier_ratio", "0.3"}}, statistic,

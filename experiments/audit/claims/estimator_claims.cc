@@ -12,7 +12,7 @@ CaseClaim EstimatorCalibration(const std::string& label, const std::string& read
       {"estimator.coverage." + label,
        "Sec. model selection, MLE",
        reading,
-       "The covariance that comes with a motion within the failure bounds is that of its error",
+       "The covariance of a motion within the failure bounds is that of its error",
        "NEES of the motions that are no failures, chi2_5; that of an answer that is not valid is infinite",
        "outlier_ratio",
        {}},
@@ -29,9 +29,7 @@ CaseClaim FailureCalibration(const std::string& label, const std::string& readin
       {"estimator.failures." + label,
        "of one's own",
        reading,
-       "No more sure motions are beyond the failure bounds than the answers say, and stated probabilities "
-       "are "
-       "right",
+       "Sure motions fail no more often than stated, and stated probabilities are right",
        "1 for a failure, 0 for none, less its probability as the answer states it, or as follows from its "
        "covariance, where that is small; of stated ones also all, both ways",
        "outlier_ratio",
@@ -48,7 +46,7 @@ CaseClaim SigmaCalibration(const std::string& label, const std::string& reading,
       {"estimator.sigma." + label,
        "of one's own",
        reading,
-       "The noise level that comes with a motion is that of the matches, up to its stated standard deviation",
+       "The stated noise level is that of the matches, up to its standard deviation",
        "stated over true sigma, less 1; its squared error over the stated variance, chi2_1",
        "outlier_ratio",
        {}},

@@ -53,7 +53,7 @@ Claim OrderClaim(const std::string& id, const std::string& reading, const Rivals
       "failure.order." + id + rule.id,
       "Tab. real-data-test",
       reading + ", " + rule.words,
-      "RCME fails less often than pRCME, and pRCME less often than standard",
+      "RCME fails less often than pRCME, and pRCME than standard",
       "rotation error > 3 deg or direction error > 15 deg, in pairs, by the trials in which only one fails",
       "",
       {MakeCheck({{"num_matches", "200"}, {"outlier_ratio", "0.4"}}, statistic, targets,

@@ -31,7 +31,7 @@ std::vector<Claim> FlagClaims() {
         [standard](Case& made) { return FlagStatistic(*standard, made); }, targets, kFlagDesign.limits));
   }
   return {{"flag.kappa", "eq::metric", "standard, kappa = 0.5",
-           "n*_I / n_I <= kappa tells the failed motions from the good ones (9 of 10 of either)",
+           "n*_I / n_I <= kappa tells failed from good motions (90 % of either)",
            "the flag against rotation error > 3 deg or direction error > 15 deg", "outlier_ratio", checks}};
 }
 

@@ -63,20 +63,19 @@ CaseClaim MakeClaim(const std::string& point, const char* label, const PointRead
 
 CaseClaim TruePoseClaim(const PointReading& reading) {
   return MakeClaim("true_pose", "eq::find-inlier", reading,
-                   "Of the points seen by a motion that is known exactly, 1 - alpha pass the inlier test",
+                   "Under the true motion 1 - alpha of the points pass the inlier test",
                    TruePoseStatistic(reading.distance), {.num_true_matches = 1});
 }
 
 CaseClaim FreshPointClaim(const PointReading& reading) {
-  return MakeClaim(
-      "fresh_point", "eq::find-inlier", reading,
-      "Of the points that did not take part in the 8-point motion, 1 - alpha pass the inlier test",
-      FreshPointStatistic(reading.distance), {.num_true_matches = 9, .true_motion = false});
+  return MakeClaim("fresh_point", "eq::find-inlier", reading,
+                   "Of points outside the 8-point sample 1 - alpha pass the inlier test",
+                   FreshPointStatistic(reading.distance), {.num_true_matches = 9, .true_motion = false});
 }
 
 CaseClaim OwnPointClaim(const PointReading& reading) {
   return MakeClaim("own_point", "eq::sample-p-test", reading,
-                   "Of the points of the sample that made the motion, 1 - alpha pass the same test",
+                   "Of points in the sample 1 - alpha pass the inlier test",
                    OwnPointStatistic(reading.distance), {.num_true_matches = 8, .true_motion = false});
 }
 

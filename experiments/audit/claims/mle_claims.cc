@@ -63,7 +63,7 @@ CaseClaim MakeClaim(const std::string& id, const std::string& reading, const std
 }  // namespace
 
 std::vector<CaseClaim> MleCalibration() {
-  const std::string reported = "The covariance that maximum likelihood reports is that of its error";
+  const std::string reported = "The covariance of maximum likelihood is that of its error";
   return {MakeClaim("reprojection", "reprojection error, motion and points", reported,
                     NeesStatistic(RefineReprojection), kReprojectionCoverage.limits),
           MakeClaim("sampson", "Sampson error, motion alone", reported, NeesStatistic(RefineAllBySampson),

@@ -73,7 +73,7 @@ std::vector<Claim> MakeMuClaims(Reading reading, const std::string& id, const st
   return {{"mu." + id + ".separation",
            "Sec. inlier_qual_test, mu",
            name,
-           "psi separates good models from contaminated ones, and mu = " + mu + " is the place to cut",
+           "psi separates good from contaminated models, and mu = " + mu + " is the right threshold",
            "psi of the models of 8-point samples without and with mismatches, 20 % mismatches",
            "",
            {SeparationCheck<PointTest>(reading)}},
@@ -129,8 +129,7 @@ Claim SolverClaim() {
   return {"mu.rank_aware.solver",
           "Sec. inlier_qual_test, mu",
           "rank-aware, excess",
-          "A mu for the eight-point solver is one for the five-point solver: psi of good models has the same "
-          "law",
+          "psi of good models has one law for the eight-point and the five-point solver",
           "psi of models of true matches, 20 % mismatches",
           "",
           {check}};

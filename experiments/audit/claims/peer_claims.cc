@@ -20,18 +20,17 @@ constexpr double kThresholdSigma = 2.0;  // of the calls below, in standard devi
 // OpenCV 4.6 weights the residuals of essential and fundamental matrices by a chi-square law with 4 degrees
 // of freedom. In MAGSAC++ (Barath et al. 2020) this number is a parameter, the dimension of the residual.
 Claim MagsacClaim() {
-  const CaseClaim claim = {
-      {"peer.magsac.degrees_of_freedom",
-       "related work",
-       "MAGSAC as OpenCV has it",
-       "The squared residual of a true match, over its variance, has the 4 degrees of freedom of its weights",
-       "squared Sampson distance of a match from the known motion over sigma^2, chi2_4",
-       "",
-       {}},
-      TruePoseStatistic(RankAwareDistance),
-      CoverageTargets(4),
-      kSampleCoverage.limits,
-      {.num_true_matches = 1}};
+  const CaseClaim claim = {{"peer.magsac.degrees_of_freedom",
+                            "related work",
+                            "MAGSAC as OpenCV has it",
+                            "The normalised squared residual of a true match has 4 degrees of freedom",
+                            "squared Sampson distance of a match from the known motion over sigma^2, chi2_4",
+                            "",
+                            {}},
+                           TruePoseStatistic(RankAwareDistance),
+                           CoverageTargets(4),
+                           kSampleCoverage.limits,
+                           {.num_true_matches = 1}};
   return OnBuiltInScene(claim, {{{"num_matches", "1"}}});
 }
 
@@ -76,7 +75,7 @@ Claim InSampleClaim() {
       "peer.usac.inlier_residuals",
       "related work",
       "OpenCV's USAC, defaults",
-      "The residuals of its true inliers under its own motion have the law of the noise",
+      "Residuals of true inliers under its motion have the law of the noise",
       "PIT of the squared Sampson distance below the threshold of 2 sigma, chi2_1; below 0.5: fitted to them",
       "num_matches",
       checks};
@@ -95,7 +94,7 @@ Claim RandomMatchesClaim() {
   return {"peer.usac.random_matches",
           "related work",
           "OpenCV's USAC, defaults",
-          "Matches without any motion are refused (its test of non-randomness is off, and cannot be set)",
+          "Matches without any motion are refused (its test of non-randomness cannot be set)",
           "share of trials with all matches random in which a motion is returned",
           "",
           {check}};

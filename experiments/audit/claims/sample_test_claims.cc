@@ -72,11 +72,11 @@ std::vector<CaseClaim> SampleTestCalibration() {
 }
 
 std::vector<Claim> SampleTestClaims() {
-  const char* kPower = "At least 90 % of the samples with 1 to 8 mismatches are rejected";
+  const char* kPower = "At least 90 % of samples with 1 to 8 mismatches are rejected";
   const Settings sample = {{"num_matches", "8"}};
   return {
       {"sample_test.size.as_printed", kSampleTestLabel, "per point",
-       "A point of a sample without outliers passes with probability 1 - alpha, alpha = 0.05",
+       "A point of a sample without outliers passes with probability 1 - alpha = 0.95",
        "delta' Sigma_delta^-1 delta <= chi2_3", "sigma_px",
        ChecksAtNoiseLevels(kNoiseLevelsPx, sample, PassesPerPointStatistic,
                            {PlannedRate("points that pass", 0.95, kPerPointLevel),

@@ -88,7 +88,7 @@ std::vector<Claim> SampsonClaims() {
       {"sampson.full_rank",
        "eq::cov_sampson_error_vec",
        "as printed",
-       "Sigma_delta of a point that fits its motion exactly has an inverse",
+       "Sigma_delta of an exact point has an inverse",
        "eigenvalues above 1e-12 of the largest",
        "",
        {MakeCheck({{"num_matches", "8"}}, SampsonRankStatistic,

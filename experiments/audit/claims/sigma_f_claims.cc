@@ -58,8 +58,8 @@ CaseClaim MakeCoverageClaim(const std::string& name, MinimalSolver solver) {
        kSigmaFLabel,
        fmt::format("{}, {}-point", is_exact ? "exact" : "overdetermined", num_matches),
        is_exact
-           ? "(J_Omega' Sigma_X^-1 J_Omega)^-1 = H^-1 D H^-T, in as many coordinates as the solver's models "
-             "have, is the covariance of f"
+           ? "(J_Omega' Sigma_X^-1 J_Omega)^-1 = H^-1 D H^-T, in the coordinates of the solver's models, "
+             "is the covariance of f"
            : "Sigma_f = A (A' J_Omega' Sigma_X^-1 J_Omega A)^-1 A' is the covariance of f",
        fmt::format("NEES of f, chi2_{}", num_matches),
        "sigma_px",
@@ -105,7 +105,8 @@ std::vector<Claim> SigmaFClaims() {
       {"sigma_f.basis_first_axis",
        kSigmaFLabel,
        "reflection onto the first axis",
-       "The first 8 columns of the Householder matrix of f are perpendicular to f (the textbook reflection)",
+       "The first 8 columns of the Householder matrix of f are perpendicular to f (textbook "
+       "reflection)",
        "largest |A'f|, at most 1e-12",
        "",
        {MakeCheck(kSampleOfF, NormalBasisStatistic(0), {IdentityTarget("share within 1e-12", 1e-12)},
@@ -121,7 +122,7 @@ std::vector<Claim> SigmaFClaims() {
       {"sigma_f.exact_inverse",
        kSigmaFLabel,
        "exact, 5-point, in f as printed",
-       "J_Omega' Sigma_X^-1 J_Omega of the exact case, with J_Omega = dOmega/df, has an inverse",
+       "J_Omega' Sigma_X^-1 J_Omega with J_Omega = dOmega/df has an inverse",
        "eigenvalues of the 9x9 matrix above 1e-12 of the largest",
        "",
        {MakeCheck({{"num_matches", "5"}}, ExactInverseStatistic,

@@ -44,7 +44,7 @@ Claim SizeClaim(const char* id, const char* reading, QualityTest quality_test, c
   return {id,
           "eq::inlier-quality-test",
           reading,
-          "At psi = mu the test rejects H0 \"psi > mu\" with probability alpha = 0.05 (within 0.03)",
+          "At psi = mu the test rejects H0 with probability alpha = 0.05 (within 0.03)",
           rule,
           "",
           {MakeCheck({{"num_matches", std::to_string(kSampleSize + kNumTested + kNumForMean)}},
@@ -77,9 +77,8 @@ Claim SpreadClaim(const char* id, const char* reading) {
       id,
       "Sec. inlier_qual_test",
       reading,
-      "s / sqrt(n) is the standard error of psi: two all-inlier models of a scene differ by less than "
-      "1.96 of its "
-      "kind in 95 %",
+      "s / sqrt(n) is the standard error of psi: two all-inlier models of a scene differ by less "
+      "than 1.96 of it in 95 %",
       "|psi_j - psi_k| against 1.96 sqrt(s_j^2 / n_j + s_k^2 / n_k)",
       "",
       {MakeCheck({{"num_matches", "100"}}, SpreadStatistic<PointTest>,
