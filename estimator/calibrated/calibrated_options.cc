@@ -13,7 +13,8 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
   std::vector<P> all = {
       P::Integer("min_samples", &o.min_samples, {8, 1e6}, "least number of minimal samples"),
       P::Integer("max_samples", &o.max_samples, {8, 1e6},
-                 "greatest number; stops when one sample is without wrong matches with probability 0.999"),
+                 "greatest number; stops when one sample is without wrong matches with probability 0.999; "
+                 "gravity adds a quarter in samples of three"),
       P::Integer("num_candidates", &o.num_candidates, {1, 1000}, "hypotheses refined briefly"),
       P::Integer("num_modes", &o.num_modes, {1, 100}, "of these, refined to the optimum"),
       P::Real("max_rotation_error_deg", &o.max_rotation_error_deg, {1e-6, 180.0}, "deg",

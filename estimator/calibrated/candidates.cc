@@ -80,19 +80,18 @@ RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E) {
   return best;
 }
 
+MatchMask TakeFirst(const MatchBlocks& matches, size_t count) {
+  MatchMask mask = matches.All();
+  for (size_t b = count / kBlockSize; b < mask.size(); ++b) mask[b] = 0;
+  return mask;
+}
+
 bool IsSameMode(const Mode& a, const Mode& b, double standard_deviations) {
   const Vector5d difference = LocalCoordinates(a.pose, b.pose);
   return difference.dot(a.hessian * difference) <= standard_deviations * standard_deviations;
 }
 
 namespace {
-
-// The first kMatchesOfCandidates matches.
-MatchMask MatchesOfCandidates(const MatchBlocks& matches) {
-  MatchMask mask = matches.All();
-  for (size_t b = kMatchesOfCandidates / kBlockSize; b < mask.size(); ++b) mask[b] = 0;
-  return mask;
-}
 
 // Each candidate after a few steps at a fixed wide scale, on the first matches. A candidate that becomes the
 // same as an earlier one is dropped.
@@ -101,7 +100,7 @@ std::vector<Mode> RefineALittle(const MatchBlocks& matches, const MixturePrior& 
   std::vector<Mode> modes;
   const double share = candidates.empty() ? 0.5 : candidates.front().score / matches.num_matches();
   const MixtureParameters common = FirstGuess(prior, kSoftScale, share);
-  const MatchMask some = MatchesOfCandidates(matches);
+  const MatchMask some = TakeFirst(matches, kMatchesOfCandidates);
   for (const ScoredEssential& candidate : candidates) {
     Mode mode;
     mode.pose = PoseInFront(matches, candidate.E);

@@ -11,6 +11,9 @@ namespace rcme {
 // The one of the four poses of E that puts the matches most clearly in front of both cameras (SumCheirality).
 RelativePose PoseInFront(const MatchBlocks& matches, const Eigen::Matrix3d& E);
 
+// The mask of the first `count` matches, a multiple of kBlockSize.
+MatchMask TakeFirst(const MatchBlocks& matches, size_t count);
+
 // Refines the candidates to modes and returns at most `num_modes` of them, most likely first; where there is
 // little parallax, at most three more:
 // 1. Each candidate is refined by a few steps at a wide scale on the first matches.

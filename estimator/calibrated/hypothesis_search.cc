@@ -135,10 +135,6 @@ Eigen::Matrix3d EssentialFromWhitened(const double* F, const RayScale& scale) {
   return E * (std::sqrt(2.0) / E.norm());
 }
 
-double Likeness(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-  return 0.5 * std::abs(a.cwiseProduct(b).sum());
-}
-
 // Whether one of the poses of E agrees with the prior. The motion of a minimal sample is taken to be off by 3
 // deg in each coordinate.
 bool IsNearPrior(const MotionPrior& prior, const Eigen::Matrix3d& E) {
@@ -165,7 +161,7 @@ std::vector<ScoredEssential> SelectDistinct(SearchLists* lists, const RayScale& 
       if (is_taken[i]) continue;
       const ScoredEssential& next = ranked[i];
       const bool is_new = std::ranges::all_of(
-          taken, [&](const ScoredEssential& other) { return Likeness(next.E, other.E) < too_like; });
+          taken, [&](const ScoredEssential& other) { return ComputeSimilarity(next.E, other.E) < too_like; });
       if (!is_new || (near != nullptr && !IsNearPrior(*near, next.E))) continue;
       taken.push_back(next);
       is_taken[i] = true;
@@ -178,6 +174,10 @@ std::vector<ScoredEssential> SelectDistinct(SearchLists* lists, const RayScale& 
 }
 
 }  // namespace
+
+double ComputeSimilarity(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  return 0.5 * std::abs(a.cwiseProduct(b).sum());
+}
 
 HypothesisSearch SearchHypotheses(const MatchBlocks& matches, const ScoreMatches& score_matches,
                                   const CalibratedOptions& options, RandomStream& rng, double soft_scale,

@@ -22,6 +22,9 @@ struct ScoredEssential {
   double score = 0.0;                           // sum over all matches
 };
 
+// |<a, b>| / 2 of two E as in ScoredEssential: 1 if they are the same.
+double ComputeSimilarity(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
+
 struct HypothesisSearch {
   std::vector<ScoredEssential> candidates;  // best first
   int num_samples = 0;                      // of five matches

@@ -16,7 +16,7 @@ constexpr size_t kUprightFullScores = 100;
 // Models to refine: at most so many, and one for so many samples. Refinement costs most where few are wrong.
 constexpr size_t kUprightRefined = 16;
 constexpr int kSamplesOfRefined = 8;
-// Above these values of |<E_a, E_b>| / 2, two models are alike before the refinement, and the same after it.
+// Above these similarities two models are alike before the refinement, and the same after it.
 constexpr double kUprightAlike = 0.995, kUprightSame = 0.9999;
 // Share of an error of gravity, times the focal length, that a usual residual of a good sample shows: the
 // angle about gravity and the translation absorb the rest. With 90 % wrong matches and 2 deg of noise, 0.1 to
@@ -39,9 +39,8 @@ std::vector<ScoredEssential> SelectBest(std::vector<ScoredEssential> models, siz
   std::vector<ScoredEssential> best;
   for (const ScoredEssential& model : models) {
     if (best.size() == count) break;
-    const bool is_new = std::ranges::all_of(best, [&](const ScoredEssential& other) {
-      return 0.5 * std::abs(other.E.cwiseProduct(model.E).sum()) < too_like;
-    });
+    const bool is_new = std::ranges::all_of(
+        best, [&](const ScoredEssential& other) { return ComputeSimilarity(model.E, other.E) < too_like; });
     if (is_new) best.push_back(model);
   }
   return best;
@@ -127,8 +126,7 @@ std::vector<ScoredEssential> RefineUpright(const MatchBlocks& matches, const Sco
                                            const std::vector<ScoredEssential>& models, size_t count) {
   std::vector<ScoredEssential> refined;
   const int n = matches.num_matches();
-  MatchMask some = matches.All();
-  for (size_t b = kUprightMatches / kBlockSize; b < some.size(); ++b) some[b] = 0;
+  const MatchMask some = TakeFirst(matches, kUprightMatches);
   for (const ScoredEssential& model : models) {
     Mode mode;
     mode.pose = PoseInFront(matches, model.E);

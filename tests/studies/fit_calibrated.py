@@ -76,8 +76,8 @@ def sources(scale):
     training = [Source("studies/right_calibration.yaml", 51, draws(6000), 4), Source("studies/any_condition.yaml", 55, draws(3000), 4, fits_covariance=False)]
     training += [Source(f"studies/calibrated/{family}.yaml", 53, None, max(2, int(20 * scale)), OF_FAMILY) for family in FAMILIES]
     training.append(Source("studies/right_calibration.yaml", 54, draws(300), 4, OF_RANDOM, fits_covariance=False, listing="permuted"))
-    held_out = [Source("studies/right_calibration.yaml", 76, draws(1200), 4), Source("studies/any_condition.yaml", 77, draws(600), 4),
-                Source("studies/right_calibration.yaml", 78, draws(100), 6, listing="permuted")]
+    held_out = [Source("studies/right_calibration.yaml", 86, draws(1200), 4), Source("studies/any_condition.yaml", 87, draws(600), 4),
+                Source("studies/right_calibration.yaml", 88, draws(100), 6, listing="permuted")]
     return training, held_out
 
 
