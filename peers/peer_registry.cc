@@ -34,6 +34,12 @@ void AddPeers() {
   AddEstimator({"poselib", "PoseLib " RCME_POSELIB_VERSION ": estimate_relative_pose", PoseLibModel,
                 /*is_peer=*/true});
 #endif
+#ifdef RCME_POSELIB_HAS_GRAVITY
+  AddEstimator({"poselib_gravity",
+                "PoseLib " RCME_POSELIB_VERSION
+                ": as poselib, with samples of three where gravity is measured",
+                PoseLibGravityModel, /*is_peer=*/true});
+#endif
 }
 
 }  // namespace rcme

@@ -15,6 +15,7 @@ std::unique_ptr<EstimatorModel> OpenCvUsacModel();
 std::unique_ptr<EstimatorModel> OpenCvRansacModel();
 std::unique_ptr<EstimatorModel> OpenCvLmedsModel();
 std::unique_ptr<EstimatorModel> OpenGvRansacModel();
-std::unique_ptr<EstimatorModel> PoseLibModel();  // only where CMake finds PoseLib
+std::unique_ptr<EstimatorModel> PoseLibModel();         // only where CMake finds PoseLib
+std::unique_ptr<EstimatorModel> PoseLibGravityModel();  // only where it finds PoseLib 3
 
 }  // namespace rcme

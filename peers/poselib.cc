@@ -1,24 +1,11 @@
 // PoseLib's relative pose: LO-RANSAC over five-point samples, then refinement over the inliers. PoseLib is
 // not a Debian package; this is built if CMake finds it.
-#include <PoseLib/poselib.h>
-
 #include "peers/peer_call.h"
 #include "peers/peers.h"
+#include "peers/poselib_options.h"
 
 namespace rcme {
 namespace {
-
-// Defaults are PoseLib's.
-struct PoseLibOptions {
-  double threshold_sigma = 2.0;
-  double confidence = 0.9999;
-  int min_iterations = 1000;
-  int max_iterations = 100000;
-};
-
-poselib::Camera MakePoseLibCamera(const Camera& camera) {
-  return {"PINHOLE", {camera.fx, camera.fy, camera.cx, camera.cy}, camera.width, camera.height};
-}
 
 // The type of the options of estimate_relative_pose: RansacOptions (followed by BundleOptions) up to 2.0.5,
 // later RelativePoseOptions, which contain both.
@@ -33,18 +20,12 @@ template <typename Options>
 Options OptionsFor(const PoseLibOptions& options, double sigma_px, std::uint32_t seed) {
   Options call;
   const double threshold_px = options.threshold_sigma * sigma_px;
-  const auto set = [&](auto& ransac) {
-    ransac.min_iterations = static_cast<size_t>(options.min_iterations);
-    ransac.max_iterations = static_cast<size_t>(options.max_iterations);
-    ransac.success_prob = options.confidence;
-    ransac.seed = seed;
-  };
   if constexpr (requires { call.max_epipolar_error; }) {
     call.max_epipolar_error = threshold_px;
-    set(call);
+    SetStoppingRule(options, seed, &call);
   } else {
     call.max_error = threshold_px;
-    set(call.ransac);
+    SetStoppingRule(options, seed, &call.ransac);
   }
   return call;
 }
@@ -92,24 +73,33 @@ class PoseLib : public MotionEstimator {
 
 class PoseLibEstimatorModel : public EstimatorModel {
  public:
-  std::vector<Parameter> Parameters() override {
-    PoseLibOptions& o = options_;
-    return {Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
-                            "inlier threshold in standard deviations of the distance"),
-            Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
-                            "probability of a sample without wrong matches at which the loop ends"),
-            Parameter::Integer("min_iterations", &o.min_iterations, {0, 1e6},
-                               "least number of samples, up to max_iterations"),
-            Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "greatest number of samples")};
-  }
+  std::vector<Parameter> Parameters() override { return rcme::Parameters(options_); }
   std::optional<Effort> EffortOption() const override { return Effort{"max_iterations", true}; }
-  std::unique_ptr<MotionEstimator> Make() const override { return std::make_unique<PoseLib>(options_); }
+  std::unique_ptr<MotionEstimator> Make() const override { return MakePoseLib(options_); }
 
  private:
   PoseLibOptions options_;
 };
 
 }  // namespace
+
+std::vector<Parameter> Parameters(PoseLibOptions& o) {
+  return {Parameter::Real("threshold_sigma", &o.threshold_sigma, {1e-3, 1e3}, "sigma",
+                          "inlier threshold in standard deviations of the distance"),
+          Parameter::Real("confidence", &o.confidence, {0.01, 0.999999}, "",
+                          "probability of a sample without wrong matches at which the loop ends"),
+          Parameter::Integer("min_iterations", &o.min_iterations, {0, 1e6},
+                             "least number of samples, up to max_iterations"),
+          Parameter::Integer("max_iterations", &o.max_iterations, {1, 1e6}, "greatest number of samples")};
+}
+
+poselib::Camera MakePoseLibCamera(const Camera& camera) {
+  return {"PINHOLE", {camera.fx, camera.fy, camera.cx, camera.cy}, camera.width, camera.height};
+}
+
+std::unique_ptr<MotionEstimator> MakePoseLib(const PoseLibOptions& options) {
+  return std::make_unique<PoseLib>(options);
+}
 
 std::unique_ptr<EstimatorModel> PoseLibModel() { return std::make_unique<PoseLibEstimatorModel>(); }
 
