@@ -96,6 +96,10 @@ def rate(row, digits=1, unit=""):
     return f"{100 * value:.{digits}f} [{100 * lower:.{digits}f}, {100 * upper:.{digits}f}]{unit}"
 
 
+def rate_of_n(row):
+    return f"{rate(row)} of {int(row['n']):,}" if value_of(row) else "-"
+
+
 def share(row, digits=3):
     value = f"{float(value_of(row)):.{digits}f}"
     if not row.get("lower"):
@@ -133,7 +137,7 @@ def rms_over_sd(row):
 
 FORMATS = {
     "rate": rate, "percent": lambda row: rate(row, 1, " %"), "percent2": lambda row: rate(row, 2, " %"),
-    "rate2": lambda row: rate(row, 2), "value": lambda row: f"{100 * float(value_of(row)):.1f}",
+    "rate2": lambda row: rate(row, 2), "rate_of_n": rate_of_n, "value": lambda row: f"{100 * float(value_of(row)):.1f}",
     "share": share, "share4": lambda row: share(row, 4), "number": number, "scientific": scientific,
     "n": lambda row: f"{int(row['n']):,}", "natural": natural,
     "covered": covered, "rms_over_sd": rms_over_sd,
