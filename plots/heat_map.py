@@ -10,12 +10,13 @@ import sys
 from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
 from common.summary_csv import read_summary, where
 from rates.cells import draw
+from rates.selection import usual_quantities
 
 EXAMPLE = """
 example:
   rcme summarize run.sqlite --format csv > summary.csv
   rcme plot heat_map summary.csv --x outlier_ratio --y sigma_px --out heat_map
-draws heat_map.png and heat_map.pdf: failure and detect-fail rate of each estimator over the two factors.
+draws heat_map.png and heat_map.pdf: the rate of failures, and of failures or refusals, of each estimator over the two factors.
 
   rcme plot heat_map summary.csv --x outlier_ratio --y sigma_px --out failure \\
       --quantities failure --estimators standard,rcme_rank_aware --where num_matches=500
@@ -29,13 +30,13 @@ def parse(arguments):
     parser.add_argument("--x", required=True, metavar="FACTOR", help="the factor from left to right")
     parser.add_argument("--y", required=True, metavar="FACTOR", help="the factor from bottom to top")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
-    parser.add_argument("--quantities", default="failure,no_candidate", metavar="A,B",
-                        help="rates and scores to draw, one row of panels each (default: %(default)s)")
+    parser.add_argument("--quantities", metavar="A,B",
+                        help="rates and scores to draw, one row of panels each (default: failure,failure_or_refusal)")
     parser.add_argument("--estimators", metavar="A,B", help="labels of the estimators to draw (default: all)")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor, study, condition or estimator; repeatable")
     options = parser.parse_args(arguments)
-    options.quantities = names_of("--quantities", options.quantities, "failure")
+    options.quantities = None if options.quantities is None else names_of("--quantities", options.quantities, "failure")
     options.estimators = [] if options.estimators is None else names_of("--estimators", options.estimators, "rcme")
     check_figure_path(options.out)
     return options
@@ -43,7 +44,7 @@ def parse(arguments):
 
 def draw_for(options):
     summary = where(read_summary(options.summary), options.where)
-    return draw(summary, options.x, options.y, options.quantities, options.estimators)
+    return draw(summary, options.x, options.y, options.quantities or usual_quantities(summary), options.estimators)
 
 
 def main(arguments=None):

@@ -56,8 +56,9 @@ events failure, refusal and failure_or_refusal the table has, in each condition,
 trials in which the event happened to both estimators, to one, or to none; the
 difference of the rates with Tango's 95 % interval; and McNemar's exact p-value. The
 interval is usually narrower than those of the two rates suggest, because hard trials
-are hard for both. Without any difference up to one p-value in twenty is still below
-0.05, so judge by Holm's p-value: it is adjusted for all tests of the comparison.
+are hard for both. An event that happened to no estimator has no table. Without any
+difference up to one p-value in twenty is still below 0.05, so judge by Holm's p-value:
+it is adjusted for all tests of the comparison.
 
 --of scores compares mean scores (auc_5_deg, ..., maa_10_deg: `rcme list quantities`),
 --of errors the errors of each trial (median difference and sign test). You can also

@@ -19,7 +19,8 @@ struct Kind {
 
 const std::vector<Kind>& Kinds() {
   static const std::vector<Kind> kinds = {
-      {"failure_rate", "SUMMARY.csv", "rates over one factor, from `rcme summarize --format csv`"},
+      {"failure_rate", "SUMMARY.csv",
+       "rates, scores or errors over one factor, from `rcme summarize --format csv`"},
       {"heat_map", "SUMMARY.csv", "rates over two factors, from `rcme summarize --format csv`"},
       {"paired_difference", "COMPARISON.csv",
        "differences from a reference, from `rcme compare --format csv`"},
@@ -103,15 +104,15 @@ void AddPlotCommand(CLI::App& app) {
     }
   }
   command->footer("Kinds, their input, and what they show:\n" + kinds + R"(
-Every kind takes --width INCHES (3.3 for a column, with text of 7 to 9 points), --labels NAME=TEXT,
---highlight A,B (the others grey), --no-caption, --format png,pdf,svg,tikz, and --style FILE.toml with
-these settings for all figures of a paper.
+Every kind takes --width INCHES (a column of IEEEtran: 3.48, of article: 3.17; text of 7 to 9 points),
+--labels NAME=TEXT, --highlight A,B (the others grey), --no-caption, --format png,pdf,svg,tikz, and
+--style FILE.toml with these settings for all figures of a paper.
 
 Examples:
   rcme plot failure_rate --help                      the options of that kind
   rcme summarize run.sqlite --format csv --out summary.csv
   rcme plot failure_rate summary.csv --x outlier_ratio --out figure
-  rcme plot failure_rate summary.csv --x outlier_ratio --out figure --width 3.3 --format tikz)");
+  rcme plot failure_rate summary.csv --x outlier_ratio --out figure --width 3.17 --format tikz)");
   command->prefix_command();
   command->callback([command] { RunPlot(command->remaining()); });
 }

@@ -89,10 +89,38 @@ std::string RenderComparedTable(const Compared& compared, const Comparison& comp
   return fmt::format("\n{}: {}\n\n{}", compared.name, compared.doc, RenderText(MakeTable(columns, rows)));
 }
 
-// Explains the numbers of a kind; empty if nothing of this kind is compared.
+// Returns whether an event has trials that count and happened in none of them, to no estimator.
+bool HappenedNever(const Compared& compared, const Comparison& comparison) {
+  if (compared.kind != ComparedKind::kEvent) return false;
+  bool has_trials = false, has_events = false;
+  for (const ComparisonRow& row : comparison.rows) {
+    if (row.event != compared.name) continue;
+    const PairedCounts& counts = row.counts;
+    has_trials = has_trials || row.n > 0;
+    has_events = has_events || counts.both + counts.first_only + counts.second_only > 0;
+  }
+  return has_trials && !has_events;
+}
+
+// One line for the events that happened never, in place of their tables of zeros; empty if there are none.
+std::string RenderEventsWithoutTrials(const Comparison& comparison) {
+  std::vector<std::string> names;
+  for (const Compared& compared : comparison.compared) {
+    if (HappenedNever(compared, comparison)) names.push_back(compared.name);
+  }
+  if (names.empty()) return "";
+  const bool is_all = names.size() == comparison.compared.size();
+  return fmt::format("\n{}: in no trial of any estimator{}.\n", fmt::join(names, ", "),
+                     is_all ? "; --of errors compares their errors" : "");
+}
+
+// Explains the numbers of a kind; empty if no table shows this kind.
 std::string Legend(ComparedKind kind, const Comparison& comparison) {
+  const bool has_table = std::ranges::any_of(comparison.compared, [&](const Compared& compared) {
+    return compared.kind == kind && !HappenedNever(compared, comparison);
+  });
   const auto row = std::ranges::find(comparison.rows, kind, &ComparisonRow::kind);
-  if (row == comparison.rows.end()) return "";
+  if (!has_table || row == comparison.rows.end()) return "";
   const Method method = FindMethod(*row);
   const std::string tests = fmt::format("with {}.\np: {}.\n", method.interval_in_words, method.test_in_words);
   switch (kind) {
@@ -153,7 +181,12 @@ std::string ComparisonAsTable(const Comparison& comparison) {
       "Study {} against {}: {}\n", comparison.study, comparison.reference,
       DescribeProgress(comparison.num_trials_done, comparison.num_trials_planned, comparison.is_target_open));
   if (!comparison.caution.empty()) text += fmt::format("Caution: {}.\n", comparison.caution);
-  for (const Compared& compared : comparison.compared) text += RenderComparedTable(compared, comparison);
+  std::string tables;
+  for (const Compared& compared : comparison.compared) {
+    if (!HappenedNever(compared, comparison)) tables += RenderComparedTable(compared, comparison);
+  }
+  text += tables + RenderEventsWithoutTrials(comparison);
+  if (tables.empty()) return text;
   text += "\n";
   for (const ComparedKind kind : {ComparedKind::kEvent, ComparedKind::kScore, ComparedKind::kError})
     text += Legend(kind, comparison);

@@ -28,7 +28,7 @@ class FigureParser(Parser):
         self.least_width = least_width
         group = self.add_argument_group("for a paper")
         group.add_argument("--width", type=float, metavar="INCHES",
-                           help="as wide as it is printed (a column: 3.3); texts then have 7 to 9 points")
+                           help="as wide as it is printed (a column of IEEEtran: 3.48, of article: 3.17); texts then have 7 to 9 points")
         group.add_argument("--labels", action="append", default=[], metavar="NAME=TEXT",
                            help="what to print for an estimator, a factor, a level or a quantity; repeatable")
         group.add_argument("--highlight", default="", metavar="A,B",

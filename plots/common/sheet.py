@@ -1,7 +1,7 @@
 """The sheet a figure is drawn for: how wide it is printed, what its names are, whether it has a caption, in which formats it is
 written. Every kind of figure asks the sheet in use, so that all have the same options:
 
-    with sheet.use(Sheet(width=3.3, labels={"rcme": "Ours"}, has_caption=False, formats=("pdf",))):
+    with sheet.use(Sheet(width=3.48, labels={"rcme": "Ours"}, has_caption=False, formats=("pdf",))):
         style.save(draw(...), "figure")
 """
 

@@ -1,6 +1,6 @@
 """The file of `--style`: settings that the figures of one paper share.
 
-    width = 3.3
+    width = 3.48
     caption = false
     formats = ["pdf", "tikz"]
     highlight = ["rcme_calibrated", "poselib"]

@@ -67,7 +67,7 @@ def with_content(rows, names, quantities):
 
 
 def without_content_in_words(rows, quantity, names, labels):
-    """'Detect-fail rate of Standard and pRCME: 0 in every cell, at most 0.9 %'. Labels stand in quotes where one has a comma."""
+    """'No-candidate rate of Standard and pRCME: 0 in every cell, at most 0.9 %'. Labels stand in quotes where one has a comma."""
     upper = rows.upper[(rows.quantity == quantity) & rows.estimator.isin(names)].max()
     quote = '"' if any("," in labels[name] for name in names) else ""
     texts = [f"{quote}{labels[name]}{quote}" for name in names]

@@ -7,8 +7,9 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from common import sheet, style
 from common.command_line import PlotError
 from common.text_size import fill
-from rates.lines import LEAST, STATED, STATED_LEVELS, are_numbers, caption_of, with_content
-from rates.selection import check_no_repetition, select_rates, title_of, with_sharpness
+from rates.lines import (LEAST, STATED, STATED_LEVELS, are_numbers, caption_of, draw_zeros, ends_in_words, has_log_axis, in_panels,
+                         is_all_zero, set_log_ticks, with_content)
+from rates.selection import check_no_repetition, refusals_in_words, select_rates, title_of, with_sharpness
 
 ROW, AROUND = 0.24, 0.95  # inches of an estimator; of title, axis and its numbers
 NAME_WIDTH, NAMES_WIDTH, PANEL_WIDTH = 1.7, 2.2, 1.9  # inches: of a name; beside the panels; of the narrowest panel, on a screen
@@ -34,7 +35,13 @@ def draw_marks(axes, points, looks):
     is_of_numbers, low = are_numbers(points), min(points.lower.min(), points.value.min())
     if not is_of_numbers and not low > 0.5:  # of what is near one, the part that differs
         axes.set_xlim(left=0)
-    axes.xaxis.set_major_locator(MaxNLocator(4))
+    if is_of_numbers and points.is_open.any():
+        axes.set_xlim(right=points.upper.max())
+    if has_log_axis(points, None) and is_of_numbers:
+        axes.set_xscale("log")
+        set_log_ticks(axes.xaxis)
+    else:
+        axes.xaxis.set_major_locator(MaxNLocator(4))
     if not is_of_numbers:
         axes.xaxis.set_major_formatter(FuncFormatter(lambda fraction, _: f"{100 * fraction:g}"))
     axes.grid(axis="y", visible=False)
@@ -59,8 +66,12 @@ def draw(summary, quantities):
     rows = select_rates(summary, quantities, or_numbers=True)
     check_one_condition(summary, rows)
     check_no_repetition(summary.path, rows, ["estimator", "quantity"], lambda row: f"condition {row.condition}")
-    quantities, left_out = with_content(rows, quantities)
+    rows = in_panels(rows)
+    asked, (quantities, left_out) = quantities, with_content(rows, quantities)
     looks = style.equal_looks_of(list(dict.fromkeys(rows.estimator)))
+    notes = ends_in_words(rows) + refusals_in_words(summary, rows, asked)
+    if is_all_zero(rows):
+        return draw_zeros(summary, asked, caption_of(rows, summary.factors, False, notes, asked, per="estimator"))
     figure, panels = new_figure(len(quantities), len(looks))
     letters = style.letters(len(quantities))
     for axes, quantity in zip(panels, quantities):
@@ -71,5 +82,5 @@ def draw(summary, quantities):
     size = style.font_size(style.RC["ytick.labelsize"])
     panels[0].set_yticks(range(len(looks)), ["\n".join(fill(look.label, NAME_WIDTH, size)) for look in looks.values()])
     panels[0].set_ylim(len(looks) - 0.4, -0.6)
-    style.add_legend_and_caption(figure, [], caption_of(rows, summary.factors, False, [], left_out, per="estimator"))
+    style.add_legend_and_caption(figure, [], caption_of(rows, summary.factors, False, notes, left_out, per="estimator"))
     return figure

@@ -1,6 +1,7 @@
 """The rates of a summary, checked: what the figures of rates share."""
 
 import math
+import re
 
 from common import sheet, style
 from common.command_line import PlotError
@@ -8,19 +9,26 @@ from common.summary_csv import numbers
 
 TITLES = {  # other quantities: their name in words
     "failure": "Failure rate", "success": "Success rate", "failure_or_refusal": "Failure or refusal rate",
-    "no_candidate": "Detect-fail rate",  # the paper's word
+    "no_candidate": "No-candidate rate",
     "other_refusal": "Other refusals",
     "failure_probability": "Stated probability of failure",
     "kappa_flag": "Kappa-flag rate", "nees_coverage": "NEES coverage",
+    "nees": "Mean NEES of successes", "nees_median": "Median NEES",
     "sd_over_crb": "Stated sd over its bound", "rotation_ause": "AUSE of rotation", "direction_ause": "AUSE of direction",
     "rotation_ause_random": "AUSE of rotation, random order", "direction_ause_random": "AUSE of direction, random order",
+    "rotation_error_deg": "Mean rotation error of successes (deg)", "direction_error_deg": "Mean direction error of successes (deg)",
+    "rotation_error_median_deg": "Median rotation error (deg)", "direction_error_median_deg": "Median direction error (deg)",
+    "max_error_median_deg": "Median of the greater error (deg)",
     "auc_5_deg": "AUC@5\u00b0", "auc_10_deg": "AUC@10\u00b0", "auc_20_deg": "AUC@20\u00b0", "maa_10_deg": "mAA(10\u00b0)",
 }
 ANSWERED = "_answered"  # the suffix of measures that leave refusals out
 DRAWN_KINDS = ("rate", "score", "share")  # numbers between 0 and 1 with an interval
-NUMBER_KINDS = {"median": "medians with distribution-free", "area": "areas with Student's"}  # of any size; interval if known
-NUMBERS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg", "rotation_ause", "rotation_ause_random", "direction_ause",
-           "direction_ause_random")  # those of them that are drawn
+NUMBER_KINDS = {"median": "medians with distribution-free", "area": "areas with Student's",
+                "mean": "means without"}  # of any size; interval if known
+FAILURES = ("failure", "failure_or_refusal", "no_candidate")  # what is drawn unless asked otherwise: the first two of a table
+REFUSALS = ("no_candidate", "other_refusal")  # together all of them
+ERROR_MEDIANS = ("rotation_error_median_deg", "direction_error_median_deg")
+ERROR = re.compile(f"_error(_median)?_deg({ANSWERED})?$")
 SHARPNESS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg", "log_det_cov")
 
 
@@ -29,6 +37,43 @@ def title_of(quantity):
     if measure in TITLES and quantity.endswith(ANSWERED):
         return sheet.current().text_of(quantity, TITLES[measure] + ", refusals left out")
     return sheet.current().text_of(quantity, TITLES[quantity]) if quantity in TITLES else style.in_words(quantity)
+
+
+def titles_in_words(quantities):
+    """'Failure rate and no-candidate rate', 'NEES coverage, AUC@10 and ...'."""
+    titles = [title if place == 0 or title[1:2].isupper() else title[:1].lower() + title[1:]
+              for place, title in enumerate(map(title_of, quantities))]
+    return " and ".join([", ".join(titles[:-1]), titles[-1]] if len(titles) > 1 else titles)
+
+
+def usual_quantities(summary):
+    """Failures without and with refusals, so that an estimator does not look good by refusing; an old table lacks the second."""
+    present = set(summary.rows.quantity)
+    return [quantity for quantity in FAILURES if quantity in present][:2] or list(FAILURES[:1])
+
+
+def is_error(quantity):
+    """Whether it is an angle between a motion and the truth."""
+    return ERROR.search(quantity) is not None
+
+
+def refusals_in_words(summary, rows, quantities):
+    """The greatest rate of refusals in the drawn conditions, as the caption of a figure whose failure rate does not show them
+    needs it; no_candidate and other_refusal exclude each other."""
+    if "failure" not in quantities or "success" in quantities or set(REFUSALS) <= set(quantities):
+        return []
+    table = summary.rows
+    table = table[table.quantity.isin(REFUSALS) & (table.n != "0") & table.condition.isin(rows.condition) &
+                  table.estimator.isin(rows.estimator)]
+    shares = table.assign(value=numbers(summary.with_rows(table), "value"))
+    sums = shares.groupby(["condition", "estimator"], sort=False).value.sum()
+    if not (sums > 0).any():
+        return []
+    condition, estimator = sums.idxmax()
+    place = table[table.condition == condition].iloc[0]
+    varying = [factor for factor in summary.factors if rows[factor].nunique() > 1]
+    at = " and ".join(style.level_in_words(factor, place[factor]) for factor in varying)
+    return [f"greatest refusal rate: {100 * sums.max():.3g} % ({style.label_of(estimator)}{', at ' * bool(at)}{at})"]
 
 
 def with_sharpness(summary, quantities):
@@ -70,17 +115,25 @@ def check_one_study(summary):
                         f"--where study={' or study='.join(studies)}.")
 
 
+def check_quantities(summary, quantities, kinds):
+    """Those of these kinds are allowed."""
+    allowed = list(dict.fromkeys(summary.rows.quantity[summary.rows.kind.isin(kinds)]))
+    for quantity in quantities:
+        of_other_kinds = summary.rows.kind[summary.rows.quantity == quantity]
+        if quantity not in allowed and len(of_other_kinds):
+            raise PlotError(f"{summary.path}: '{quantity}' is a {of_other_kinds.iloc[0]}, and this figure has rates and scores only; "
+                            "'rcme plot failure_rate' draws it.")
+        if quantity not in allowed:
+            raise PlotError(f"{summary.path}: has no quantity called '{quantity}'; allowed: {', '.join(allowed) or 'none'}.")
+
+
 def select_rates(summary, quantities, or_numbers=False):
     """The rows of the asked rates or scores, with `value`, `lower`, `upper` and `n` as numbers; NaN where n is 0.
-    `or_numbers`: NUMBERS too, which are of any size and may have no interval."""
-    path = summary.path
-    is_drawn = summary.rows.kind.isin(DRAWN_KINDS) | (or_numbers & summary.rows.quantity.isin(NUMBERS))
-    rates = list(dict.fromkeys(summary.rows.quantity[is_drawn]))
-    for quantity in quantities:
-        if quantity not in rates:
-            raise PlotError(f"{path}: has no rate or score called '{quantity}'; allowed: {', '.join(rates) or 'none'}.")
+    `or_numbers`: medians, means and areas too, which are of any size and may have no interval."""
+    path, kinds = summary.path, (*DRAWN_KINDS, *(NUMBER_KINDS if or_numbers else ()))
+    check_quantities(summary, quantities, kinds)
     check_one_study(summary)
-    summary = summary.with_rows(summary.rows[is_drawn & summary.rows.quantity.isin(quantities)])
+    summary = summary.with_rows(summary.rows[summary.rows.kind.isin(kinds) & summary.rows.quantity.isin(quantities)])
     selected = summary.rows.assign(
         n=numbers(summary, "n"),
         **{column: numbers(summary, column, may_be_empty=True) for column in ("value", "lower", "upper")})
@@ -128,6 +181,13 @@ def interval_in_words(rows):
     """The kind of the intervals of rates and scores; a table from before there were several has exact ones."""
     kinds = list(dict.fromkeys(kind for kind in rows.get("interval", ["exact"]) if kind))
     return " or ".join(INTERVALS.get(kind, kind) for kind in kinds)
+
+
+def number_intervals_in_words(rows):
+    """The same of medians, areas and means: ['medians with distribution-free']. `effective_n` is of a population."""
+    of_population = "effective_n" in rows and (rows.effective_n != "").any()
+    return [f"{kind}s with {OF_POPULATION}" if of_population and kind != "mean" else words
+            for kind, words in NUMBER_KINDS.items() if (rows.kind == kind).any()]
 
 
 def n_in_words(rows, per):

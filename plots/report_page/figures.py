@@ -11,10 +11,9 @@ from common.summary_csv import where
 from page.html import code, element, joined
 from page.picture import picture_of
 from rates import cells, differences, estimator_marks, lines
-from rates.selection import title_of, with_sharpness
+from rates.selection import titles_in_words, usual_quantities, with_sharpness
 from reliability_figure import panels as reliability
 
-QUANTITIES = ("failure", "failure_or_refusal", "no_candidate")  # the first two that a table has: an old one lacks the second
 MEASURES = ("nees_coverage", "auc_10_deg", "failure_probability")  # of a figure of their own
 EVENTS = ("failure", "failure_or_refusal")
 MAX_SLICES = 6  # heat maps of one run
@@ -43,8 +42,7 @@ def in_running_text(factor):
 
 
 def quantities_of(run):
-    present = set(run.summary.rows.quantity)
-    return [quantity for quantity in QUANTITIES if quantity in present][:2]
+    return usual_quantities(run.summary)
 
 
 def measures_of(run):
@@ -54,15 +52,8 @@ def measures_of(run):
                                         if ((rows.quantity == quantity) & (rows.n != "0")).any()])
 
 
-def rates_in_words(quantities):
-    """'Failure rate and detect-fail rate', 'NEES coverage, AUC@10 and ...'."""
-    titles = [title if place == 0 or title[1:2].isupper() else title[:1].lower() + title[1:]
-              for place, title in enumerate(map(title_of, quantities))]
-    return " and ".join([", ".join(titles[:-1]), titles[-1]] if len(titles) > 1 else titles)
-
-
 def line_figure(run, x, quantities):
-    caption = f"{rates_in_words(quantities)} against {in_running_text(x)}."
+    caption = f"{titles_in_words(quantities)} against {in_running_text(x)}."
     return drawn(lambda: lines.draw(run.summary, x, quantities),
                  f"{caption} A line per estimator with the band of its 95 % intervals; the numbers are in the table "
                  "of results.", caption,
@@ -71,7 +62,7 @@ def line_figure(run, x, quantities):
 
 def marks_figure(run, quantities):
     """Of a run with one condition."""
-    caption = f"{rates_in_words(quantities)} of each estimator."
+    caption = f"{titles_in_words(quantities)} of each estimator."
     return drawn(lambda: estimator_marks.draw(run.summary, quantities),
                  f"{caption} A mark per estimator with its 95 % interval; the numbers are in the table of results.", caption,
                  script_command(run, "failure_rate", ["--quantities", ",".join(quantities)]))
@@ -79,7 +70,7 @@ def marks_figure(run, quantities):
 
 def heat_map_figure(run, x, y, fixed):
     """`fixed`: [(factor, level)] of the others that vary."""
-    caption = f"{rates_in_words(quantities_of(run))} over {in_running_text(x)} and {in_running_text(y)}" + "".join(
+    caption = f"{titles_in_words(quantities_of(run))} over {in_running_text(x)} and {in_running_text(y)}" + "".join(
         f", {style.level_in_words(*pair)}" for pair in fixed) + "."
     conditions = [f"{factor}={level}" for factor, level in fixed]
     arguments = ["--x", x, "--y", y, "--quantities", ",".join(quantities_of(run))]

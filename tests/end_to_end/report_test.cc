@@ -90,8 +90,8 @@ TEST_F(Report, ShowsRepeatedScenesAndRunsThatStopped) {
   EXPECT_EQ(refused.exit_code, 2) << "another study";
   EXPECT_THAT(refused.err, HasSubstr("repeats_per_scene"));
   EXPECT_THAT(RunRcme({"summarize", repeated}).out, HasSubstr("Scene and sampler"));
-  EXPECT_THAT(RunRcme({"compare", repeated}).out, HasSubstr("Scenes are repeated"));
-  EXPECT_THAT(RunRcme({"compare", stopped}).out, HasSubstr("valid at every look"));
+  EXPECT_THAT(RunRcme({"compare", repeated, "--of", "events,errors"}).out, HasSubstr("Scenes are repeated"));
+  EXPECT_THAT(RunRcme({"compare", stopped, "--of", "events,errors"}).out, HasSubstr("valid at every look"));
   const ProgramResult result = RunRcme({"report", repeated, stopped, "--out", page_});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const std::string page = ReadBytes(page_);

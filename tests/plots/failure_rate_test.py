@@ -162,9 +162,137 @@ class Scores(FailureRateTest):
         caption = self.draw(text, quantities=["auc_5_deg"]).texts[0].get_text().replace("\n", " ")
         self.assertIn("anytime-valid 95 % (betting) intervals", caption)
 
-    def test_a_median_is_no_score(self):
-        self.assert_refused(self.run_main("--quantities", "max_error_median_deg", text=SCORES), "'max_error_median_deg'",
-                            "auc_5_deg")
+
+
+# Median errors: one without an upper end of its interval, one infinite; and means, which have no interval.
+ERRORS = TABLE + """demo,b,0.0,1,standard,direction_error_median_deg,median,0.2,0.1,0.4,,390
+demo,"a, first",0.4,1,standard,direction_error_median_deg,median,2,0.5,,,400
+demo,c,0.8,1,standard,direction_error_median_deg,median,inf,,,,400
+demo,b,0.0,1,mine,direction_error_median_deg,median,0.3,0.2,0.5,,390
+demo,"a, first",0.4,1,mine,direction_error_median_deg,median,3,1,20,,400
+demo,c,0.8,1,mine,direction_error_median_deg,median,,,,,0
+demo,b,0.0,1,standard,log_score,mean,-30,,,0.1,390
+demo,"a, first",0.4,1,standard,log_score,mean,-20,,,0.1,400
+"""
+
+
+class Errors(FailureRateTest):
+    def draw_errors(self, *more, log_y=None):
+        return self.draw(ERRORS, ["direction_error_median_deg", *more], log_y=log_y)
+
+    def test_medians_have_their_intervals_on_a_logarithmic_axis_with_their_unit(self):
+        axes, = self.draw_errors().axes
+        self.assertEqual((axes.get_yscale(), axes.get_ylabel(), axes.get_title("left")),
+                         ("log", "Error (deg)", "Median direction error (deg)"))
+        self.assertEqual([line_of(axes, name) for name in ("Standard", "mine")], [[(0.0, 0.2), (0.4, 2)], [(0.0, 0.3), (0.4, 3)]])
+        self.assertLessEqual({(0.0, 0.2), (0.0, 0.5), (0.4, 1), (0.4, 20)}, band_of(axes, 1))
+        self.assertEqual(axes.yaxis.get_major_formatter()(0.5), "0.5")
+        self.assertLess(axes.get_ylim()[0], 0.1)
+        self.assertEqual(self.draw_errors(log_y=False).axes[0].get_yscale(), "linear")
+
+    def test_what_has_no_place_is_named(self):
+        figure = self.draw_errors()
+        top = figure.axes[0].get_ylim()[1]
+        self.assertGreater(top, 20)
+        self.assertLessEqual({(0.4, 0.5), (0.4, top)}, band_of(figure.axes[0], 0), "an open interval reaches the top")
+        caption = figure.texts[0].get_text().replace("\n", " ")
+        for words in ("medians with distribution-free intervals", "no mark: infinite", "reach the end of a panel have no upper end"):
+            self.assertIn(words, caption)
+        self.assertNotIn("exact", caption, "no rate is drawn")
+        self.assertNotIn("infinite", self.draw(quantities=["failure"]).texts[0].get_text())
+
+    def test_intervals_of_a_population_are_named(self):
+        header, *rows = ERRORS.strip().split("\n")
+        text = "\n".join([f"{header},effective_n", *(f"{row},12.5" for row in rows), ""])
+        caption = self.draw(text, ["direction_error_median_deg"]).texts[0].get_text()
+        self.assertIn("medians with 95 % population intervals", caption.replace("\n", " "))
+
+    def test_means_may_be_negative_and_stand_without_intervals(self):
+        figure = self.draw_errors("log_score")
+        self.assertEqual(line_of(figure.axes[1], "Standard"), [(0.0, -30), (0.4, -20)])
+        low, high = figure.axes[1].get_ylim()
+        self.assertLess(low, -30)
+        self.assertGreater(high, -20)
+        self.assertIn("means without intervals", figure.texts[0].get_text().replace("\n", " "))
+        self.assertEqual(self.draw_errors("log_score", log_y=True).axes[1].get_yscale(), "linear", "it has no logarithm")
+
+    def test_a_mark_without_an_interval_is_within_its_axes(self):
+        words = ERRORS.replace(",0.4,1", ",student_t,1").replace(",0.0,1", ",gaussian,1").replace(",0.8,1", ",laplace,1")
+        axes, = self.draw(words, ["log_score"]).axes
+        self.assertLess(axes.get_ylim()[0], -30)
+
+    def test_of_one_condition_errors_stand_on_a_logarithmic_axis_too(self):
+        options = failure_rate.parse([self.write(ERRORS), "--out", str(self.out), "--where", "outlier_ratio=0.4", "--quantities",
+                                      "failure,direction_error_median_deg"])
+        failure, error = failure_rate.draw_for(options).axes
+        self.assertEqual([failure.get_xscale(), error.get_xscale()], ["linear", "log"])
+        self.assertEqual([line_of(error, name) for name in ("Standard", "mine")], [[(2, 0)], [(3, 1)]])
+        bars = [line.get_xydata().tolist() for line in error.lines if line.get_label() == "_interval"]
+        self.assertEqual(bars, [[[0.5, 0], [error.get_xlim()[1], 0]], [[1, 1], [20, 1]]])
+
+
+REFUSALS = HEADER + "".join(f"""
+demo,{x},{x},1,{name},failure,rate,{failure},0,1,,400
+demo,{x},{x},1,{name},failure_or_refusal,rate,{either},0,1,,400
+demo,{x},{x},1,{name},no_candidate,rate,{none},0,1,,400
+demo,{x},{x},1,{name},other_refusal,rate,{other},0,1,,400""" for x, name, failure, either, none, other in (
+    (0.4, "standard", 0.3, 0.3, 0, 0), (0.8, "standard", 0.6, 0.6, 0, 0), (0.4, "mine", 0.2, 0.3, 0, 0.1),
+    (0.8, "mine", 0, 0.995, 0.9, 0.095))) + "\n"
+GREATEST = "greatest refusal rate: 99.5 % (mine, at outlier ratio = 0.8)"
+
+
+class RefusedTrials(FailureRateTest):
+    def draw_with(self, *arguments, text=REFUSALS):
+        return failure_rate.draw_for(failure_rate.parse([self.write(text), "--out", str(self.out), *arguments]))
+
+    def caption_with(self, *arguments):
+        return self.draw_with(*arguments).texts[0].get_text().replace("\n", " ")
+
+    def test_an_estimator_that_refuses_everything_does_not_look_good(self):
+        figure = self.draw_with("--x", "outlier_ratio")
+        self.assertEqual([axes.get_title("left") for axes in figure.axes], ["(a) Failure rate", "(b) Failure or refusal rate"])
+        self.assertEqual(line_of(figure.axes[1], "mine"), [(0.4, 0.3), (0.8, 0.995)])
+        self.assertIn(GREATEST, figure.texts[0].get_text().replace("\n", " "))
+
+    def test_the_caption_has_the_greatest_refusal_rate_where_the_panels_do_not_show_it(self):
+        for quantities, is_needed in (("failure", True), ("failure,no_candidate", True), ("failure,no_candidate,other_refusal", False),
+                                      ("failure_or_refusal", False)):
+            with self.subTest(quantities=quantities):
+                self.assertEqual(GREATEST in self.caption_with("--x", "outlier_ratio", "--quantities", quantities), is_needed)
+        self.assertNotIn("refusal rate", self.caption_with("--x", "outlier_ratio", "--quantities", "failure", "--estimators", "standard"))
+        self.assertIn("greatest refusal rate: 99.5 % (mine).", self.caption_with("--where", "outlier_ratio=0.8"))
+
+    def test_a_table_without_failure_or_refusal_has_what_it_has(self):
+        self.assertEqual([axes.get_title("left") for axes in self.draw_with("--x", "outlier_ratio", text=TABLE).axes],
+                         ["(a) Failure rate", "(b) No-candidate rate"])
+
+
+ZEROS = HEADER + "".join(f"""
+demo,{x},{x},1,{name},failure,rate,0,0,0.018,,200
+demo,{x},{x},1,{name},failure_or_refusal,rate,0,0,0.018,,200
+demo,{x},{x},1,{name},rotation_error_median_deg,median,0.1,0.05,0.2,,200""" for x in (0.0, 0.4) for name in ("standard", "mine")) + "\n"
+
+
+class NothingFails(FailureRateTest):
+    SENTENCE = ("Failure rate and failure or refusal rate: 0 at every point; to draw errors, give --quantities "
+                "rotation_error_median_deg.")
+
+    def sentence_of(self, *arguments, text=ZEROS):
+        figure = failure_rate.draw_for(failure_rate.parse([self.write(text), "--out", str(self.out), *arguments]))
+        axes, = figure.axes
+        self.assertFalse(axes.axison)
+        self.assertIn("at most 1.8 %", figure.texts[0].get_text().replace("\n", " "))
+        return axes.texts[0].get_text().replace("\n", " ")
+
+    def test_a_sentence_stands_in_place_of_the_panels_and_says_what_to_draw(self):
+        self.assertEqual(self.sentence_of("--x", "outlier_ratio"), self.SENTENCE)
+        self.assertEqual(self.sentence_of("--where", "outlier_ratio=0"), self.SENTENCE)
+        without = "".join(line + "\n" for line in ZEROS.splitlines() if "error" not in line or line == HEADER)
+        self.assertEqual(self.sentence_of("--x", "outlier_ratio", text=without),
+                         "Failure rate and failure or refusal rate: 0 at every point.")
+
+    def test_options_for_what_is_not_drawn_are_no_mistake(self):
+        self.assertEqual(self.run_main("--highlight", "mine", "--labels", "outlier_ratio=Wrong", "--width", "3.17", text=ZEROS)[0], 0)
 
 
 class DrawnValues(FailureRateTest):
@@ -183,7 +311,7 @@ class DrawnValues(FailureRateTest):
         self.assertEqual(failure.yaxis.get_major_formatter()(0.07), "7")
         self.assertEqual((failure.get_xlabel(), failure.get_ylabel()), ("Outlier ratio", "Rate (%)"))
         self.assertEqual((failure.get_title("left"), no_candidate.get_title("left")),
-                         ("(a) Failure rate", "(b) Detect-fail rate"))
+                         ("(a) Failure rate", "(b) No-candidate rate"))
 
     def test_legend_handles_look_like_the_lines_in_the_order_of_the_study(self):
         figure = self.draw()
@@ -196,7 +324,8 @@ class DrawnValues(FailureRateTest):
     def test_the_caption_says_study_levels_n_and_interval(self):
         caption = self.draw().texts[0].get_text().replace("\n", " ")
         self.assertEqual(caption, "Study demo; sigma = 1 px; n = 0\u2013400 per point; "
-                                  "bands: exact 95 % (Clopper-Pearson) intervals.")
+                                  "bands: exact 95 % (Clopper-Pearson) intervals; "
+                                  "greatest refusal rate: 10 % (mine, at outlier ratio = 0.4).")
 
     def test_on_a_logarithmic_axis_with_a_floor_a_zero_stands_there(self):
         options = failure_rate.parse([self.write(TABLE), "--x", "outlier_ratio", "--out", str(self.out), "--log-y",
@@ -248,8 +377,8 @@ class DrawnValues(FailureRateTest):
 
     def test_another_factor_gives_a_row_of_panels_per_level_unless_fixed(self):
         titles = [axes.get_title("left") for axes in self.draw(TWO_SIGMAS).axes]
-        self.assertEqual(titles, ["(a) Failure rate, sigma = 1 px", "(b) Detect-fail rate, sigma = 1 px",
-                                  "(c) Failure rate, sigma = 2 px", "(d) Detect-fail rate, sigma = 2 px"])
+        self.assertEqual(titles, ["(a) Failure rate, sigma = 1 px", "(b) No-candidate rate, sigma = 1 px",
+                                  "(c) Failure rate, sigma = 2 px", "(d) No-candidate rate, sigma = 2 px"])
         self.assertEqual(len(self.draw(TWO_SIGMAS, conditions=["sigma_px=2.0"]).axes), 2)
         one = self.draw(TWO_SIGMAS, ["failure"], ["sigma_px=1", "estimator=mine"]).axes
         self.assertEqual([line.get_label() for line in one[0].lines], ["mine"])
@@ -424,7 +553,7 @@ class Refusals(FailureRateTest):
     def test_names_that_are_not_in_the_file(self):
         self.assert_refused(self.run_main(x="parallax"), "--x parallax", "allowed: outlier_ratio, sigma_px")
         self.assert_refused(self.run_main("--quantities", "fail"), "'fail'", "allowed: failure, no_candidate")
-        self.assert_refused(self.run_main("--quantities", "nees"), "no rate or score called 'nees'")
+        self.assert_refused(self.run_main("--quantities", "neess"), "no quantity called 'neess'", "no_candidate, nees")
         self.assert_refused(self.run_main("--quantities", ","), "--quantities")
         self.assert_refused(self.run_main("--where", "sigma=1"), "--where sigma=1", "sigma_px")
         self.assert_refused(self.run_main("--where", "sigma_px=3"), "--where sigma_px=3", "it has 1")

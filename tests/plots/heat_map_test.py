@@ -72,18 +72,18 @@ class Drawn(HeatMapTest):
     def test_titles_name_quantity_and_estimator(self):
         titles = [axes.get_title("left") for axes in self.draw(quantities=["failure", "no_candidate"]).axes]
         self.assertEqual([title for title in titles if title],
-                         ["(a) Failure rate, Standard", "(b) Failure rate, mine", "(c) Detect-fail rate, mine"])
+                         ["(a) Failure rate, Standard", "(b) Failure rate, mine", "(c) No-candidate rate, mine"])
 
     def test_a_panel_of_zeros_is_left_out_and_named(self):
         figure = self.draw(quantities=["failure", "no_candidate"])
-        self.assertIn("Detect-fail rate of Standard: 0 in every cell, at most 2 %.", figure.texts[0].get_text().replace("\n", " "))
+        self.assertIn("No-candidate rate of Standard: 0 in every cell, at most 2 %.", figure.texts[0].get_text().replace("\n", " "))
         never = TABLE.replace("mine,no_candidate,rate,0.01,0.005,0.15", "mine,no_candidate,rate,0,0,0.03")
         figure = self.draw(never, quantities=["failure", "no_candidate"])
         self.assertEqual(len([axes for axes in figure.axes if axes.get_title("left")]), 2)
-        self.assertIn("Detect-fail rate of Standard and mine: 0 in every cell, at most 3 %.",
+        self.assertIn("No-candidate rate of Standard and mine: 0 in every cell, at most 3 %.",
                       figure.texts[0].get_text().replace("\n", " "))
         alone = self.draw(never, quantities=["no_candidate"])
-        self.assertEqual([axes.get_title("left") for axes in alone.axes if axes.get_title("left")], ["Detect-fail rate, Standard"])
+        self.assertEqual([axes.get_title("left") for axes in alone.axes if axes.get_title("left")], ["No-candidate rate, Standard"])
 
     def test_equal_rates_have_equal_colours_in_all_panels_and_greater_ones_are_darker(self):
         same = TABLE.replace("mine,failure,rate,0.05,0.01", "mine,failure,rate,0.07,0.01")
@@ -136,7 +136,7 @@ class Refusals(HeatMapTest):
         self.assert_refused(self.run_main(x="parallax"), "--x parallax", "allowed: noise, sigma_px")
         self.assert_refused(self.run_main(y="noise"), "--y noise", "two factors")
         self.assert_refused(self.run_main("--quantities", "fail"), "'fail'", "allowed: failure, no_candidate")
-        self.assert_refused(self.run_main("--quantities", "parallax_deg"), "no rate or score called 'parallax_deg'")
+        self.assert_refused(self.run_main("--quantities", "parallax_deg"), "'parallax_deg' is a mean", "rates and scores only")
         self.assert_refused(self.run_main("--estimators", "rcme"), "--estimators rcme", "allowed: standard, mine")
         self.assert_refused(self.run_main("--estimators", ","), "--estimators")
         self.assert_refused(self.run_main("--where", "noise=uniform"), "noise=uniform", "student_t")

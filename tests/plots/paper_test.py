@@ -95,7 +95,11 @@ def cases(folder):
         ("transfer", [written("transfer.json", fake_tune.transfer(3))], False),
         ("crossings", [written("crossings.json", crossings_test.crossings()), "--x", "outlier_ratio"], False),
         ("validity_map", [str(RESULTS / "validity_map")], True),
-        ("audit", [str(pathlib.Path(written("audited/audit.json", few_claims())).parent)], True)]
+        ("audit", [str(pathlib.Path(written("audited/audit.json", few_claims())).parent)], True),
+        ("failure_rate", [str(atlas / "failure_one_at_a_time.csv"), "--x", "motion", "--quantities",
+                          "rotation_error_median_deg,direction_error_median_deg_answered"], False),
+        ("failure_rate", [str(peers / "peers_uniform.csv"), "--x", "outlier_ratio", "--where", "outlier_ratio=0.1", "--where",
+                          "outlier_ratio=0.2", "--estimators", "poselib,rcme_calibrated"], False)]
 
 
 @functools.lru_cache(maxsize=None)
@@ -139,6 +143,16 @@ class Paper(WithCases):
                     for name, figure in figures.items():
                         self.assertAlmostEqual(figure.get_figwidth(), width)
                         self.assertEqual(problems_of(figure, sheet.SMALLEST_FONT, sheet.LARGEST_FONT), [], name)
+
+    def test_the_widths_of_the_guide_are_taken(self):
+        page = (ROOT / "docs" / "figures.md").read_text()
+        widths = [float(width) for row in re.findall(r"^\| `.*pt.*\|$", page, re.M) for width in re.findall(r"\d\.\d\d(?= \|)", row)]
+        self.assertGreater(len(widths), 6)
+        for width in widths:
+            with self.subTest(width=width):
+                code, errors, figures = run_script(*self.arguments(*self.cases[0], "--width", str(width)))
+                self.assertEqual((code, errors), (0, ""))
+                self.assertEqual(problems_of(figures["figure"], sheet.SMALLEST_FONT, sheet.LARGEST_FONT), [])
 
     def test_the_caption_can_be_left_out(self):
         for case in {case[0]: case for case in self.cases}.values():

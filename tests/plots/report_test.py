@@ -270,8 +270,8 @@ class Figures(ReportTest):
         levels = [("0", "1"), ("0.2", "1"), ("0.4", "1"), ("0", "2"), ("0", "3")]
         alts, text = self.drawn(["outlier_ratio", "sigma_px"], levels)
         self.assertEqual([alt.split(".")[0] for alt in alts], [
-            "Failure rate and detect-fail rate against outlier ratio",
-            "Failure rate and detect-fail rate against sigma (px)",
+            "Failure rate and no-candidate rate against outlier ratio",
+            "Failure rate and no-candidate rate against sigma (px)",
             "Difference to Standard on the same trials, against outlier ratio",
             "Difference to Standard on the same trials, against sigma (px)"])
         self.assertNotIn("Not drawn", text)

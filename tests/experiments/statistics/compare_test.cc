@@ -380,6 +380,31 @@ TEST_F(CompareTest, TableSaysWhatItsNumbersAre) {
   }
 }
 
+// In place of tables of zeros; an event that happened once has its table, and files have all rows.
+TEST_F(CompareTest, EventsThatHappenedNeverHaveOneLineTogether) {
+  Write("run", {{"ss", 12}});
+  const CommandResult never = MakeComparisonResult(CompareRun("run"));
+  EXPECT_EQ(
+      never.text,
+      "Study small against standard: 12 of 12 trials done\n"
+      "\nfailure, refusal, failure_or_refusal: in no trial of any estimator; --of errors compares their "
+      "errors.\n");
+  EXPECT_EQ(never.rows.rows.size(), 2 * 3);
+  CompareOptions options;
+  options.compared = {"events", "max_error_median_deg"};
+  const std::string with_errors = MakeComparisonResult(CompareRun("run", "", options)).text;
+  EXPECT_NE(with_errors.find("failure_or_refusal: in no trial of any estimator.\n"), std::string::npos)
+      << with_errors;
+  EXPECT_NE(with_errors.find("median difference"), std::string::npos) << with_errors;
+  EXPECT_EQ(with_errors.find("Events:"), std::string::npos) << with_errors;
+
+  Write("one", {{"ss", 11}, {"sf", 1}});
+  const std::string once = MakeComparisonResult(CompareRun("one")).text;
+  EXPECT_NE(once.find("\nrefusal: in no trial of any estimator.\n"), std::string::npos) << once;
+  EXPECT_TRUE(std::regex_search(once, std::regex("ours +12 +0 +1 +0 +11\\n"))) << once;
+  EXPECT_NE(once.find("Events:"), std::string::npos) << once;
+}
+
 TEST_F(CompareTest, TableSaysThatATargetIsNotReached) {
   Write("run", {{"fs", 1}, {"ss", 11}});
   const auto text = [&] { return MakeComparisonResult(CompareRun("run")).text; };
