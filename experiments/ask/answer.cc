@@ -23,10 +23,27 @@ namespace rcme {
 namespace {
 
 // MSAC compares the squared Sampson distance with sigma^2 chi2_1 (estimator/point_consistency.h).
-std::string DescribeSampson(double level, double sigma_px) {
-  const double num_sigma = std::sqrt(ChiSquareQuantile(1, 1.0 - level));
-  return fmt::format("{:.3g} px of Sampson distance ({:.3g} sigma: keeps {:g} % of the true matches)",
-                     num_sigma * sigma_px, num_sigma, 100.0 * (1.0 - level));
+InlierThreshold DescribeSampson(double level, double sigma_px) {
+  const double num_sigma = std::sqrt(ChiSquareQuantile(1, 1.0 - level)), px = num_sigma * sigma_px;
+  return {px, fmt::format("{:.3g} px of Sampson distance ({:.3g} sigma: keeps {:g} % of the true matches)",
+                          px, num_sigma, 100.0 * (1.0 - level))};
+}
+
+// OpenCV's distance has the standard deviation 2 sigma (peers/opencv_usac.cc).
+InlierThreshold DescribeOpenCv(double num_sigma, double sigma_px) {
+  const double px = 2.0 * num_sigma * sigma_px;
+  return {px, fmt::format("{:.3g} px as OpenCV takes it ({:g} standard deviations of its distance)", px,
+                          num_sigma)};
+}
+
+// OpenGV's users give 1 - cos(atan(px / f)), the angle at the image's center. The estimator takes the mean
+// over the image (peers/opengv_ransac.cc).
+InlierThreshold DescribeOpenGv(double num_sigma, double sigma_px, double focal_px) {
+  const double px = num_sigma * sigma_px;
+  return {px,
+          fmt::format("{:.3g} px of reprojection error in both images together ({:g} sigma); as OpenGV takes "
+                      "it, 1 - cos(atan({:.3g} / {:g})) = {:.3g}",
+                      px, num_sigma, px, focal_px, 1.0 - std::cos(std::atan(px / focal_px)))};
 }
 
 // RCME's test widens with the uncertainty of each hypothesis.
@@ -104,7 +121,7 @@ bool HasGreaterErrors(const Comparison& comparison, const std::string& label) {
 
 // The best first. `summary`: of the answers as they were given; `of_question`: of those of `run`.
 std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& summary,
-                                       const Summary& of_question, double sigma_px) {
+                                       const Summary& of_question, const Question& question) {
   const std::vector<DescribedEstimator>& estimators = run.description.estimators;
   std::vector<AskedEstimator> ranked;
   for (const DescribedEstimator& estimator : estimators) {
@@ -114,7 +131,7 @@ std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& su
                       FindEstimate(summary, label, "mean_time_ms").value,
                       FindEstimate(of_question, label, kErrorMeasure).value,
                       FindEstimate(summary, label, "failure_probability").n.value_or(0) > 0,
-                      DescribeInlierThreshold(estimator.name, estimator.options, sigma_px)});
+                      DescribeInlierThreshold(estimator.name, estimator.options, question)});
   }
   std::vector<Comparison> comparisons;
   for (const AskedEstimator& estimator : ranked)
@@ -141,6 +158,19 @@ std::vector<AskedEstimator> FindAlike(const std::vector<AskedEstimator>& ranked,
   return alike;
 }
 
+// The interval of a difference, adjusted for all comparisons in agreement with Holm's verdict (Strassburger
+// and Bretz 2008, Statistics in Medicine 27:4914): those that are not told apart share the level 0.05, and
+// their intervals contain 0, which the exact test does not reject. Of a proven difference it is Bonferroni's,
+// on the proven side of 0.
+Interval AdjustInterval(const ComparisonRow& row, size_t num_compared, size_t num_undecided) {
+  const bool is_told_apart = IsMoreThanChance(row);
+  const double level = 0.05 / static_cast<double>(is_told_apart ? num_compared : num_undecided);
+  const Interval interval = RiskDifferenceInterval(row.counts, 1.0 - level);
+  if (!is_told_apart) return {std::min(interval.lower, 0.0), std::max(interval.upper, 0.0)};
+  return row.difference > 0.0 ? Interval{std::max(interval.lower, 0.0), interval.upper}
+                              : Interval{interval.lower, std::min(interval.upper, 0.0)};
+}
+
 // The difference in success, from the comparison of failures and refusals. Holm's step-down tests the least
 // p-value of `num_undecided` at 0.05 / num_undecided, so trials are planned at that level.
 std::optional<AskedDifference> DescribeDifference(const Comparison& comparison, const std::string& other,
@@ -152,11 +182,12 @@ std::optional<AskedDifference> DescribeDifference(const Comparison& comparison, 
     const double other_only = static_cast<double>(row.counts.second_only) / n;
     const double level = 0.05 / static_cast<double>(std::max<size_t>(num_undecided, 1));
     const double discordant = std::max(best_only + other_only, kPlainDifference);
-    return AskedDifference{{.value = row.difference, .interval = row.interval},
-                           row.holm_p_value,
-                           TrialsToTellApart(best_only, other_only, level),
-                           TrialsToTellApart(0.5 * (discordant + kPlainDifference),
-                                             0.5 * (discordant - kPlainDifference), level)};
+    return AskedDifference{
+        {.value = row.difference, .interval = AdjustInterval(row, comparison.rows.size(), num_undecided)},
+        row.holm_p_value,
+        TrialsToTellApart(best_only, other_only, level),
+        TrialsToTellApart(0.5 * (discordant + kPlainDifference), 0.5 * (discordant - kPlainDifference),
+                          level)};
   }
   return std::nullopt;
 }
@@ -194,16 +225,16 @@ void AddStated(const ResultStore& run, const Summary& summary, Answer* answer) {
   }
 }
 
-// Judges the coverage of the best estimator's region by the interval that allows for the choice.
-CoverageVerdict JudgeChosenCoverage(const Estimate& coverage, const Answer& answer) {
+// Sets `coverage`, by the interval that allows for the choice, and what is judged of it.
+void AddCoverage(const Estimate& coverage, Answer* a) {
+  a->coverage = WidenForChoice(coverage, a->num_estimators);
   const std::int64_t n = coverage.n.value_or(0);
-  CoverageVerdict judged =
-      JudgeCoverage(coverage.value, coverage.interval, n, answer.num_trials, /*is_of_fixed_n=*/true);
-  if (judged.verdict != RegionVerdict::kUndecided || n == 0) return judged;
-  judged.trials_to_decide = TrialsToDecide(coverage.value, Around(kNominalCoverage, kCoverageMargin),
-                                           1.0 - 0.05 / answer.num_estimators) *
-                            static_cast<double>(answer.num_trials) / static_cast<double>(n);
-  return judged;
+  if (n == 0) return;
+  a->coverage_verdict =
+      JudgeCoverage(coverage.value, a->coverage.interval, n, a->num_trials, /*is_of_fixed_n=*/true).verdict;
+  a->trials_to_confirm_coverage = TrialsToDecide(kNominalCoverage, Around(kNominalCoverage, kCoverageMargin),
+                                                 1.0 - 0.05 / a->num_estimators) *
+                                  static_cast<double>(a->num_trials) / static_cast<double>(n);
 }
 
 }  // namespace
@@ -263,14 +294,16 @@ Answer AnswerQuestion(const ResultStore& run, const Question& question, double a
   const Summary summary = Summarize(run, /*with_times=*/true);
   // Both have the same answers unless the question has no direction (ReadForQuestion).
   const Summary of_question = HasDirection(question) ? summary : Summarize(readable, /*with_times=*/false);
-  const std::vector<AskedEstimator> ranked = ListRanked(readable, summary, of_question, question.sigma_px);
+  const std::vector<AskedEstimator> ranked = ListRanked(readable, summary, of_question, question);
   Answer answer;
   answer.num_trials = summary.num_trials_done;
   answer.num_estimators = static_cast<int>(ranked.size());
   answer.has_direction = HasDirection(question);
+  answer.focal_error = question.focal_error;
   answer.at_most = at_most;
   answer.failure = description.failure;
   answer.best = ranked.front();
+  answer.works = !(answer.best.success.interval.upper < kLeastSuccess);
   if (ranked.size() > 1) {
     const Comparison comparison = Compare(readable, answer.best.label, {.compared = {"failure_or_refusal"}});
     answer.error_difference = FindErrorDifference(
@@ -284,27 +317,22 @@ Answer AnswerQuestion(const ResultStore& run, const Question& question, double a
   answer.sharpness = {FindEstimate(summary, best, "sd_over_crb").value,
                       FindEstimate(summary, best, "rotation_sd_deg").value,
                       FindEstimate(summary, best, "direction_sd_deg").value};
-  answer.coverage = WidenForChoice(FindEstimate(summary, best, "nees_coverage"), answer.num_estimators);
-  answer.coverage_verdict = JudgeChosenCoverage(answer.coverage, answer);
+  AddCoverage(FindEstimate(summary, best, "nees_coverage"), &answer);
   return answer;
 }
 
-std::string DescribeInlierThreshold(const std::string& name, const Settings& options, double sigma_px) {
+InlierThreshold DescribeInlierThreshold(const std::string& name, const Settings& options,
+                                        const Question& question) {
+  const double sigma_px = question.sigma_px;
   if (name == "rcme_calibrated")
-    return DescribeCalibrated(FindSetting(options, "sigma").value_or(""), sigma_px);
+    return {kNaN, DescribeCalibrated(FindSetting(options, "sigma").value_or(""), sigma_px)};
   double level = 0.0, num_sigma = 0.0;
   const bool has_level = ParseReal(FindSetting(options, "significance_level").value_or(""), &level);
   const bool has_sigma = ParseReal(FindSetting(options, "threshold_sigma").value_or(""), &num_sigma);
   if (name == "msac" && has_level) return DescribeSampson(level, sigma_px);
-  if (name == "rcme" && has_level) return DescribeTestOfHypothesis(level, sigma_px);
-  if (name == "opencv_usac" && has_sigma) {
-    // OpenCV's distance has the standard deviation 2 sigma (peers/opencv_usac.cc).
-    return fmt::format("{:.3g} px as OpenCV takes it ({:g} standard deviations of its distance)",
-                       2.0 * num_sigma * sigma_px, num_sigma);
-  }
-  if (name == "opengv_ransac" && has_sigma)
-    return fmt::format("{:.3g} px of reprojection error in both images together ({:g} sigma)",
-                       num_sigma * sigma_px, num_sigma);
+  if (name == "rcme" && has_level) return {kNaN, DescribeTestOfHypothesis(level, sigma_px)};
+  if (name == "opencv_usac" && has_sigma) return DescribeOpenCv(num_sigma, sigma_px);
+  if (name == "opengv_ransac" && has_sigma) return DescribeOpenGv(num_sigma, sigma_px, question.focal_px);
   return {};
 }
 

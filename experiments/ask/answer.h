@@ -44,24 +44,34 @@ std::optional<AcceptRule> CertifyAcceptRule(const std::vector<StatedAnswer>& ans
 // The least number of accepted answers that certifies a rule if none of them failed.
 std::int64_t FewestCertifyingAnswers(double at_most, int num_estimators);
 
+// Which matches an estimator takes for inliers.
+struct InlierThreshold {
+  double px = kNaN;   // NaN: it has none in px
+  std::string words;  // with units, the distance that it bounds, and as its library takes it; empty: unknown
+};
+
 struct AskedEstimator {
   std::string label;
   Estimate success;                // share of all trials; the intervals of all estimators hold jointly
   double time_ms = 0.0;            // mean of a call
   double median_error_deg = kNaN;  // median of max(rotation error, direction error); NaN: unknown
   bool states_p = false;           // the probability of failure of its answers
-  std::string inlier_threshold;    // DescribeInlierThreshold; empty: unknown
+  InlierThreshold inlier_threshold;
 };
 
 // The difference between the two best estimators, from the same trials.
 struct AskedDifference {
-  Estimate difference;              // success rate of the best minus that of the next
+  // Success rate of the best minus that of the next. The interval contains 0 unless p_value < 0.05.
+  Estimate difference;
   double p_value = 1.0;             // McNemar's, adjusted for all estimators that the best was chosen among
   std::int64_t trials_to_tell = 0;  // about so many trials tell the two apart with probability 0.8
   // The same if the success rates differed by kPlainDifference and the outcomes disagreed as often as here.
   std::int64_t trials_of_plain_difference = 0;
 };
 inline constexpr double kPlainDifference = 0.01;
+
+// An estimator works if its success rate can be at least this.
+inline constexpr double kLeastSuccess = 0.5;
 
 // The intervals of all estimators hold jointly with probability 0.95 (Bonferroni). They therefore hold for
 // the best estimator although the same trials chose it.
@@ -72,7 +82,9 @@ struct Answer {
   // False: success is that of the rotation, whether or not the answer has a direction; P is not judged, as it
   // is the probability that rotation or direction is wrong.
   bool has_direction = true;
+  double focal_error = 0.0;  // from the question
   AskedEstimator best;
+  bool works = true;  // false: the success interval of the best, and so of all, lies below kLeastSuccess
   std::vector<AskedEstimator> alike;   // others whose success is not significantly below that of the best
   std::optional<AskedEstimator> next;  // the second in rank
   std::optional<AskedDifference> difference;
@@ -84,7 +96,10 @@ struct Answer {
   std::optional<AcceptRule> rule;  // std::nullopt: no rule is certified
   Estimate stated, failed;         // mean stated probability of failure; failure rate of the same answers
   Estimate coverage;               // of the best estimator's 95 % region, as the next two
-  CoverageVerdict coverage_verdict;
+  RegionVerdict coverage_verdict = RegionVerdict::kUndecided;
+  // About how many trials would show that the region covers as stated, if its coverage is the nominal one. It
+  // does not depend on the measured coverage, whose chance errors would make it vary by orders of magnitude.
+  double trials_to_confirm_coverage = 0.0;
   StatedSharpness sharpness;
 };
 
@@ -99,9 +114,9 @@ void RankEstimators(std::vector<AskedEstimator>* estimators, const HasGreaterErr
 // Throws InputError if the run has several conditions or a damaged trial.
 Answer AnswerQuestion(const ResultStore& run, const Question& question, double at_most);
 
-// Describes in words, with units, which matches the built-in estimator `name` takes for inliers with these
-// options, for noise of sigma_px: "1.37 px of Sampson distance (1.96 sigma: ...)", "none in px: ...". Empty
-// if it is unknown.
-std::string DescribeInlierThreshold(const std::string& name, const Settings& options, double sigma_px);
+// Describes which matches the built-in estimator `name` takes for inliers with these options, for the noise
+// and focal length of the question: "1.37 px of Sampson distance (1.96 sigma: ...)", "none in px: ...".
+InlierThreshold DescribeInlierThreshold(const std::string& name, const Settings& options,
+                                        const Question& question);
 
 }  // namespace rcme

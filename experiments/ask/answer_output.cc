@@ -38,11 +38,10 @@ std::string JudgeStated(const Estimate& measured, double stated, double margin) 
   return is_right ? fmt::format("right to within {:g} %", 100.0 * margin) : "undecided";
 }
 
-// What can be promised of accepted answers.
-std::string DescribeAcceptRule(const Answer& a) {
-  if (!a.has_direction)
-    return "no P is judged: it is of rotation and direction, and the motion has no direction";
-  if (a.stating.empty()) return a.best.label + " states no P: nothing to accept by";
+bool StatesBest(const Answer& a) { return a.stating == a.best.label; }
+
+// What can be promised of the accepted answers of the estimator that states P.
+std::string DescribeCertified(const Answer& a) {
   if (!a.rule) {
     return fmt::format(
         "no bound on the P of {} keeps failures below {:g} % yet: that takes at least {} answers without a "
@@ -58,9 +57,22 @@ std::string DescribeAcceptRule(const Answer& a) {
                      accepted.errors, accepted.n);
 }
 
+std::string DescribeAcceptRule(const Answer& a) {
+  if (!a.has_direction)
+    return "no P is judged: it is of rotation and direction, and the motion has no direction";
+  return StatesBest(a) ? DescribeCertified(a) : a.best.label + " states no P: nothing to accept by";
+}
+
 std::string DescribeTrust(const Answer& a) {
   return fmt::format("{} states {:.2f} % on average, {} fail: {}", a.stating, 100.0 * a.stated.value,
                      FormatEstimate(a.failed, kPercent), JudgeStated(a.failed, a.stated.value, a.at_most));
+}
+
+// The estimator that states P, where the best does not.
+std::string DescribeAlternative(const Answer& a) {
+  return fmt::format("{}, whose success these trials cannot tell from that of {}, states P: {}{}; {}",
+                     a.stating, a.best.label, a.rule ? "accept if " : "", DescribeCertified(a),
+                     DescribeTrust(a));
 }
 
 std::int64_t CountSuccesses(const AskedEstimator& estimator) {
@@ -144,25 +156,68 @@ std::string DescribeNext(const Answer& a) {
                             a.difference->p_value < 0.05 ? "more than chance" : "may be chance");
 }
 
+// A number of trials is given only for a coverage that may be the nominal one.
+std::string DescribeAskedVerdict(const Answer& a) {
+  if (a.coverage_verdict != RegionVerdict::kUndecided) return Name(a.coverage_verdict);
+  const Interval& interval = a.coverage.interval;
+  if (interval.Contains(kNominalCoverage))
+    return fmt::format("undecided, about {} trials would show it if it is {:g} %",
+                       RoundTrials(std::llround(a.trials_to_confirm_coverage)), 100.0 * kNominalCoverage);
+  return fmt::format("{} than {:g} %, but undecided whether by more than {:g} %",
+                     interval.upper < kNominalCoverage ? "less" : "more", 100.0 * kNominalCoverage,
+                     100.0 * kCoverageMargin);
+}
+
 std::string DescribeCoverage(const Answer& a) {
   if (!a.has_direction) return "coverage is of rotation and direction, and the motion has no direction";
   const std::string sharpness = a.sharpness.IsKnown() ? "; " + DescribeSharpness(a.sharpness) : "";
   if (std::isnan(a.coverage.value)) return "coverage of " + a.best.label + " is not known" + sharpness;
   return fmt::format("the 95 % region of {} contains the truth in {}: {}{}", a.best.label,
-                     FormatEstimate(a.coverage, kPercent), DescribeCoverageVerdict(a.coverage_verdict),
-                     sharpness);
+                     FormatEstimate(a.coverage, kPercent), DescribeAskedVerdict(a), sharpness);
+}
+
+// What the simulated estimators are told rightly, and so the answer takes for granted.
+std::string DescribeTakenAsExact(const Answer& a) {
+  if (a.focal_error == 0.0)
+    return "K, the noise level and the noise model: with errors of them P and covariances can be far too sure; "
+           "--focal-error 0.01 asks what a focal length that is 1 % too great does";
+  return "the principal point, the noise level and the noise model, not the focal length (--focal-error)";
+}
+
+std::string DescribeBest(const Answer& a) {
+  const std::string success = FormatEstimate(a.best.success, kPercent);
+  if (a.works) return fmt::format("{}: success {}", a.best.label, success);
+  return fmt::format("none works here: the best of {}, {}, has a success of {}, less than {:g} %",
+                     a.num_estimators, a.best.label, success, 100.0 * kLeastSuccess);
+}
+
+// What to try where no estimator works.
+constexpr const char* kTry =
+    "fewer wrong matches (--wrong), such as by a stricter ratio test; more matches (--matches); sensors "
+    "(prior_rotation_sd_deg, prior_gravity_sd_deg in the study); `rcme solve`, below, finds the share of wrong "
+    "matches up to which it works";
+
+// The thresholds of the best and of all that are not told apart from it.
+void AddThresholds(const Answer& a, Lines* lines) {
+  std::vector<AskedEstimator> usable = {a.best};
+  usable.insert(usable.end(), a.alike.begin(), a.alike.end());
+  for (const AskedEstimator& each : usable) {
+    const std::string& words = each.inlier_threshold.words;
+    if (!words.empty()) lines->emplace_back("Inlier threshold", each.label + ": " + words);
+  }
 }
 
 Lines DescribeAnswer(const Answer& a) {
-  const auto percent = [](const Estimate& estimate) { return FormatEstimate(estimate, kPercent); };
-  Lines lines = {{"Estimator", fmt::format("{}: success {}", a.best.label, percent(a.best.success))}};
+  Lines lines = {{"Estimator", DescribeBest(a)}};
+  if (!a.works) lines.emplace_back("Try", kTry);
   if (!a.alike.empty()) lines.emplace_back("Ties", DescribeTies(a));
   if (a.next) lines.emplace_back("Next best", DescribeNext(a));
   lines.emplace_back("Accept if", DescribeAcceptRule(a));
-  if (!a.stating.empty()) lines.emplace_back("Trust in P", DescribeTrust(a));
-  if (!a.best.inlier_threshold.empty())
-    lines.emplace_back("Inlier threshold", a.best.label + ": " + a.best.inlier_threshold);
+  if (StatesBest(a)) lines.emplace_back("Trust in P", DescribeTrust(a));
+  if (a.works) AddThresholds(a, &lines);
   lines.emplace_back("Covariance", DescribeCoverage(a));
+  if (!a.stating.empty() && !StatesBest(a)) lines.emplace_back("Alternative", DescribeAlternative(a));
+  lines.emplace_back("Taken as exact", DescribeTakenAsExact(a));
   lines.emplace_back(
       "Time",
       fmt::format("{}: {:.3g} ms a call{}", a.best.label, a.best.time_ms,
@@ -216,27 +271,37 @@ nlohmann::ordered_json EstimatorAsJson(const AskedEstimator& estimator) {
   return {{"label", estimator.label},
           {"success", RenderJson(estimator.success)},
           {"time_ms", estimator.time_ms},
-          {"median_error_deg", JsonNumber(estimator.median_error_deg)}};
+          {"median_error_deg", JsonNumber(estimator.median_error_deg)},
+          {"threshold_px", JsonNumber(estimator.inlier_threshold.px)},
+          {"threshold", estimator.inlier_threshold.words}};
 }
 
-// The best estimator and the next.
+// The best estimator, those that are not told apart from it, and the next.
 Table MakeAskedTable(const Answer& answer) {
-  std::vector<AskedEstimator> asked = {answer.best};
-  if (answer.next) asked.push_back(*answer.next);
-  using A = const AskedEstimator&;
-  return MakeTable<AskedEstimator>(
-      {{Column::Key("estimator"), [](A a) { return a.label; }},
-       {Column::Number("success"), [](A a) { return a.success.value; }},
-       {{"lower,upper", ColumnType::kInterval}, [](A a) { return a.success.interval; }},
-       {Column::Number("time_ms"), [](A a) { return a.time_ms; }}},
-      asked);
+  struct Placed {
+    const char* place;
+    AskedEstimator of;
+  };
+  std::vector<Placed> placed = {{"best", answer.best}};
+  for (const AskedEstimator& other : answer.alike) placed.push_back({"tied", other});
+  if (answer.next && std::ranges::count(answer.alike, answer.next->label, &AskedEstimator::label) == 0)
+    placed.push_back({"next", *answer.next});
+  using P = const Placed&;
+  return MakeTable<Placed>(
+      {{Column::Key("estimator"), [](P p) { return p.of.label; }},
+       {Column::Text("place"), [](P p) { return std::string(p.place); }},
+       {Column::Number("success"), [](P p) { return p.of.success.value; }},
+       {{"lower,upper", ColumnType::kInterval}, [](P p) { return p.of.success.interval; }},
+       {Column::Number("time_ms"), [](P p) { return p.of.time_ms; }},
+       {Column::Number("threshold_px"), [](P p) { return p.of.inlier_threshold.px; }},
+       {Column::Text("threshold"), [](P p) { return p.of.inlier_threshold.words; }}},
+      placed);
 }
 
 // What is judged of a stated probability, below `stating` where it is not the best estimator's.
 void AddStated(const Answer& a, nlohmann::ordered_json* json) {
-  const bool is_of_best = a.stating == a.best.label;
-  nlohmann::ordered_json& stated = is_of_best ? *json : (*json)["stating"];
-  if (!is_of_best) stated["label"] = a.stating;
+  nlohmann::ordered_json& stated = StatesBest(a) ? *json : (*json)["stating"];
+  if (!StatesBest(a)) stated["label"] = a.stating;
   if (a.rule) {
     stated["accept"] = {{"max_failure_probability", a.rule->greatest_probability},
                         {"accepted", a.rule->accepted.n},
@@ -260,6 +325,8 @@ std::string AnswerAsJson(const Answer& a, const std::string& question) {
                                  {"trials", a.num_trials},
                                  {"estimators", a.num_estimators},
                                  {"at_most", a.at_most},
+                                 {"focal_error", a.focal_error},
+                                 {"works", a.works},
                                  {"best", EstimatorAsJson(a.best)},
                                  {"alike", nlohmann::ordered_json::array()},
                                  {"rows", RenderJson(MakeAskedTable(a))}};
@@ -275,6 +342,7 @@ std::string AnswerAsJson(const Answer& a, const std::string& question) {
   }
   if (!a.stating.empty()) AddStated(a, &json);
   json["coverage"] = RenderJson(a.coverage);
+  json["coverage_verdict"] = Name(a.coverage_verdict);
   json["sd_over_crb"] = JsonNumber(a.sharpness.sd_over_crb);
   json["rotation_sd_deg"] = JsonNumber(a.sharpness.rotation_sd_deg);
   json["direction_sd_deg"] = JsonNumber(a.sharpness.direction_sd_deg);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <istream>
+#include <numbers>
 #include <ostream>
 
 #include "parameters/input_error.h"
@@ -13,6 +15,7 @@
 #include "simulator/motion_registry.h"
 #include "simulator/outlier_registry.h"
 #include "simulator/scene_registry.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -57,6 +60,26 @@ void ReadSize(const std::string& text, int* width, int* height) {
       Quoted(text)));
 }
 
+// Throws InputError unless a pinhole with this image and focal length has a plausible horizontal view.
+void CheckView(const Question& q) {
+  constexpr double kDeg = std::numbers::pi / 180.0;
+  const double view_deg = 2.0 * std::atan(0.5 * q.image_width / q.focal_px) / kDeg;
+  if (view_deg >= kLeastViewDeg && view_deg <= kGreatestViewDeg) return;
+  const auto focal_of = [&](double deg) { return 0.5 * q.image_width / std::tan(0.5 * deg * kDeg); };
+  throw InputError(fmt::format(
+      "--focal: {:g} px gives {} px of image width a view of {:.3g} deg, which is not allowed; give the focal "
+      "length in px, in [{:.0f}, {:.0f}] for a view of {:g} to {:g} deg; from mm it is the focal length in mm * {} "
+      "/ the width of the sensor in mm",
+      q.focal_px, q.image_width, view_deg, std::ceil(focal_of(kGreatestViewDeg)),
+      std::floor(focal_of(kLeastViewDeg)), kLeastViewDeg, kGreatestViewDeg, q.image_width));
+}
+
+// Checks the view if the size of the image, which is read first, is known.
+void ReadFocal(const std::string& text, Question* question) {
+  question->focal_px = ReadNumber("--focal", text, 1.0, 1e6);
+  if (question->image_width > 0) CheckView(*question);
+}
+
 // Reads the name of an entry of a registry; `kind`: "a scene".
 template <typename Entry>
 std::string ReadName(const char* option, const char* kind, const std::vector<Entry>& registry,
@@ -76,8 +99,7 @@ struct AskedText {
 constexpr AskedText kAskedTexts[] = {
     {"--image", "Size of an image in px, such as 1280x720", &AskedTexts::image,
      [](const std::string& text, Question* q) { ReadSize(text, &q->image_width, &q->image_height); }},
-    {"--focal", "Focal length in px, such as 900", &AskedTexts::focal_px,
-     [](const std::string& text, Question* q) { q->focal_px = ReadNumber("--focal", text, 1.0, 1e6); }},
+    {"--focal", "Focal length in px, such as 900", &AskedTexts::focal_px, ReadFocal},
     {"--noise", "Noise of a point in px, per coordinate, such as 0.7", &AskedTexts::sigma_px,
      [](const std::string& text, Question* q) { q->sigma_px = ReadNumber("--noise", text, 0.001, 100.0); }},
     {"--scene", "Scene, such as corridor, room, street, plane or uniform_volume", &AskedTexts::scene,
@@ -97,12 +119,11 @@ constexpr AskedText kAskedTexts[] = {
      },
      false}};
 
-// Whether the answer of a person can be used; says on `out` why not.
-bool IsUsable(const AskedText& asked, const std::string& text, std::ostream& out) {
+// Reads the answer of a person; if it cannot be used, says on `out` why and returns false.
+bool ReadAnswer(const AskedText& asked, const std::string& text, std::ostream& out, Question* question) {
   if (text.empty()) return false;
   try {
-    Question unused;
-    asked.read(text, &unused);
+    asked.read(text, question);
     return true;
   } catch (const InputError& error) {
     out << error.what() << '\n';
@@ -124,12 +145,13 @@ bool ReadTypedLine(std::istream& in, std::string* line) {
 }
 
 // Asks for one text until it can be used, or is empty and not needed. False at the end of input.
-bool AskFor(const AskedText& asked, std::istream& in, std::ostream& out, std::string* text) {
+bool AskFor(const AskedText& asked, std::istream& in, std::ostream& out, std::string* text,
+            Question* question) {
   do {
     out << asked.question << ": " << std::flush;
     if (!ReadTypedLine(in, text)) return false;
     if (text->empty() && !asked.is_needed) return true;
-  } while (!IsUsable(asked, *text, out));
+  } while (!ReadAnswer(asked, *text, out, question));
   return true;
 }
 
@@ -145,9 +167,11 @@ std::vector<std::string> MissingOptions(const AskedTexts& texts) {
 
 void AskForMissing(std::istream& in, std::ostream& out, AskedTexts* texts) {
   if (MissingOptions(*texts).empty()) return;
+  Question so_far;
+  ReadTexts(*texts, &so_far);
   for (const AskedText& asked : kAskedTexts) {
     std::string& text = texts->*asked.text;
-    if (!text.empty() || AskFor(asked, in, out, &text)) continue;
+    if (!text.empty() || AskFor(asked, in, out, &text, &so_far)) continue;
     if (!asked.is_needed) return;
     throw InputError(
         fmt::format("ask: give {}, or answer at a terminal", fmt::join(MissingOptions(*texts), ", ")));
@@ -178,10 +202,21 @@ void CheckOutliers(const Question& question) {
 }
 
 std::string DescribeQuestion(const Question& q) {
-  return fmt::format("{} x {} px, f {:g} px, noise {:g} px; {}{}; {:g} % wrong ({}) of {} matches",
-                     q.image_width, q.image_height, q.focal_px, q.sigma_px, q.scene,
+  const std::string error = q.focal_error == 0.0
+                                ? ""
+                                : fmt::format(" (assumed {:g} % too {})", 100.0 * std::abs(q.focal_error),
+                                              q.focal_error > 0.0 ? "great" : "small");
+  return fmt::format("{} x {} px, f {:g} px{}, noise {:g} px; {}{}; {:g} % wrong ({}) of {} matches",
+                     q.image_width, q.image_height, q.focal_px, error, q.sigma_px, q.scene,
                      q.motion.empty() ? "" : ", motion " + q.motion, 100.0 * q.outlier_ratio, q.outliers,
                      q.num_matches);
+}
+
+std::string MakeFolderName(const Question& q) {
+  Fnv1a32 hash;
+  hash.Add(MakeStudyText(q, /*trials=*/1));
+  return fmt::format("answer_{}_f{:g}_wrong{:g}_{:08x}", q.scene, q.focal_px, 100.0 * q.outlier_ratio,
+                     hash.value());
 }
 
 bool HasDirection(const Question& question) { return question.motion != "pure_rotation"; }
@@ -203,7 +238,7 @@ data:
   num_matches: {}
   sigma_px: {}
   outliers: {}
-{}factors:
+{}{}factors:
   outlier_ratio: [{}]
 estimators:
   - {{name: rcme_calibrated}}
@@ -216,7 +251,8 @@ failure:
   max_direction_error_deg: {}
 )",
       DescribeQuestion(q), q.seed, trials, q.scene, q.image_width, q.image_height, q.focal_px, q.num_matches,
-      q.sigma_px, q.outliers, q.motion.empty() ? "" : "  motion: " + q.motion + "\n", q.outlier_ratio,
+      q.sigma_px, q.outliers, q.motion.empty() ? "" : "  motion: " + q.motion + "\n",
+      q.focal_error == 0.0 ? "" : fmt::format("  focal_error: {}\n", q.focal_error), q.outlier_ratio,
       q.max_rotation_error_deg, q.max_direction_error_deg);
 }
 

@@ -24,6 +24,7 @@ struct AskedTexts {
 struct Question {
   int image_width = 0, image_height = 0;  // px
   double focal_px = 0.0, sigma_px = 0.0;
+  double focal_error = 0.0;  // relative error of the focal length that estimators assume; as the study's key
   std::string scene;
   std::string motion;  // empty: the scene's usual one
   double outlier_ratio = 0.0;
@@ -32,6 +33,9 @@ struct Question {
   double max_rotation_error_deg = 3.0, max_direction_error_deg = 15.0;
   std::uint64_t seed = 1;
 };
+
+// The horizontal view, in deg, of a pinhole that `ask` answers for.
+inline constexpr double kLeastViewDeg = 1.0, kGreatestViewDeg = 150.0;
 
 // Asks on `out` for each missing text and reads it as a line of `in`; says why a text cannot be used and asks
 // again. If a needed text is missing, it asks for the others too, which may stay empty. Throws InputError
@@ -45,7 +49,7 @@ std::vector<std::string> MissingOptions(const AskedTexts& texts);
 bool ParseShare(const std::string& text, double* share);
 
 // Parses the texts that are given into `question`. Throws InputError that names the option and the allowed
-// values.
+// values, also if a pinhole has no such view (a focal length in mm).
 void ReadTexts(const AskedTexts& texts, Question* question);
 
 // Throws InputError if the scene cannot have such wrong matches.
@@ -57,6 +61,10 @@ bool HasDirection(const Question& question);
 // The study that answers the question, as YAML: one condition with `trials` trials, for rcme_calibrated and
 // its usual alternatives. Unknown names are refused when the study is read.
 std::string MakeStudyText(const Question& question, int trials);
+
+// The name of the folder of this question, alike for all numbers of trials: "answer_corridor_f900_wrong40_"
+// and eight digits, a hash of the study.
+std::string MakeFolderName(const Question& question);
 
 // "1280 x 720 px, f 900 px, noise 0.7 px; corridor; 40 % wrong (clustered_both) of 500 matches".
 std::string DescribeQuestion(const Question& question);

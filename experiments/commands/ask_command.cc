@@ -31,7 +31,8 @@ constexpr int kFewestTrials = 50;
 struct AskArguments {
   AskedTexts texts;
   Question question;
-  std::string within = "2m", out = "answer", format = "table";
+  std::string within = "2m", format = "table";
+  std::string out;  // empty: MakeFolderName
   double at_most = 0.05;
   int trials = 0;  // 0: as many as the time allows
   int threads = 0;
@@ -108,6 +109,7 @@ void RunAsk(AskArguments arguments) {
   AskForMissing(std::cin, std::cerr, &arguments.texts);
   ReadTexts(arguments.texts, &arguments.question);
   CheckOutliers(arguments.question);
+  if (arguments.out.empty()) arguments.out = MakeFolderName(arguments.question);
   RequireSimulable(arguments);
   MakeResultFolder(arguments.out);
   RunQuestion(arguments);
@@ -138,12 +140,13 @@ about ten lines: the estimator that succeeds most often among rcme_calibrated, t
 RCME, MSAC, OpenCV's MAGSAC and OpenGV's RANSAC, and which of the others the trials
 cannot tell from it (of those that succeed as often the fastest leads whose errors are
 not greater by more than chance); up to which stated probability of failure to accept answers;
-whether probabilities and covariances are right; what it takes for an inlier; and how
-many trials tell the first two apart. Without the first five options it asks for them
+whether probabilities and covariances are right; what each of the tied takes for an
+inlier; and how many trials tell the first two apart. The answer takes the calibration
+and the noise as exact: --focal-error shows what a wrong focal length does. Without the first five options it asks for them
 at a terminal, and for --motion and --outliers, which have defaults.
 
-The study, the result file and what you can do next are named at the end. The same
-command again answers from the trials that are there; --trials N takes more.
+The study, the result file and what you can do next are named at the end. Each question
+has a folder of its own, so the same command again answers from the trials that are there; --trials N takes more.
 
 Examples:
   rcme ask
@@ -159,6 +162,12 @@ Examples:
           "size of an image, WIDTHxHEIGHT, px")
       ->expected(1, 3);
   command->add_option("--focal", texts.focal_px, "focal length, px");
+  command
+      ->add_option("--focal-error", question.focal_error,
+                   "relative error of the focal length that estimators assume, such as 0.01")
+      ->transform(NumberIn({-0.9, 9.0}))
+      ->transform(PercentAsShare())
+      ->capture_default_str();
   command->add_option("--noise", texts.sigma_px, "standard deviation of a point's noise per coordinate, px");
   command->add_option("--scene", texts.scene, "kind of scene (`rcme list scenes`)");
   command->add_option("--wrong", texts.wrong, "share of wrong matches, 0 to 0.95 or 0% to 95%");
@@ -195,8 +204,10 @@ Examples:
       ->transform(WholeNumberIn(0))
       ->capture_default_str();
   AddFormatOption(command, &arguments->format);
-  command->add_option("-o,--out", arguments->out, "folder for study.yaml and run.sqlite, created if missing")
-      ->capture_default_str();
+  command->add_option(
+      "-o,--out", arguments->out,
+      "folder for study.yaml and run.sqlite, created if missing; default: a name made from the "
+      "question");
   AddThreadsOption(command, &arguments->threads, "The answer depends on them by the number of trials alone");
   command->callback([arguments] { RunAsk(*arguments); });
 }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -35,8 +36,8 @@ TEST_F(AskProgram, AnswersWithStudyAndResultFile) {
   ASSERT_EQ(result.exit_code, 0) << result.err;
   for (const std::string part :
        {"640 x 480 px, f 500 px, noise 0.5 px; corridor; 20 % wrong (uniform) of 80\nmatches", "Estimator",
-        "Next best", "Accept if", "Inlier threshold", "Covariance", "Time", "Trials", "Success: an error of",
-        "rcme report ", "rcme solve "})
+        "Next best", "Taken as exact", "Accept if", "Inlier threshold", "Covariance", "Time", "Trials",
+        "Success: an error of", "rcme report ", "rcme solve "})
     EXPECT_THAT(result.out, HasSubstr(part));
   EXPECT_TRUE(std::filesystem::exists(folder_.Path("asked/study.yaml")));
   const ProgramResult again = RunRcme({"run", folder_.Path("asked/study.yaml"), "--trials", "12", "--threads",
@@ -71,6 +72,44 @@ TEST_F(AskProgram, TheSameQuestionInOtherWordsGoesOn) {
   EXPECT_EQ(ReadBytes(folder_.Path("asked/study.yaml")), study) << "it is still that of run.sqlite";
 }
 
+// Two questions without --out go side by side; the first, asked again, goes on.
+TEST_F(AskProgram, EachQuestionHasAFolderOfItsOwn) {
+  const auto ask = [&](const std::string& more) {
+    return RunShell("cd '" + folder_.Path("") +
+                    "' && \"$RCME\" ask --image 640x480 --focal 500 --noise 0.5 --wrong " +
+                    "0.2 --scene corridor --matches 80 --threads 1 --trials 3 " + more);
+  };
+  const auto count_folders = [&] {
+    return std::ranges::count_if(
+        std::filesystem::directory_iterator(folder_.Path("")), [](const auto& entry) {
+          return entry.path().filename().string().starts_with("answer_corridor_f500_wrong20_") &&
+                 std::filesystem::exists(entry.path() / "run.sqlite");
+        });
+  };
+  EXPECT_EQ(ask("").exit_code, 0);
+  EXPECT_EQ(ask("--focal-error 2%").exit_code, 0);
+  EXPECT_EQ(count_folders(), 2);
+  const ProgramResult again = ask("");
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("3 of 3 trials are there already"));
+  EXPECT_EQ(count_folders(), 2);
+}
+
+TEST_F(AskProgram, AFocalErrorIsThatOfTheStudy) {
+  const ProgramResult result = Ask({"--image", "640x480", "--trials", "3", "--focal-error", "0.02"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("(assumed 2 % too great)"));
+  EXPECT_THAT(ReadBytes(folder_.Path("asked/study.yaml")), HasSubstr("  focal_error: 0.02\n"));
+  const std::string study = folder_.Path("asked/study.yaml"), out = folder_.Path("other.sqlite");
+  for (const std::string value : {"-0.91", "9.1"}) {
+    EXPECT_EQ(Ask({"--image", "640x480", "--focal-error", value}).exit_code, 2) << value;
+    EXPECT_THAT(RunRcme({"run", study, "--set", "focal_error=" + value, "--out", out}).err,
+                HasSubstr("[-0.9, 9]"))
+        << "the range of the option is that of the key";
+  }
+  EXPECT_THAT(Ask({"--image", "640x480", "--focal-error", "9.1"}).err, HasSubstr("[-0.9, 9]"));
+}
+
 TEST_F(AskProgram, WithoutATerminalItNamesWhatIsMissing) {
   const ProgramResult result = Ask({});
   EXPECT_EQ(result.exit_code, 2);
@@ -86,6 +125,7 @@ TEST_F(AskProgram, RefusesWhatIsNoCamera) {
               HasSubstr("--at-most: '500%' is not allowed; give a number in [1e-06, 0.5]"));
   EXPECT_THAT(Ask({"--image", "640x480", "--outliers", "repeated_texture"}).err,
               HasSubstr("with --scene corridor, in which nothing is repeated; give --scene lattice"));
+  EXPECT_THAT(Ask({"--image", "640x480", "--focal", "4.2"}).err, HasSubstr("give the focal length in px"));
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("asked")));
 }
 

@@ -16,6 +16,8 @@
 #include "experiments/ask/question.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
+#include "stats/equivalence.h"
+#include "stats/paired.h"
 #include "tests/test_support/add_records.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -107,6 +109,51 @@ TEST(Ask, ReadsTheTextsAndRefusesWhatIsNone) {
   }
 }
 
+// 2 atan(640 / f) = 150 deg at f = 640 / tan(75 deg) = 171.5 px, 1 deg at 640 / tan(0.5 deg) = 73339 px.
+TEST(Ask, AFocalLengthInMmIsRefused) {
+  const auto read = [](const std::string& focal) {
+    AskedTexts texts = Corridor();
+    texts.focal_px = focal;
+    Question question;
+    ReadTexts(texts, &question);
+  };
+  for (const char* allowed : {"172", "73339"}) EXPECT_NO_THROW(read(allowed)) << allowed;
+  for (const char* refused : {"4.2", "171", "73340"}) EXPECT_THROW(read(refused), InputError) << refused;
+  try {
+    read("4.2");
+  } catch (const InputError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "--focal: 4.2 px gives 1280 px of image width a view of 179 deg, which is not allowed; give the "
+        "focal length in px, in [172, 73339] for a view of 1 to 150 deg; from mm it is the focal length in "
+        "mm * 1280 / the width of the sensor in mm");
+  }
+  AskedTexts texts = Corridor();
+  texts.focal_px = "";
+  std::istringstream in("4.2\n900\n\n\n");
+  std::ostringstream out;
+  AskForMissing(in, out, &texts);
+  EXPECT_EQ(texts.focal_px, "900") << "asked again at once";
+}
+
+TEST(Ask, EveryQuestionHasAFolderOfItsOwn) {
+  Question question;
+  ReadTexts(Corridor(), &question);
+  const std::string name = MakeFolderName(question);
+  EXPECT_TRUE(name.starts_with("answer_corridor_f900_wrong40_")) << name;
+  EXPECT_EQ(name.size(), std::string("answer_corridor_f900_wrong40_").size() + 8);
+  Question same = question;
+  EXPECT_EQ(MakeFolderName(same), name);
+  std::vector<Question> others(6, question);
+  others[0].motion = "forward";
+  others[1].seed = 2;
+  others[2].focal_error = 0.01;
+  others[3].num_matches = 499;
+  others[4].max_direction_error_deg = 10.0;
+  others[5].outlier_ratio = 0.40000001;
+  for (const Question& other : others) EXPECT_NE(MakeFolderName(other), name) << &other - others.data();
+}
+
 TEST(Ask, OnlyALatticeHasRepeatedTexture) {
   Question question;
   question.scene = "room";
@@ -141,6 +188,16 @@ TEST(Ask, TheStudyIsTheQuestion) {
   }
 }
 
+TEST(Ask, TheStudyHasTheFocalError) {
+  Question question;
+  ReadTexts(Corridor(), &question);
+  EXPECT_EQ(MakeStudyText(question, 9).find("focal_error"), std::string::npos);
+  question.focal_error = -0.02;
+  const std::string text = MakeStudyText(question, 9);
+  EXPECT_NE(text.find("\n  focal_error: -0.02\nfactors:"), std::string::npos) << text;
+  EXPECT_NE(DescribeQuestion(question).find("f 900 px (assumed 2 % too small), "), std::string::npos);
+}
+
 // The words of an answer's text, in however many lines.
 std::string JoinWords(const Answer& answer) {
   std::istringstream text(AnswerAsText(answer, "?", "folder"));
@@ -164,6 +221,66 @@ TEST(Ask, CoverageIsNotSaidWithoutSharpness) {
   EXPECT_EQ(nlohmann::json::parse(AnswerAsJson(answer, "?"))["sd_over_crb"], 1.625);
 }
 
+TEST(Ask, WhatIsTakenAsExactIsSaid) {
+  Answer answer;
+  std::string words = JoinWords(answer);
+  EXPECT_NE(words.find("Taken as exact K, the noise level and the noise model: "), std::string::npos)
+      << words;
+  EXPECT_NE(words.find("--focal-error 0.01 asks"), std::string::npos) << words;
+  answer.focal_error = 0.02;
+  words = JoinWords(answer);
+  EXPECT_NE(words.find("the noise model, not the focal length"), std::string::npos) << words;
+  EXPECT_EQ(nlohmann::json::parse(AnswerAsJson(answer, "?"))["focal_error"], 0.02);
+}
+
+TEST(Ask, TrialsThatWouldDoAreThoseOfTheNominalCoverage) {
+  Answer answer;
+  answer.best.label = "ours";
+  answer.trials_to_confirm_coverage = 8463.0;
+  const auto says = [&](double value, const Interval& interval, const std::string& words) {
+    answer.coverage = {.value = value, .interval = interval};
+    return JoinWords(answer).find(words) != std::string::npos;
+  };
+  for (const double value : {0.90, 0.935, 0.941, 0.95, 0.97})
+    EXPECT_TRUE(says(value, {0.85, 0.99}, ": undecided, about 8500 trials would show it if it is 95 % "));
+  EXPECT_TRUE(says(0.93, {0.92, 0.945}, ": less than 95 %, but undecided whether by more than 1 % "));
+  EXPECT_TRUE(says(0.97, {0.955, 0.98}, ": more than 95 %, but undecided whether by more than 1 % "));
+  answer.coverage_verdict = RegionVerdict::kTooNarrow;
+  EXPECT_TRUE(says(0.15, {0.1, 0.2}, ": too narrow "));
+  EXPECT_EQ(nlohmann::json::parse(AnswerAsJson(answer, "?"))["coverage_verdict"], "too narrow");
+}
+
+// In every format, whether or not the best has one.
+TEST(Ask, ThresholdsOfAllTiedAreListed) {
+  const auto make = [](const char* label, const InlierThreshold& threshold) {
+    return AskedEstimator{label, {}, 0.0, kNaN, false, threshold};
+  };
+  Answer answer;
+  answer.best = make("ours", {kNaN, "none: a weight"});
+  answer.alike = {make("theirs", {2.8, "2.8 px of theirs"}), make("own", {}),
+                  make("another", {1.4, "1.4 px of another"})};
+  answer.next = answer.alike[0];
+  const CommandResult result = MakeAnswerResult(answer, "?", "folder");
+  const std::string words = JoinWords(answer);
+  for (const std::string part :
+       {"Inlier threshold ours: none: a weight Inlier threshold theirs: 2.8 px of theirs",
+        "Inlier threshold another: 1.4 px of another"})
+    EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
+  for (const std::string format : {"csv", "json", "latex", "markdown"}) {
+    const std::string text = RenderResult(result, format);
+    for (const std::string part : {"2.8 px of theirs", "1.4 px of another"})
+      EXPECT_NE(text.find(part), std::string::npos) << format << "\n" << text;
+  }
+  const auto json = nlohmann::json::parse(result.json);
+  EXPECT_EQ(json["alike"][2]["threshold_px"], 1.4);
+  EXPECT_EQ(json["rows"].size(), 4u) << "the next is one of the tied";
+  EXPECT_EQ(json["rows"][0]["place"], "best");
+  EXPECT_EQ(json["rows"][3]["place"], "tied");
+  answer.alike.pop_back();
+  answer.next = make("last", {});
+  EXPECT_EQ(nlohmann::json::parse(AnswerAsJson(answer, "?"))["rows"][3]["place"], "next");
+}
+
 // Errors differ by more than chance if they differ by more than 0.01 deg.
 TEST(Ask, ThoseOfEqualSuccessAreRankedByErrorThenTimeThenP) {
   const auto ranked = [](std::vector<AskedEstimator> estimators) {
@@ -176,7 +293,7 @@ TEST(Ask, ThoseOfEqualSuccessAreRankedByErrorThenTimeThenP) {
   };
   const auto make = [](const char* label, double success, double error_deg, double time_ms,
                        bool states_p = false) {
-    return AskedEstimator{label, {.value = success}, time_ms, error_deg, states_p, ""};
+    return AskedEstimator{label, {.value = success}, time_ms, error_deg, states_p, {}};
   };
   EXPECT_EQ(ranked({make("a", 0.9, 0.1, 1.0), make("b", 1.0, 0.9, 9.0)}), "ba") << "success first";
   EXPECT_EQ(ranked({make("a", 1.0, 0.2, 1.0), make("b", 1.0, 0.1, 9.0)}), "ba") << "then the error";
@@ -192,19 +309,33 @@ TEST(Ask, ThoseOfEqualSuccessAreRankedByErrorThenTimeThenP) {
 }
 
 TEST(Ask, AnInlierThresholdHasItsUnit) {
+  Question question;
+  question.sigma_px = 0.7, question.focal_px = 900.0;
+  const auto describe = [&](const std::string& name, const Settings& options) {
+    return DescribeInlierThreshold(name, options, question);
+  };
   // The square root of the 95 % quantile of chi-squared with one degree of freedom is 1.95996.
-  EXPECT_EQ(DescribeInlierThreshold("msac", {{"significance_level", "0.05"}}, 0.7),
-            "1.37 px of Sampson distance (1.96 sigma: keeps 95 % of the true matches)");
-  EXPECT_EQ(DescribeInlierThreshold("opencv_usac", {{"threshold_sigma", "1.5"}}, 0.5),
-            "1.5 px as OpenCV takes it (1.5 standard deviations of its distance)");
-  EXPECT_EQ(DescribeInlierThreshold("opengv_ransac", {{"threshold_sigma", "2"}}, 0.7),
-            "1.4 px of reprojection error in both images together (2 sigma)");
-  const std::string rcme = DescribeInlierThreshold("rcme", {{"significance_level", "0.05"}}, 0.7);
-  EXPECT_TRUE(rcme.starts_with("none in px: a test that keeps 95 % of the true matches")) << rcme;
-  const std::string calibrated = DescribeInlierThreshold("rcme_calibrated", {{"sigma", "estimated"}}, 0.7);
-  EXPECT_TRUE(calibrated.starts_with("none: ")) << calibrated;
-  EXPECT_TRUE(calibrated.ends_with("(estimated, from 0.7 px on)")) << calibrated;
-  EXPECT_EQ(DescribeInlierThreshold("own", {}, 0.7), "");
+  const InlierThreshold msac = describe("msac", {{"significance_level", "0.05"}});
+  EXPECT_EQ(msac.words, "1.37 px of Sampson distance (1.96 sigma: keeps 95 % of the true matches)");
+  EXPECT_NEAR(msac.px, 0.7 * 1.95996, 1e-5);
+  const InlierThreshold opencv = describe("opencv_usac", {{"threshold_sigma", "1.5"}});
+  EXPECT_EQ(opencv.words, "2.1 px as OpenCV takes it (1.5 standard deviations of its distance)");
+  EXPECT_NEAR(opencv.px, 2.1, 1e-12);
+  // (1.4 / 900)^2 / 2 = 1.2099e-6
+  const InlierThreshold opengv = describe("opengv_ransac", {{"threshold_sigma", "2"}});
+  EXPECT_EQ(
+      opengv.words,
+      "1.4 px of reprojection error in both images together (2 sigma); as OpenGV takes it, 1 - cos(atan(1.4 "
+      "/ 900)) = 1.21e-06");
+  EXPECT_NEAR(opengv.px, 1.4, 1e-12);
+  const InlierThreshold rcme = describe("rcme", {{"significance_level", "0.05"}});
+  EXPECT_TRUE(rcme.words.starts_with("none in px: a test that keeps 95 % of the true matches")) << rcme.words;
+  EXPECT_TRUE(std::isnan(rcme.px));
+  const InlierThreshold calibrated = describe("rcme_calibrated", {{"sigma", "estimated"}});
+  EXPECT_TRUE(calibrated.words.starts_with("none: ")) << calibrated.words;
+  EXPECT_TRUE(calibrated.words.ends_with("(estimated, from 0.7 px on)")) << calibrated.words;
+  EXPECT_TRUE(std::isnan(calibrated.px));
+  EXPECT_EQ(describe("own", {}).words, "");
 }
 
 // Three estimators: standard, which states probabilities, ours, third.
@@ -213,6 +344,7 @@ class AnswerOfRun : public testing::Test {
   struct Outcome {
     double error_deg, failure_probability = kNaN;
     MotionStatus status = MotionStatus::kOk;
+    double nees = kNaN;
   };
   // Adds trials of which each has these outcomes.
   void Add(int num_trials, const std::vector<Outcome>& outcomes) {
@@ -225,6 +357,7 @@ class AnswerOfRun : public testing::Test {
         record.rotation_error_deg = outcome.error_deg;
         record.direction_error_deg = HasDirection(question_) ? 0.01 : kNaN;
         record.failure_probability = outcome.failure_probability;
+        record.nees = outcome.nees;
         records_.push_back(record);
       }
     }
@@ -261,19 +394,24 @@ TEST_F(AnswerOfRun, TwoOfThreeAreTied) {
   // (1.959964 sqrt(0.01) + 0.841621 sqrt(0.01 - 0.0001))^2 / 0.0001 = 782.5
   EXPECT_EQ(answer.difference->trials_of_plain_difference, 783);
   EXPECT_EQ(answer.stating, "standard") << "ours states nothing, and cannot be told from it";
+  EXPECT_TRUE(answer.works);
   ASSERT_TRUE(answer.rule);
   EXPECT_EQ(answer.rule->accepted.n, 200);
   const std::string words = JoinWords(answer);
-  for (const std::string part :
-       {"2 of 3 succeed in 200 of 200; ours leads: the errors of standard are greater by 0.5 deg ",
-        "standard answers, whatever its P: 100.0 % of the trials, 0 of 200 failed",
-        "standard states 1.00 % on average, 0.00 % [0.00, 2.37] (n 200) fail: right to within 5 % ",
-        "200; to tell a 1 % difference in success takes about 780; to show a failure rate below 0.1 % about "
-        "4800 without",
-        "Success: an error of at most 3 deg of rotation and 15 deg of direction.",
-        "Accepted answers fail in less than 5 %", "--estimators ours", "--out folder/solve --max-time 5m"})
+  for (
+      const std::string part :
+      {"2 of 3 succeed in 200 of 200; ours leads: the errors of standard are greater by 0.5 deg ",
+       "Accept if ours states no P: nothing to accept by",
+       "Alternative standard, whose success these trials cannot tell from that of ours, states P: accept if "
+       "standard answers, whatever its P: 100.0 % of the trials, 0 of 200 failed; standard states 1.00 % on average, 0.00 % [0.00, 2.37] (n 200) fail: right to within 5 % ",
+       "200; to tell a 1 % difference in success takes about 780; to show a failure rate below 0.1 % about "
+       "4800 without",
+       "Success: an error of at most 3 deg of rotation and 15 deg of direction.",
+       "Accepted answers fail in less than 5 %", "--estimators ours", "--out folder/solve --max-time 5m"})
     EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
+  EXPECT_EQ(words.find("Trust in P"), std::string::npos) << "a line of the recommended estimator alone";
   const auto json = nlohmann::json::parse(AnswerAsJson(answer, "?"));
+  EXPECT_EQ(json["works"], true);
   EXPECT_EQ(json["alike"][0]["label"], "standard");
   EXPECT_EQ(json["stating"]["accept"]["accepted"], 200);
   EXPECT_FALSE(json.contains("accept")) << "the best states no probability";
@@ -331,6 +469,69 @@ TEST_F(AnswerOfRun, OneFailureMoreMayBeChance) {
         "standard states 20.00 % on average, 0.00 % [0.00, 11.28] (n 40) fail: too pessimistic ",
         "40; about 310 tell the first two apart"})
     EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
+}
+
+// Alone, Tango's interval of 4 failures more in 120 trials excludes 0; McNemar's test of 4 discordant trials
+// cannot reject (p 0.125). Of 9 in 120 it can (p 0.0039, adjusted for 2 comparisons 0.0039: third is told
+// apart first).
+TEST_F(AnswerOfRun, TheIntervalOfADifferenceAgreesWithTheVerdict) {
+  Add(116, {{1.0, 0.2}, {0.5}, {90.0}});
+  Add(4, {{1.0, 0.2}, {90.0}, {90.0}});
+  const PairedCounts counts = {.both = 0, .first_only = 4, .second_only = 0, .neither = 116};
+  ASSERT_GT(RiskDifferenceInterval(counts).lower, 0.0);
+  const Answer answer = Ask();
+  ASSERT_EQ(answer.next->label, "ours");
+  EXPECT_EQ(answer.difference->difference.interval.lower, 0.0);
+  EXPECT_EQ(answer.difference->difference.interval.upper, RiskDifferenceInterval(counts).upper)
+      << "the only one that is not told apart";
+  EXPECT_NE(JoinWords(answer).find("3.33 % [0.00, "), std::string::npos) << JoinWords(answer);
+}
+
+TEST_F(AnswerOfRun, TheIntervalOfAProvenDifferenceIsThatOfAllComparisons) {
+  Add(111, {{1.0, 0.2}, {0.5}, {90.0}});
+  Add(9, {{1.0, 0.2}, {90.0}, {90.0}});
+  const Answer answer = Ask();
+  const Interval expected =
+      RiskDifferenceInterval({.both = 0, .first_only = 9, .second_only = 0, .neither = 111}, 1.0 - 0.05 / 2);
+  EXPECT_LT(answer.difference->p_value, 0.05);
+  EXPECT_EQ(answer.difference->difference.interval.lower, expected.lower);
+  EXPECT_EQ(answer.difference->difference.interval.upper, expected.upper);
+  EXPECT_GT(expected.lower, 0.0);
+}
+
+// (z_(1 - 0.025 / 3) + z_0.95)^2 0.95 0.05 / 0.01^2 trials, whichever coverage was measured.
+TEST_F(AnswerOfRun, TrialsThatConfirmACoverageDoNotDependOnIt) {
+  Outcome covered = {.error_deg = 0.5, .nees = 1.0}, missed = {.error_deg = 0.5, .nees = 99.0};
+  Add(37, {covered, covered, {90.0}});
+  Add(3, {missed, missed, {90.0}});
+  const Answer answer = Ask();
+  EXPECT_EQ(answer.coverage.value, 37.0 / 40.0);
+  EXPECT_EQ(answer.coverage_verdict, RegionVerdict::kUndecided);
+  EXPECT_DOUBLE_EQ(answer.trials_to_confirm_coverage,
+                   TrialsToDecide(0.95, Around(0.95, 0.01), 1.0 - 0.05 / 3));
+}
+
+// 9 of 40 succeed: below half, also by the interval for the best of three.
+TEST_F(AnswerOfRun, WhereNoneWorksThatIsSaid) {
+  Add(9, {{0.1, 0.9}, {80.0}, {70.0}});
+  Add(31, {{90.0, 0.9}, {80.0}, {70.0}});
+  const Answer answer = Ask();
+  EXPECT_FALSE(answer.works);
+  const std::string words = JoinWords(answer);
+  for (const std::string part :
+       {"Estimator none works here: the best of 3, standard, has a success of 22.50 % [", "less than 50 %",
+        "Try fewer wrong matches (--wrong)"})
+    EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
+  EXPECT_EQ(words.find("Inlier threshold"), std::string::npos) << words;
+  EXPECT_EQ(nlohmann::json::parse(AnswerAsJson(answer, "?"))["works"], false);
+}
+
+TEST_F(AnswerOfRun, HalfOfTheTrialsMayBeEnough) {
+  Add(18, {{0.1, 0.9}, {80.0}, {70.0}});
+  Add(22, {{90.0, 0.9}, {80.0}, {70.0}});
+  const Answer answer = Ask();
+  EXPECT_TRUE(answer.works);
+  EXPECT_NE(JoinWords(answer).find("Estimator standard: success 45.00 %"), std::string::npos);
 }
 
 TEST_F(AnswerOfRun, WhereNoneSucceedsTheOrderSaysNothing) {
