@@ -1,5 +1,7 @@
 #include "parameters/suggestion.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <numeric>
@@ -10,7 +12,7 @@ namespace rcme {
 namespace {
 
 constexpr size_t kMostLetters = 100;  // longer words are not treated as misspellings
-constexpr size_t kLeastPrefix = 3;
+constexpr size_t kLeastPrefix = 3, kLeastPart = 4;
 
 std::string Folded(std::string_view word) {
   std::string folded(word);
@@ -28,6 +30,18 @@ std::string OnlyContinuation(const std::string& word, const std::vector<std::str
     only = name;
   }
   return only;
+}
+
+// The shortest name that has the word between underscores; empty if there is none.
+std::string ShortestWithPart(const std::string& word, const std::vector<std::string>& names) {
+  if (word.size() < kLeastPart) return {};
+  const std::string part = fmt::format("_{}_", word);
+  std::string shortest;
+  for (const std::string& name : names) {
+    const bool has_it = fmt::format("_{}_", Folded(name)).find(part) != std::string::npos;
+    if (has_it && (shortest.empty() || name.size() < shortest.size())) shortest = name;
+  }
+  return shortest;
 }
 
 }  // namespace
@@ -60,6 +74,7 @@ std::string DidYouMean(std::string_view given, const std::vector<std::string>& n
     least = distance;
     nearest = name;
   }
+  if (nearest.empty()) nearest = ShortestWithPart(word, names);
   return nearest.empty() ? "" : " (did you mean " + Quoted(nearest) + "?)";
 }
 

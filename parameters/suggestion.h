@@ -13,7 +13,8 @@ namespace rcme {
 size_t EditDistance(std::string_view a, std::string_view b);
 
 // " (did you mean 'x'?)" with the nearest name, if its distance is at most 1 + a quarter of the letters, or
-// if it is the only name with this prefix. Case, - and _ are ignored. Otherwise empty.
+// if it is the only name with this prefix. Else with the shortest name that has the word, of at least four
+// letters, between underscores ("magsac": "opencv_magsac"). Case, - and _ are ignored. Otherwise empty.
 std::string DidYouMean(std::string_view given, const std::vector<std::string>& names);
 
 }  // namespace rcme

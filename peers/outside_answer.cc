@@ -63,6 +63,13 @@ MotionEstimate MotionFrom(const MotionProblem& problem, const OutsideAnswer& ans
   return estimate;
 }
 
+// The answer's message. For a motion without a covariance it ends in kCovarianceOfRcme.
+std::string MakeMessage(const OutsideAnswer& answer) {
+  const std::string own = answer.message.empty() ? "the estimator gave no message" : answer.message;
+  if (answer.status != MotionStatus::kOk || answer.pose_cov) return own;
+  return (answer.message.empty() ? "" : own + "; ") + std::string(kCovarianceOfRcme);
+}
+
 // A refusal; with direction_not_observable it keeps the rotation and its covariance if given.
 MotionEstimate RefusalFrom(const OutsideAnswer& answer) {
   MotionEstimate estimate = Refusal(answer.status, answer.message);
@@ -109,10 +116,7 @@ MotionEstimate CallOutside(const MotionProblem& problem, const std::function<Out
     const OutsideAnswer answer = ask();
     MotionEstimate estimate =
         answer.status == MotionStatus::kOk ? MotionFrom(problem, answer) : RefusalFrom(answer);
-    if (estimate.message.empty()) {
-      estimate.message = answer.message.empty() ? "the estimator gave no message" : answer.message;
-    }
-    estimate.message = Printable(estimate.message, 1000);
+    estimate.message = Printable(MakeMessage(answer), 1000);
     estimate.seconds_elsewhere = answer.seconds;
     return estimate;
   } catch (const NoOutsideAnswer& none) {

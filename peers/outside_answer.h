@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "estimator/motion_estimate.h"
@@ -35,6 +36,9 @@ struct OutsideAnswer {
   std::vector<double> inlier_probabilities;
   double seconds = std::numeric_limits<double>::quiet_NaN();
 };
+
+// How the message of a motion ends whose answer states no covariance.
+inline constexpr std::string_view kCovarianceOfRcme = "covariance computed by rcme from its inliers";
 
 // The reason why there is no answer: timed_out, no_answer, unreadable_answer, or library_error if the
 // estimator itself reports an error.

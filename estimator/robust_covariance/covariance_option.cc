@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "parameters/input_error.h"
+
 namespace rcme {
 namespace {
 
@@ -19,6 +21,25 @@ bool IsMotion(const MotionEstimate& estimate, size_t num_matches) {
       inliers.empty() || (inliers.front() >= 0 && inliers.back() < static_cast<int>(num_matches));
   return is_ascending && are_matches && estimate.cam2_from_cam1.R.allFinite() &&
          estimate.cam2_from_cam1.t.allFinite();
+}
+
+std::vector<Parameter> ListRobustParameters(RobustCovarianceOptions& options) {
+  std::vector<Parameter> all = Parameters(options);
+  all.push_back(FocalParameter(&options.calibration.focal_sd));
+  all.push_back(PrincipalPointParameter(&options.calibration.principal_point_sd_px));
+  all.push_back(DistortionParameter(&options.calibration.distortion_sd));
+  return all;
+}
+
+// Throws InputError that names the first option that differs from its default.
+void RequireNoRobustOption(RobustCovarianceOptions options) {
+  RobustCovarianceOptions defaults;
+  const std::vector<Parameter> given = ListRobustParameters(options), unset = ListRobustParameters(defaults);
+  for (size_t i = 0; i < given.size(); ++i) {
+    if (given[i].Value() == unset[i].Value()) continue;
+    throw InputError(fmt::format("{} has no effect without {}=robust; add that option or leave {} out",
+                                 given[i].name(), kOption, given[i].name()));
+  }
 }
 
 class WithRobust : public MotionEstimator {
@@ -56,17 +77,13 @@ class ModelWithRobust : public EstimatorModel {
     all.push_back(Parameter::Choice<bool>(
         kOption, &is_robust_, {{"own", false}, {"robust", true}},
         "the estimator's own, or one that allows correlated errors and repeated matches"));
-    CalibrationPrior& calibration = options_.calibration;
-    std::vector<Parameter> more = rcme::Parameters(options_);
-    more.push_back(FocalParameter(&calibration.focal_sd));
-    more.push_back(PrincipalPointParameter(&calibration.principal_point_sd_px));
-    more.push_back(DistortionParameter(&calibration.distortion_sd));
-    for (Parameter& parameter : more) all.push_back(std::move(parameter));
+    for (Parameter& parameter : ListRobustParameters(options_)) all.push_back(std::move(parameter));
     return all;
   }
   void LiftLimits() override { model_->LiftLimits(); }
   std::optional<Effort> EffortOption() const override { return model_->EffortOption(); }
   std::unique_ptr<MotionEstimator> Make() const override {
+    if (!is_robust_) RequireNoRobustOption(options_);
     std::unique_ptr<MotionEstimator> estimator = model_->Make();
     if (!is_robust_) return estimator;
     return std::make_unique<WithRobust>(std::move(estimator), options_, uses_noise_scale_);

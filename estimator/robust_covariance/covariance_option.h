@@ -14,7 +14,7 @@ namespace rcme {
 //
 //   covariance  own (default: Make returns what the model itself makes) or robust
 //   covariance_factor, covariance_jackknife, focal_sd, principal_point_sd_px, distortion_sd
-//               of the robust one
+//               of the robust one; Make throws InputError if one is set without `robust`
 //
 // With `robust`, a motion (status ok) gets the covariance of robust_covariance.h; the motion, its inliers and
 // all other results do not change. If the inliers determine no covariance, the status is degenerate_matches.

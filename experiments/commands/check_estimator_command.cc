@@ -8,6 +8,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/core/text/program_name.h"
 #include "experiments/core/text/shell_word.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -30,15 +31,18 @@ std::vector<std::string> CheckNames() {
   return names;
 }
 
-// The command that repeats this check.
-std::string Again(const EstimatorCheckArguments& arguments, const std::string& check,
-                  const std::string& problem) {
+// The command that repeats this check, to be pasted into a shell.
+std::string FormatRepeatCommand(const EstimatorCheckArguments& arguments, const std::string& check,
+                                const std::string& problem) {
   const EstimatorChoice& choice = arguments.estimator;
-  std::string command =
-      "check-estimator " + (choice.file ? "--estimator-file " + QuoteForShell(*choice.file) : choice.name);
+  std::string command = QuoteForShell(CommandName()) + " check-estimator " +
+                        (choice.conform ? "--conform " + QuoteForShell(*choice.conform)
+                         : choice.file  ? "--estimator-file " + QuoteForShell(*choice.file)
+                                        : QuoteForShell(choice.name));
   for (const std::string& text : choice.overrides) command += " --set " + QuoteForShell(text);
   command += fmt::format(" --seed {} --only {}", arguments.seed, check);
   if (!problem.empty()) command += " --problem " + QuoteForShell(problem);
+  if (choice.allow_process) command += " --allow-process";
   return command;
 }
 
@@ -49,7 +53,7 @@ void Print(const EstimatorCheckArguments& arguments, const ContractCheck& check,
              Printable(result.finding));
   if (!result.has_passed) {
     fmt::print("{:<20} required:  {}\n{:<20} reproduce: {}\n", "", check.doc, "",
-               Again(arguments, check.name, result.problem));
+               FormatRepeatCommand(arguments, check.name, result.problem));
   }
   std::fflush(stdout);
 }
@@ -119,8 +123,9 @@ Examples:
   command->add_flag("--in-process", arguments->is_in_process,
                     "run the checks in this process, for a debugger; a crash then ends the program");
   command->callback([arguments] {
-    if (arguments->estimator.name.empty() && !arguments->estimator.file)
-      throw InputError("check-estimator: give the name of an estimator or --estimator-file");
+    const EstimatorChoice& choice = arguments->estimator;
+    if (choice.name.empty() && !choice.file && !choice.conform)
+      throw InputError("check-estimator: give the name of an estimator, --estimator-file or --conform");
     RunChecks(*arguments);
   });
 }

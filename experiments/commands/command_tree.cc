@@ -187,6 +187,16 @@ std::string SuggestionsFor(const CLI::App& app) {
   return sentences;
 }
 
+std::string FindRepeatedOption(const CLI::App& app) {
+  for (const CLI::App* command : app.get_subcommands()) {
+    for (const CLI::Option* option : command->get_options()) {
+      const bool is_of_one = !option->get_positional() && option->get_items_expected_max() == 1;
+      if (is_of_one && option->results().size() > 1) return option->get_name();
+    }
+  }
+  return {};
+}
+
 std::string DescribeUnexpected(const CLI::App& app) {
   const std::vector<CLI::App*> chosen = app.get_subcommands();
   const std::vector<std::string> words = (chosen.empty() ? &app : chosen.front())->remaining();

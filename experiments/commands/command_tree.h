@@ -32,6 +32,10 @@ std::vector<std::string> CommandNames(const CLI::App& app);
 
 // Suggests a command or option for each word that the parser did not expect; one sentence each.
 std::string SuggestionsFor(const CLI::App& app);
+// Returns the name of an option of one value, such as "--focal", that the chosen command was given several
+// times; empty if there is none.
+std::string FindRepeatedOption(const CLI::App& app);
+
 // An error message that lists the unexpected words in the order given, with these suggestions.
 std::string DescribeUnexpected(const CLI::App& app);
 

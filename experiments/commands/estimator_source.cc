@@ -39,10 +39,12 @@ void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* 
 }
 
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
-  EstimatorSpec spec = choice.conform                       ? DefaultEstimator(kConformEstimator)
-                       : choice.file                        ? LoadEstimatorFile(*choice.file)
-                       : IsNameOfEstimatorFile(choice.name) ? LoadEstimatorFile(choice.name)
-                                                            : DefaultEstimator(choice.name);
+  const bool is_by_name = !choice.conform && !choice.file && !IsNameOfEstimatorFile(choice.name);
+  if (is_by_name) RequireEstimatorName(choice.name);
+  EstimatorSpec spec = choice.conform ? DefaultEstimator(kConformEstimator)
+                       : choice.file  ? LoadEstimatorFile(*choice.file)
+                       : is_by_name   ? DefaultEstimator(choice.name)
+                                      : LoadEstimatorFile(choice.name);
   Settings options;
   if (choice.conform) options.emplace_back("file", *choice.conform);
   for (const std::string& text : choice.overrides) {

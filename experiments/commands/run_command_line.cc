@@ -166,6 +166,11 @@ int RunCommandLine(int argc, const char* const* argv, const CommandSet& commands
     PrintMessage("{}", DescribeUnexpected(app));
     return 2;
   } catch (const CLI::ParseError& error) {
+    const bool is_of_count = dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr;
+    if (const std::string repeated = FindRepeatedOption(app); is_of_count && !repeated.empty()) {
+      PrintMessage("rcme: {} is given twice; give it once\n", repeated);
+      return 2;
+    }
     if (IsOfUnexpectedWords(app, error)) {
       PrintMessage("{}", DescribeUnexpected(app));
       return 2;

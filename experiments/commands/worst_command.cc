@@ -116,7 +116,7 @@ do not enter the rates, and the intervals of all regions hold together.
 
   failure       share of the trials that failed
   sure_failure  share that failed, of the answers with a stated probability of at most 0.1
-  coverage      truths outside of the stated 95 % region, of answers with P <= 0.01, or of
+  miscoverage   truths outside of the stated 95 % region, of answers with P <= 0.01, or of
                 successes if the estimator states no probability; beside it the median of the
                 stated standard deviations
   difference    failed, less that of --against on the same trials
@@ -136,8 +136,8 @@ Examples:
   AddStudyArgument(command, &arguments->study);
   command->add_option("--estimator", arguments->estimator, "its label")->required();
   command->add_option("--against", arguments->against, "label of the estimator that a difference is from");
-  command->add_option("--quantity", arguments->quantity, "failure, sure_failure, coverage or difference")
-      ->check(MakeChoiceValidator({"failure", "sure_failure", "coverage", "difference"}))
+  command->add_option("--quantity", arguments->quantity, "failure, sure_failure, miscoverage or difference")
+      ->check(MakeChoiceValidator({"failure", "sure_failure", "miscoverage", "difference"}))
       ->capture_default_str();
   CLI::Option* trials =
       command->add_option("--trials", arguments->trials, "how many may be spent; default: 5000")
@@ -156,7 +156,7 @@ Examples:
   command
       ->add_option("--claim", arguments->claim,
                    "a region is a find if its whole interval lies above; default: failure 0.5, sure_failure "
-                   "0.1, coverage 0.05, difference 0")
+                   "0.1, miscoverage 0.05, difference 0")
       ->transform(NumberIn({0.0, 1.0}));
   command->add_option("-o,--out", arguments->out, "folder to write into; it is made")->required();
   AddFormatOption(command, &arguments->format);

@@ -251,10 +251,31 @@ std::vector<CameraDoubt> FindImageDoubts(const Camera& camera, const std::vector
 
 }  // namespace
 
+namespace {
+
+// Whether all key points of both images are so near (0, 0) that they are rays x/z, y/z, or of a unit square,
+// while K is in px.
+bool AreNormalised(const Camera& camera1, const Camera& camera2, const std::vector<Correspondence>& matches) {
+  constexpr size_t kFewest = 8;
+  constexpr double kMostPx = 5.0, kLeastFocalPx = 50.0;
+  return matches.size() >= kFewest && std::min(camera1.fx, camera2.fx) >= kLeastFocalPx &&
+         std::ranges::all_of(matches, [](const Correspondence& match) {
+           return std::max(match.x1_px.cwiseAbs().maxCoeff(), match.x2_px.cwiseAbs().maxCoeff()) < kMostPx;
+         });
+}
+
+}  // namespace
+
 std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
                                         const std::vector<Correspondence>& matches,
                                         const std::array<std::string, 2>& places,
                                         const std::array<bool, 2>& are_sizes_known) {
+  if (AreNormalised(camera1, camera2, matches)) {
+    return {{places[0],
+             fmt::format("all key points are within 5 px of (0, 0), which with fx = {:.6g} do not look like "
+                         "pixels; give x1,y1,x2,y2 in px (fx x + cx, fy y + cy of normalised coordinates)",
+                         camera1.fx)}};
+  }
   std::vector<CameraDoubt> doubts =
       FindImageDoubts(camera1, matches, &Correspondence::x1_px, are_sizes_known[0], places[0]);
   for (const CameraDoubt& doubt :

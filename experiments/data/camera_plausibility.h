@@ -33,7 +33,8 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
                                             const std::string& place);
 
 // Both checks for both images of a pair; equal findings are reported once. Key points that lie outside of the
-// stated size and fit K make the size doubtful, not K.
+// stated size and fit K make the size doubtful, not K. Key points that are all within 5 px of (0, 0) make
+// themselves doubtful, and nothing else is reported.
 std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
                                         const std::vector<Correspondence>& matches,
                                         const std::array<std::string, 2>& places,

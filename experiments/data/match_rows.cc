@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "estimator/problem_check.h"
 #include "experiments/data/match_header.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
+#include "parameters/text_lines.h"
 
 namespace rcme {
 namespace {
@@ -19,6 +21,21 @@ constexpr size_t kMaxColumns = 1000;
 
 bool AreColumnNames(const std::vector<std::string>& fields) {
   return std::ranges::find_first_of(fields, kCoordinateColumns) != fields.end();
+}
+
+// Whether these are words where coordinates should be, such as u1, v1, u2, v2. "nan" and "inf" are none.
+bool AreWords(const std::vector<std::string>& fields) {
+  return fields.size() >= kCoordinateColumns.size() &&
+         std::ranges::none_of(fields.begin(), fields.begin() + kCoordinateColumns.size(),
+                              [](const std::string& field) {
+                                char* end = nullptr;
+                                std::strtod(field.c_str(), &end);
+                                return field.empty() || end != field.c_str();
+                              });
+}
+
+std::vector<std::string> SplitRow(std::string_view line) {
+  return line.find(',') == std::string_view::npos ? SplitAtBlanks(line) : SplitAtCommas(line);
 }
 
 bool HasColumnsFirst(const std::vector<std::string>& fields) {
@@ -46,12 +63,28 @@ size_t FindColumn(const std::vector<std::string>& fields, std::string_view name)
 
 }  // namespace
 
+bool IsMatchText(std::string_view text) {
+  constexpr std::string_view kGzip = "\x1f\x8b";
+  if (text.starts_with(kGzip)) return true;
+  constexpr size_t kMostBytes = 100'000;  // of a header
+  for (const std::string& whole : SplitText(text.substr(0, kMostBytes), '\n')) {
+    const std::string_view line = Trim(whole);
+    if (line.empty() || line.front() == '#') continue;
+    const std::vector<std::string> fields = SplitRow(line);
+    double number = 0.0;
+    const auto is_number = [&](const std::string& field) { return ParseReal(field, &number); };
+    return HasColumnsFirst(fields) || (fields.size() >= kCoordinateColumns.size() &&
+                                       std::all_of(fields.begin(), fields.begin() + 4, is_number));
+  }
+  return false;
+}
+
 void MatchRows::Add(std::string_view line, const GzipLines& lines) {
-  const std::vector<std::string> fields =
-      line.find(',') == std::string_view::npos ? SplitAtBlanks(line) : SplitAtCommas(line);
+  const std::vector<std::string> fields = SplitRow(line);
   if (fields.size() > kMaxColumns)
     lines.Fail(fmt::format("too many columns; at most {} are allowed", kMaxColumns));
-  if (AreColumnNames(fields)) {
+  const bool has_unknown_names = file_->matches.empty() && AreWords(fields);
+  if (AreColumnNames(fields) || has_unknown_names) {
     SetNames(fields, line, lines);
   } else if (file_->matches.size() == kMaxMatchesPerFile) {
     lines.Fail(fmt::format("too many matches; at most {} are allowed", kMaxMatchesPerFile));
@@ -83,8 +116,10 @@ std::optional<std::vector<double>> MatchRows::Scores() const {
 void MatchRows::SetNames(const std::vector<std::string>& fields, std::string_view line,
                          const GzipLines& lines) {
   if (!file_->matches.empty() || !HasColumnsFirst(fields)) {
-    lines.Fail(fmt::format("column names {} are not allowed; give {}[,...], before the first match, or none",
-                           Quoted(line), fmt::join(kCoordinateColumns, ",")));
+    lines.Fail(
+        fmt::format("column names {} are not allowed; give {}[,...], before the first match, or none; "
+                    "further known columns: {}, {}",
+                    Quoted(line), fmt::join(kCoordinateColumns, ","), kSigmaColumn, kScoreColumn));
   }
   if (std::ranges::count(fields, kSigmaColumn) > 1)
     lines.Fail(fmt::format("column {} stands twice", kSigmaColumn));

@@ -13,6 +13,10 @@
 
 namespace rcme {
 
+// Whether this text begins as a match file does, or as a compressed file: with a row of four numbers, or with
+// column names, after its header.
+bool IsMatchText(std::string_view text);
+
 // The names of columns (match_file.h).
 inline constexpr std::string_view kSigmaColumn = "sigma_px", kScoreColumn = "score";
 inline constexpr std::array<std::string_view, 4> kCoordinateColumns = {"x1", "y1", "x2", "y2"};

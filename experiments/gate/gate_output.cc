@@ -46,17 +46,39 @@ std::string FormatMargin(const GateTest& test) {
 bool HasSize(const GateRow& row) { return !std::isnan(row.size_ratio); }
 bool HasSizes(const GateReport& report) { return std::ranges::any_of(report.look.rows, HasSize); }
 
+// Whether rates of the new version alone are compared with limits.
+bool HasOnlyLimits(const GateReport& report) {
+  return std::ranges::all_of(report.look.rows, [](const GateRow& row) { return row.test.is_limit; });
+}
+bool HasLimit(const GateReport& report) {
+  return std::ranges::any_of(report.look.rows, [](const GateRow& row) { return row.test.is_limit; });
+}
+
+// "not worse", of a limit "below the limit".
+std::string NameForPeople(const GateRow& row) {
+  if (!row.test.is_limit) return Name(row.verdict);
+  if (row.verdict == GateVerdict::kNotWorse) return "below the limit";
+  return row.verdict == GateVerdict::kWorse ? "above the limit" : Name(row.verdict);
+}
+
+// The headings of the column with the change, of a limit the rate, and of the one with what it may be.
+std::pair<std::string, std::string> NameChangeColumns(const GateReport& report) {
+  if (HasOnlyLimits(report)) return {"rate", "limit"};
+  return HasLimit(report) ? std::pair("change or rate", "margin or limit") : std::pair("change", "margin");
+}
+
 Table MakePeopleTable(const GateReport& report) {
   using R = const GateRow&;
   std::vector<ColumnOf<GateRow>> columns = {
       {{.name = "quantity", .is_key = true}, [](R r) { return r.test.Name(); }},
-      {{"verdict"}, [](R r) { return Name(r.verdict); }},
+      {{"verdict"}, [](R r) { return NameForPeople(r); }},
       {{"pairs", ColumnType::kCount}, [](R r) { return r.n; }}};
   if (!report.old_label.empty())
     columns.push_back({{"old"}, [](R r) { return FormatLevel(r.test.quantity, r.of_old); }});
   columns.push_back({{"new"}, [](R r) { return FormatLevel(r.test.quantity, r.of_new); }});
-  columns.push_back({{"change"}, [](R r) { return FormatChange(r); }});
-  columns.push_back({{"margin"}, [](R r) { return FormatMargin(r.test); }});
+  const auto [change, margin] = NameChangeColumns(report);
+  columns.push_back({{change}, [](R r) { return FormatChange(r); }});
+  columns.push_back({{margin}, [](R r) { return FormatMargin(r.test); }});
   if (HasSizes(report))
     columns.push_back({{"regions"}, [](R r) {
                          return HasSize(r) ? fmt::format("{:.3g} times as large", r.size_ratio) : "";
@@ -136,14 +158,34 @@ std::string ListRows(const GateReport& report, GateVerdict verdict) {
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-// "failure, refusal": the quantities with this verdict.
-std::string ListQuantities(const GateReport& report, GateVerdict verdict) {
+// The quantities with this verdict of which `is_counted` is true.
+std::vector<std::string> ListQuantities(const GateReport& report, GateVerdict verdict,
+                                        bool (*is_counted)(const GateRow&)) {
   std::vector<std::string> names;
   for (const GateRow& row : report.look.rows) {
     const std::string& name = row.test.quantity.name;
-    if (row.verdict == verdict && std::ranges::count(names, name) == 0) names.push_back(name);
+    if (row.verdict == verdict && is_counted(row) && std::ranges::count(names, name) == 0)
+      names.push_back(name);
   }
-  return fmt::format("{}", fmt::join(names, ", "));
+  return names;
+}
+
+// "NAME is not worse than OLD in failure, error by the margins", and of limits "the failure rate of NAME is
+// below the limit".
+std::string DescribeNotWorse(const GateReport& report) {
+  const auto of_limits =
+      ListQuantities(report, GateVerdict::kNotWorse, [](const GateRow& row) { return row.test.is_limit; });
+  const auto of_margins =
+      ListQuantities(report, GateVerdict::kNotWorse, [](const GateRow& row) { return !row.test.is_limit; });
+  std::vector<std::string> parts;
+  if (!of_margins.empty())
+    parts.push_back(fmt::format("{} is not worse than {} in {} by the margins", report.new_label,
+                                report.old_label, fmt::join(of_margins, ", ")));
+  for (const std::string& name : of_limits)
+    parts.push_back(fmt::format("the {} rate of {} is below the limit", name, report.new_label));
+  std::string text = fmt::format("{}", fmt::join(parts, ", and "));
+  if (text.starts_with("the ")) text[0] = 'T';
+  return text;
 }
 
 std::string WhyNotMeasured(const GateReport& report) {
@@ -154,14 +196,23 @@ std::string WhyNotMeasured(const GateReport& report) {
 std::string ListNotJudged(const GateReport& report) {
   std::vector<std::string> left_out = GateQuantityNames();
   for (const GateRow& row : report.look.rows) std::erase(left_out, row.test.quantity.name);
-  const std::string not_measured = ListQuantities(report, GateVerdict::kNotMeasured);
-  return (not_measured.empty()
-              ? ""
-              : fmt::format("; not measured, because {}: {}", WhyNotMeasured(report), not_measured)) +
+  const auto not_measured =
+      ListQuantities(report, GateVerdict::kNotMeasured, [](const GateRow&) { return true; });
+  return (not_measured.empty() ? ""
+                               : fmt::format("; not measured, because {}: {}", WhyNotMeasured(report),
+                                             fmt::join(not_measured, ", "))) +
          (left_out.empty() ? "" : fmt::format("; not judged: {}", fmt::join(left_out, ", ")));
 }
 
 std::string TableLegend(const GateReport& report) {
+  if (HasOnlyLimits(report)) {
+    return fmt::format(
+        "rate: of the new version; its interval holds at every look with probability {:.0f} %, each end with "
+        "{:.0f} %. Above the limit: at level {:.0f} % for all {} tests together (Holm). Below the limit: at "
+        "level {:.0f} %.",
+        100.0 * (1.0 - 2.0 * kGateLevel), 100.0 * (1.0 - kGateLevel), 100.0 * kGateLevel,
+        report.look.rows.size(), 100.0 * kGateLevel);
+  }
   return fmt::format(
       "{}change: new less old over the pairs, of rates and scores in percentage points; of error and time "
       "the geometric mean of new over old, less 1, each ratio cut off at 1/e and e. An interval of one "
@@ -216,9 +267,7 @@ std::string GateSentence(const GateReport& report) {
                          against.empty() ? " than allowed" : against, trials,
                          ListRows(report, GateVerdict::kWorse), ListNotJudged(report));
     case GateVerdict::kNotWorse:
-      return fmt::format("{} is not worse{} in {} by the margins, after {}{}.", report.new_label,
-                         against.empty() ? " than allowed" : against,
-                         ListQuantities(report, GateVerdict::kNotWorse), trials, ListNotJudged(report));
+      return fmt::format("{}, after {}{}.", DescribeNotWorse(report), trials, ListNotJudged(report));
     case GateVerdict::kUndecided:
     case GateVerdict::kNotMeasured:
       break;
@@ -285,8 +334,9 @@ std::string GateAsJUnit(const GateReport& report) {
       name, rows.size(), count(GateVerdict::kWorse), count(GateVerdict::kUndecided),
       count(GateVerdict::kNotMeasured));
   for (const GateRow& row : rows) {
-    const std::string what = XmlText(fmt::format("{}: change {}, margin {}", Name(row.verdict),
-                                                 FormatChange(row), FormatMargin(row.test)));
+    const std::string what =
+        XmlText(fmt::format("{}: {} {}, {}{}", Name(row.verdict), row.test.is_limit ? "rate" : "change",
+                            FormatChange(row), row.test.is_limit ? "" : "margin ", FormatMargin(row.test)));
     text += fmt::format("<testcase classname=\"{}\" name=\"{}\">", name, XmlText(row.test.Name()));
     if (row.verdict == GateVerdict::kWorse) text += fmt::format("<failure message=\"{}\"/>", what);
     if (row.verdict == GateVerdict::kUndecided) text += fmt::format("<error message=\"{}\"/>", what);

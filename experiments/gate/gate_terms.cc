@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 
+#include "experiments/study/command_files.h"
 #include "experiments/study/command_permission.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -21,23 +18,6 @@ namespace {
 
 constexpr const char* kGateRule = "the verdict of a gate is decided: ";
 constexpr const char* kBetweenTerms = "; ";
-
-// Reads the file in pieces, because a command may name a file of any size.
-std::string HashFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::array<char, 1 << 16> piece;
-  Fnv1a hash;
-  while (file) {
-    file.read(piece.data(), std::ssize(piece));
-    hash.Add({piece.data(), static_cast<size_t>(file.gcount())});
-  }
-  return fmt::format("{:016x}", hash.value());
-}
-
-bool IsRegularFile(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored);
-}
 
 std::string FormatBuild(const std::string& name, const std::string& hash) {
   return fmt::format("build of {} {}", name, hash);
@@ -69,32 +49,6 @@ std::string FormatGateTests(const std::vector<GateTest>& tests, const std::strin
 }
 
 }  // namespace
-
-std::string HashFilesOfCommand(const std::string& command) {
-  Fnv1a hash;
-  // Words of the shell, and what follows an equals sign: `VAR=1 ./a --model=b.bin | "c d.py"` names three.
-  const auto add_file = [&hash](const std::string& word) {
-    if (IsRegularFile(word)) hash.Add(word + " " + HashFile(word) + "\n");
-  };
-  std::string word;
-  char quote = '\0';
-  for (size_t i = 0; i <= command.size(); ++i) {
-    const char c = i < command.size() ? command[i] : ' ';
-    if (quote == '\0' && (c == '\'' || c == '"')) {
-      quote = c;
-    } else if (c == quote && quote != '\0') {
-      quote = '\0';
-    } else if (c == '\\' && quote != '\'' && i + 1 < command.size()) {
-      word += command[++i];
-    } else if (quote == '\0' && std::string_view(" \t\n|&;<>()=").find(c) != std::string_view::npos) {
-      add_file(word);
-      word.clear();
-    } else {
-      word += c;
-    }
-  }
-  return fmt::format("{:016x}", hash.value());
-}
 
 GateTerms MakeGateTerms(const std::vector<GateTest>& tests, const std::string& old_label,
                         const std::vector<EstimatorSpec>& versions, const std::string& baseline) {

@@ -47,10 +47,6 @@ std::string CompareVersions(const RecordedVersion& of_old, const RecordedVersion
 // Whether the two have the same label but differ in estimator or options.
 bool HasMisleadingLabel(const RecordedVersion& of_old, const RecordedVersion& of_new);
 
-// Hashes the bytes of each regular file that the shell command names, in its order. Programs found through
-// PATH and files read by the named ones are not included.
-std::string HashFilesOfCommand(const std::string& command);
-
 // Throws InputError that names the difference if the trials in `path` were judged with other terms.
 void RequireSameTerms(const GateTerms& terms, const std::string& stored_rule, const std::string& path);
 

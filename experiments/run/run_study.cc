@@ -21,6 +21,8 @@ class RecordBuffer : public TrialKeeper {
   }
   std::string NoteOrigin(const TrialOrigin& origin) override { return store_->NoteOrigin(origin); }
 
+  std::string RecordFile() const override { return store_->path(); }
+
   void Keep(const TrialResult& result) override {
     const Clock::time_point now = Clock::now();
     size_t num_waiting = 0;

@@ -68,7 +68,7 @@ RunReport RunTrials(const StudyPlan& plan, const Shard& shard, int num_threads, 
     return 1;
   });
   keeper->Flush();
-  outcomes.Warn(plan);
+  outcomes.Warn(plan, keeper->RecordFile());
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   return {trials.num_trials(), trials.num_missing(), elapsed.count()};
 }

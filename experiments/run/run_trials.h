@@ -25,6 +25,8 @@ class TrialKeeper : public ItemKeeper {
   // Call this before the first new trial is kept. Returns a warning if kept trials have another origin, else
   // an empty text.
   virtual std::string NoteOrigin(const TrialOrigin& origin) = 0;
+  // The file with every trial's records; empty: there is none.
+  virtual std::string RecordFile() const { return {}; }
   // May be called from any thread.
   virtual void Keep(const TrialResult& result) = 0;
 };

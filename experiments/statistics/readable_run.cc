@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/core/files/first_difference.h"
+#include "experiments/study/command_files.h"
 #include "experiments/trial/trial_columns.h"
 #include "parameters/input_error.h"
 #include "parameters/text_lines.h"
@@ -97,7 +98,7 @@ std::string IdentityOfProblems(const std::string& identity) {
   for (const std::string& line : SplitText(identity, '\n')) {
     if (!line.empty() && line[0] != ' ')
       is_left_out = line.starts_with("estimators:") || line.starts_with("name:");
-    if (!is_left_out) kept += line + "\n";
+    if (!is_left_out && !IsOfCommandFile(line)) kept += line + "\n";
   }
   return kept;
 }

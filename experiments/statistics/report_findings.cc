@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "experiments/statistics/quantity_table.h"
+#include "peers/outside_answer.h"
 
 namespace rcme {
 namespace {
@@ -87,6 +88,12 @@ std::string DescribeSharpness(const Summary& summary, const SummaryRow& coverage
   return words;
 }
 
+// "that NAME states".
+std::string DescribeSource(const Summary& summary, const std::string& label) {
+  if (std::ranges::count(summary.outside, label) == 0) return fmt::format("that {} states", label);
+  return fmt::format("of {} (where an answer states none, of a {})", label, kCovarianceOfRcme);
+}
+
 // Regions that are far from what they state, the farthest first: the worst condition of each estimator.
 void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentences) {
   std::vector<Finding> findings;
@@ -105,8 +112,8 @@ void AddWrongCoverages(const Summary& summary, std::vector<std::string>* sentenc
     findings.push_back(
         {farthest,
          fmt::format(
-             "Coverage: the 95 % regions that {} states contain the truth in {}{}{}: they are too {}{}.",
-             label, RateAt(summary, *worst), FormatOverPopulation(summary),
+             "Coverage: the 95 % regions {} contain the truth in {}{}{}: they are too {}{}.",
+             DescribeSource(summary, label), RateAt(summary, *worst), FormatOverPopulation(summary),
              DescribeSharpness(summary, *worst), worst->value < kStatedCoverage ? "small" : "large",
              num_known > 1 ? fmt::format(", and far off in {} of {} conditions", num_off, num_known) : "")});
   }

@@ -96,6 +96,7 @@ struct Summary {
   std::vector<std::string> factor_names;
   std::vector<std::vector<std::string>> levels;  // of every condition, one level per factor
   Settings efforts;                              // by label: what limits the work of a call; empty: not known
+  std::vector<std::string> outside;  // labels of estimators outside the program (study/estimator_spec.h)
   std::vector<SummaryRow> rows;
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
   bool is_target_open = false;  // `rcme run --until` has not ended
@@ -105,7 +106,7 @@ struct Summary {
   std::string population;         // DescribePopulation of study/population.h
   // If pooled: conditions all of whose trials the simulator could not make, and conditions that have trials.
   std::int64_t num_conditions_not_simulated = 0, num_conditions_with_trials = 0;
-  std::int64_t num_retried = 0;   // trials that were run again (RunDescription::retried_trials)
+  std::int64_t num_retried = 0;  // trials that were run again (RunDescription::retried_trials)
   std::optional<Preregistration> preregistration;  // if requested (preregistration.h)
 };
 

@@ -364,8 +364,10 @@ GroupSummarizer::GroupSummarizer(const RunDescription& run, const TrialGroups& g
   summary_.truth_quality = DescribeTruthQuality(run.identity);
   summary_.population = DescribePopulation(run.identity);
   summary_.num_retried = run.retried_trials;
-  for (const DescribedEstimator& estimator : run.estimators)
+  for (const DescribedEstimator& estimator : run.estimators) {
     summary_.efforts.emplace_back(estimator.label, estimator.effort);
+    if (IsOutside(estimator.name)) summary_.outside.push_back(estimator.label);
+  }
 }
 
 void GroupSummarizer::Append(const SummaryCell& cell) {

@@ -13,6 +13,7 @@
 #include "experiments/statistics/preregistration_output.h"
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/study/run_description.h"
+#include "peers/outside_answer.h"
 
 namespace rcme {
 
@@ -309,6 +310,10 @@ std::string SummaryAsTable(const Summary& summary) {
                     "warning of `rcme run` counts the reasons.",
                     summary.num_conditions_not_simulated, summary.num_conditions_with_trials,
                     StatusName(MotionStatus::kNotSimulated)));
+  }
+  if (!summary.outside.empty()) {
+    text += FormatParagraph(fmt::format("{}: where an answer states none, the coverage is of a {}.",
+                                        fmt::join(summary.outside, ", "), kCovarianceOfRcme));
   }
   if (summary.num_retried > 0) {
     text += fmt::format("{} trials were run again because an answer was missing (rcme run --retry).\n",

@@ -1,6 +1,7 @@
 #include "experiments/study/estimator_entry.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +13,7 @@
 #include "experiments/study/study_keys.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -48,15 +50,6 @@ Parameter BudgetParameter(double* budget_ms) {
                          "time of a call that the effort was chosen for");
 }
 
-// Throws InputError unless there is such an estimator.
-void CheckEstimatorName(const std::string& name) {
-  if (IsNameOfEstimatorFile(name)) {
-    throw InputError(fmt::format("unknown estimator {0}; {0} is an estimator file: write {{file: {1}}}",
-                                 Quoted(name), name));
-  }
-  FindEstimator(name);
-}
-
 }  // namespace
 
 std::string ReadLabel(const Place& place, const YAML::Node& node) {
@@ -67,6 +60,21 @@ std::string ReadLabel(const Place& place, const YAML::Node& node) {
                                  Quoted(label)));
   }
   return label;
+}
+
+void RequireEstimatorName(const std::string& name) {
+  if (IsNameOfEstimatorFile(name)) {
+    throw InputError(fmt::format("unknown estimator {0}; {0} is an estimator file: write {{file: {1}}}",
+                                 Quoted(name), name));
+  }
+  std::vector<std::string> names, files = NamesIn(SharedFolder::kEstimators);
+  for (const EstimatorEntry& entry : EstimatorRegistry()) names.push_back(entry.name);
+  if (std::ranges::count(names, name) > 0) return;
+  std::vector<std::string> all = names;
+  all.insert(all.end(), files.begin(), files.end());
+  throw InputError(fmt::format("unknown estimator {}{}; known: {}; estimator files: {}", Quoted(name),
+                               DidYouMean(name, all), fmt::join(names, ", "),
+                               files.empty() ? "none" : fmt::format("{}", fmt::join(files, ", "))));
 }
 
 bool IsNameOfEstimatorFile(const std::string& name) {
@@ -99,7 +107,7 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
   if (spec.name.empty()) place.Fail(node, fmt::format("{}: key 'name' is missing", block));
   if (spec.label.empty()) spec.label = spec.name;
   const YAML::Node options = node["options"] ? node["options"] : YAML::Node(YAML::NodeType::Map);
-  if (node["name"]) place.At(node["name"], [&] { CheckEstimatorName(spec.name); });
+  if (node["name"]) place.At(node["name"], [&] { RequireEstimatorName(spec.name); });
   ReadOptions(place, options, &spec);
   place.At(node, [&] {
     Configure(spec)->Make();  // throws where two options contradict each other

@@ -16,6 +16,10 @@ EstimatorSpec ReadEstimatorEntry(const Place& place, const YAML::Node& node, con
 // Reads the label of an estimator: a name without commas.
 std::string ReadLabel(const Place& place, const YAML::Node& node);
 
+// Throws InputError unless an estimator has this name. The message suggests one, and lists estimators and
+// estimator files.
+void RequireEstimatorName(const std::string& name);
+
 // Returns whether only a file that comes with the program has this name, and no estimator.
 bool IsNameOfEstimatorFile(const std::string& name);
 

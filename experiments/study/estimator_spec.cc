@@ -6,6 +6,7 @@
 
 #include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
+#include "experiments/study/absent_python.h"
 #include "experiments/study/command_permission.h"
 #include "parameters/input_error.h"
 #include "parameters/suggestion.h"
@@ -17,6 +18,10 @@ EstimatorSpec DefaultEstimator(const std::string& name) {
   EstimatorSpec spec{name, name, {}, {}};
   SetOptions(&spec, {});
   return spec;
+}
+
+bool IsOutside(const std::string& name) {
+  return name == "process" || name == "answers" || name == kPythonEstimator;
 }
 
 void SetOptions(EstimatorSpec* spec, const Settings& options) {

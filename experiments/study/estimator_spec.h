@@ -25,6 +25,10 @@ struct EstimatorSpec {
 // names.
 EstimatorSpec DefaultEstimator(const std::string& name);
 
+// Returns whether the estimator's answers come from outside the program: `process`, `answers` or `python`.
+// They need not state a covariance (peers/outside_answer.h).
+bool IsOutside(const std::string& name);
+
 // Changes options. Throws InputError that lists the estimator's options, or what a value may be.
 void SetOptions(EstimatorSpec* spec, const Settings& options);
 

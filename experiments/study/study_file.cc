@@ -7,9 +7,11 @@
 #include <limits>
 
 #include "experiments/core/files/shared_files.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/camera_noise.h"
 #include "experiments/data/make_data.h"
+#include "experiments/data/match_rows.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
@@ -68,6 +70,12 @@ Parameter CommonScenesParameter(bool* common_scenes) {
 // Reads an entry of the list of estimators. {file: tuned.yaml} names an estimator file, relative to the
 // study's folder.
 EstimatorSpec ReadEstimator(const Place& place, const YAML::Node& node) {
+  if (node.IsScalar()) {
+    const std::string name = Scalar(place, node, "estimators");
+    place.At(node, [&] { RequireEstimatorName(name); });
+    place.Fail(node, fmt::format("estimators: {} is no map of keys and values; write {{name: {}}}",
+                                 Quoted(name), name));
+  }
   if (!node.IsMap() || !node["file"])
     return ReadEstimatorEntry(place, node, "estimators", ListStudyKeys("estimators"));
   EstimatorSpec spec;
@@ -233,6 +241,26 @@ void FollowFailureBounds(const Place& place, const YAML::Node& root, Study* stud
   }
 }
 
+// Throws InputError for a factor that replaces a value in `data`, which would have no effect. A one-at-a-time
+// design takes its base values from there. Defaults are allowed, because ToYaml writes them.
+void RefuseReplacedData(const Place& place, const YAML::Node& root, const Study& study) {
+  if (study.design == Design::kOneAtATime || !root["data"] || !root["factors"]) return;
+  const Settings first = ChooseFirstSettings(study);
+  for (const Factor& factor : study.factors) {
+    const YAML::Node given = root["data"][factor.key];
+    if (!given) continue;
+    Settings others = first;
+    std::erase_if(others, [&](const auto& setting) { return setting.first == factor.key; });
+    const bool is_default = !IsChoice(factor.key) && FindSetting(ResolveSettings(others), factor.key) ==
+                                                         FindSetting(study.data, factor.key);
+    if (is_default) continue;
+    place.Fail(
+        root["factors"][factor.key],
+        fmt::format("factors: {0} is also in data ({1}), where {2} would have no effect; leave one out",
+                    factor.key, place.Text(given), Quoted(given.Scalar())));
+  }
+}
+
 // The settings whose values are paths.
 constexpr const char* kPathKeys[] = {"folder", kCalibrationKey, kNoiseFileKey, kTruthInDoubtKey};
 
@@ -254,8 +282,12 @@ void SeePathsFrom(const std::filesystem::path& folder, Study* study) {
   }
 }
 
+// Who wrote the text of a study.
+enum class Author { kPerson, kProgram };
+
 // `folder`: the paths in the data are relative to it.
-Study ReadStudy(const std::string& yaml, const std::string& path, const std::filesystem::path& folder) {
+Study ReadStudy(const std::string& yaml, const std::string& path, const std::filesystem::path& folder,
+                Author author) {
   const Place place(path);
   const YAML::Node root = ParseYaml(yaml, path, StudyFileKind());
   Study study;
@@ -300,6 +332,7 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
            [&] { study.data = WithNoiseFile(WithCalibration(study.data)); });
   FollowFailureBounds(place, root, &study);
   SettleData(place, root, &study);
+  if (author == Author::kPerson) RefuseReplacedData(place, root, study);
   if (root["hypotheses"])
     study.hypotheses = ReadHypotheses(place, root["hypotheses"], ListStatableNames(study));
   if (root["tune"]) study.tuning = ReadTuning(place, root["tune"], study.estimators);
@@ -310,10 +343,17 @@ Study ReadStudy(const std::string& yaml, const std::string& path, const std::fil
 
 Study LoadStudy(const std::string& name) {
   const std::string path = FindFile(name, SharedFolder::kStudies, StudyFileKind());
-  return ReadStudy(ReadInputText(path, StudyFileKind()), path, std::filesystem::path(path).parent_path());
+  const std::string text = ReadInputText(path, StudyFileKind());
+  if (IsMatchText(text)) {
+    throw InputError(fmt::format("{}: is a match file, not a study; `rcme estimate {}` estimates its motion",
+                                 path, QuoteForShell(path)));
+  }
+  return ReadStudy(text, path, std::filesystem::path(path).parent_path(), Author::kPerson);
 }
 
-Study ParseStudy(const std::string& yaml, const std::string& path) { return ReadStudy(yaml, path, {}); }
+Study ParseStudy(const std::string& yaml, const std::string& path) {
+  return ReadStudy(yaml, path, {}, Author::kProgram);
+}
 
 void Override(Study* study, const std::string& key, const std::string& value) {
   const size_t dot = key.rfind('.');

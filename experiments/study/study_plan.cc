@@ -8,6 +8,7 @@
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/camera_noise.h"
 #include "experiments/data/make_data.h"
+#include "experiments/study/command_files.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -60,7 +61,7 @@ std::string Identity(const StudyPlan& plan) {
     const std::string data = condition.source->Identity();
     if (!data.empty()) identity += fmt::format("# condition {}: {}\n", condition.index, data);
   }
-  return identity;
+  return identity + IdentifyCommandFiles(plan.study.estimators);
 }
 
 // Returns a text that is equal for two conditions that draw the same scenes, noise and outliers. These have

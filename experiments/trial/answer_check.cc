@@ -8,6 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "peers/outside_answer.h"
+
 namespace rcme {
 namespace {
 
@@ -114,14 +116,21 @@ bool IsCovariance(const Matrix5d& covariance) {
   return Eigen::LLT<Matrix5d>(correlation).info() == Eigen::Success;
 }
 
+bool HasCovarianceOfRcme(const MotionEstimate& estimate) {
+  return estimate.status == MotionStatus::kOk && estimate.message.ends_with(kCovarianceOfRcme);
+}
+
 std::optional<AnswerFault> FindFault(const MotionEstimate& estimate, size_t num_matches) {
   if (const Description fault = FaultOfAccount(estimate, num_matches))
     return AnswerFault{MotionStatus::kInvalidMotion, *fault};
   if (const Description fault = FaultOfMotion(estimate))
     return AnswerFault{MotionStatus::kInvalidMotion, *fault};
   if (estimate.status != MotionStatus::kOk || IsCovariance(estimate.pose_cov)) return std::nullopt;
-  return AnswerFault{MotionStatus::kInvalidCovariance,
-                     "the covariance is not finite, symmetric and positive semidefinite"};
+  return AnswerFault{
+      MotionStatus::kInvalidCovariance,
+      HasCovarianceOfRcme(estimate)
+          ? fmt::format("its inliers determine no covariance, and it states none ({})", kCovarianceOfRcme)
+          : "the covariance is not finite, symmetric and positive semidefinite"};
 }
 
 MotionEstimate Judged(MotionEstimate estimate, size_t num_matches) {

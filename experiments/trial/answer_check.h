@@ -33,6 +33,10 @@ struct AnswerFault {
   std::string message;                                 // what is wrong, in one sentence
 };
 
+// Returns whether the answer's estimator, one outside the program, stated no covariance, so that `rcme`
+// computed it from the inliers.
+bool HasCovarianceOfRcme(const MotionEstimate& estimate);
+
 // Returns what is wrong with the answer to a problem of `num_matches`; nothing if it is valid.
 // - invalid_motion: an unknown status; inliers that are repeated or no indices of matches; impossible counts
 //   or probabilities; R and t that are not a valid motion although the status promises them (ok: both;

@@ -36,8 +36,8 @@ def fresh_answer(objective, region):
 
 
 def sharpness_columns(objective, region):
-    """Of a coverage: medians of what the answers of its fresh trials state."""
-    if objective.quantity != "coverage":
+    """Of a miscoverage: medians of what the answers of its fresh trials state."""
+    if objective.quantity != "miscoverage":
         return {}
     return {key: fresh_answer(objective, region).get("sharpness", {}).get(key) for key in SHARPNESS}
 

@@ -25,13 +25,13 @@ NOT_THERE = -1  # an event that a trial does not have: it does not count
 
 QUANTITIES = {"failure": "share of the trials that failed",
               "sure_failure": f"share that failed, of the answers with a stated P <= {SURE_BELOW:g}",
-              "coverage": "share of the truths outside of the stated 95 % region, of answers with P <= "
-                          f"{SURE_OF_COVERAGE:g}, or of successes if the estimator states no P",
+              "miscoverage": "share of the truths outside of the stated 95 % region, of answers with P <= "
+                             f"{SURE_OF_COVERAGE:g}, or of successes if the estimator states no P",
               "difference": "share of the trials that failed, less that of the other estimator"}
-SHARPNESS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg")  # beside a coverage: wide regions cover
+SHARPNESS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg")  # beside a miscoverage: wide regions cover
 STATEMENTS = {"sure_failure": ("failure_probability", "a probability of failure"),  # column and name of what answers have to state
-              "coverage": ("rotation_sd_deg", "a covariance")}
-CLAIMS = {"failure": 0.5, "sure_failure": SURE_BELOW, "coverage": 0.05, "difference": 0.0}
+              "miscoverage": ("rotation_sd_deg", "a covariance")}
+CLAIMS = {"failure": 0.5, "sure_failure": SURE_BELOW, "miscoverage": 0.05, "difference": 0.0}
 
 
 class PlainDumper(yaml.SafeDumper):
@@ -264,7 +264,7 @@ class TrialsOfRun(Objective):
             raise PlotError(f"{name}: {table.stderr.strip()}")
         rows = csv.DictReader(io.StringIO(table.stdout))
         levels, answers, num_calls = {}, {label: {} for label in self.labels}, 0
-        measured = []  # of a coverage, the answers that count
+        measured = []  # of a miscoverage, the answers that count
         is_stating = []  # of the first estimator's valid answers
         names = rows.fieldnames[3:rows.fieldnames.index("trial")]  # after study, condition, draw
         columns = {name if name in self.space.keys else name.removeprefix("level_"): name for name in names}
@@ -277,7 +277,7 @@ class TrialsOfRun(Objective):
                 is_stating.append(bool(row[STATEMENTS[self.quantity][0]]))
             if trial >= first:
                 answers[row["estimator"]][condition, trial] = event_of(self.quantity, row)
-                if self.quantity == "coverage" and answers[row["estimator"]][condition, trial] != NOT_THERE:
+                if self.quantity == "miscoverage" and answers[row["estimator"]][condition, trial] != NOT_THERE:
                     measured.append(row)
         counts = {condition: [0, 0, 0] for condition in levels}
         failing = []
@@ -297,4 +297,4 @@ class TrialsOfRun(Objective):
                 "reverse": [counts[c][2] for c in order], "conditions": order, "failing": failing,
                 "calls": num_calls, "seconds": round(self.last_seconds, 3),
                 "answers": len(is_stating), "stating": sum(is_stating),
-                **({"sharpness": sharpness_of(measured)} if self.quantity == "coverage" else {})}
+                **({"sharpness": sharpness_of(measured)} if self.quantity == "miscoverage" else {})}

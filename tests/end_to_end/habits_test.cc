@@ -159,6 +159,17 @@ TEST_F(Habits, ASlipOfThePenIsUnderstood) {
   EXPECT_THAT(RunRcme({"frobnicate"}).err, Not(HasSubstr("did you mean")));
 }
 
+TEST_F(Habits, WrongUsesAreNamed) {
+  const std::string matches = folder_.Write("pair.csv", MatchHeader() + MatchRows(30));
+  EXPECT_TRUE(IsRefused(RunRcme({"run", matches, "--out", out_}), {"is a match file", "rcme estimate "}));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", matches, "--estimator", "magsac"}),
+                        {"did you mean 'opencv_magsac'?", "known: standard, ", "estimator files: "}));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", matches, "--seed", "1", "--seed", "2"}),
+                        {"rcme: --seed is given twice; give it once\n"}));
+  EXPECT_TRUE(IsRefused(RunRcme({"estimate", matches, "--estimator", "standard", "--set", "focal_sd=0.2"}),
+                        {"focal_sd has no effect without covariance=robust"}));
+}
+
 // A key that another choice brings.
 TEST_F(Habits, AMissingChoiceIsNamed) {
   EXPECT_TRUE(IsRefused(Run({"--out", out_, "--set", "cameras=own_intrinsics", "--set", "focal_px=700"}),

@@ -110,10 +110,46 @@ TEST_F(ProcessEstimators, OneThatRefusesEverythingIsAWarning) {
   const ProgramResult run = RunRcme(RunArguments());
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.err,
-              HasSubstr("warning: asked refused every one of the 6 trials run now (no_candidate 6)"));
+              HasSubstr("warning: asked refused every one of the 6 trials run now (no_candidate 6); rcme "
+                        "replay " +
+                        out_ + " --condition 0 --trial 0 --allow-process shows why\n"));
   EXPECT_THAT(run.err, Not(HasSubstr("standard refused")));
   EXPECT_THAT(RunRcme({"summarize", out_}).err, HasSubstr("warning: asked refused every trial"));
   EXPECT_THAT(RunRcme({"summarize", out_}).err, Not(HasSubstr("standard")));
+}
+
+TEST_F(ProcessEstimators, AnswersOfTwoVersionsOfAScriptAreNotMixed) {
+  const std::string good = "while ask; do answer; done";
+  UseScript(good);
+  ASSERT_EQ(RunRcme(RunArguments({"--trials", "3"})).exit_code, 0);
+  UseScript(good + "  # another version");
+  for (const std::vector<std::string>& command :
+       {RunArguments(), {"replay", out_, "--condition", "0", "--trial", "0", "--allow-process"}}) {
+    const ProgramResult refused = RunRcme(command);
+    EXPECT_EQ(refused.exit_code, 2) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr("file " + script_ + " of estimator asked is not what it was"));
+  }
+  EXPECT_EQ(RunRcme({"summarize", out_}).exit_code, 0) << "what is there can be read";
+  UseScript(good);
+  EXPECT_EQ(RunRcme(RunArguments()).exit_code, 0);
+  EXPECT_EQ(ResultStore::OpenForReading(out_).NumTrials(), kTrials);
+}
+
+// The check of a process that fails, and that of one that states no covariance.
+TEST_F(ProcessEstimators, ChecksNameCommandsThatCanBePasted) {
+  UseScript("while ask; do answer; done");
+  const ProgramResult failed = RunRcme(
+      {"check-estimator", "--estimator-file", estimator_, "--allow-process", "--only", "conventions"});
+  EXPECT_EQ(failed.exit_code, 1);
+  EXPECT_THAT(failed.out, HasSubstr("reproduce: rcme check-estimator --estimator-file " + estimator_ +
+                                    " --seed 1 --only conventions --allow-process\n"));
+  const ProgramResult without_covariance =
+      RunRcme({"check-estimator", "--estimator-file", estimator_, "--allow-process", "--only", "answers"});
+  EXPECT_EQ(without_covariance.exit_code, 0) << without_covariance.out;
+  EXPECT_THAT(without_covariance.out, HasSubstr("not checked: covariance computed by rcme from its inliers"));
+  ASSERT_EQ(RunRcme(RunArguments()).exit_code, 0);
+  EXPECT_THAT(RunRcme({"summarize", out_}).out,
+              HasSubstr("asked: where an answer states none, the coverage"));
 }
 
 // Whatever the process has started, in whatever session.
@@ -175,7 +211,14 @@ TEST_F(ProcessEstimators, MissingAnswersAreAskedForAgain) {
       "if mkdir a 2>/dev/null; then ask; answer; exit; fi\n"
       "for n in 1 2 3; do if mkdir $n 2>/dev/null; then ask; exit; fi; done\n" +
       good);
-  ASSERT_EQ(RunRcme(RunArguments()).exit_code, 0);
+  const ProgramResult first = RunRcme(RunArguments());
+  ASSERT_EQ(first.exit_code, 0);
+  EXPECT_THAT(first.err,
+              HasSubstr("warning: asked gave no answer in 3 of the 6 trials run now (no_answer 3); "
+                        "rcme replay " +
+                        out_ + " --condition 0 --trial "));
+  EXPECT_THAT(first.err,
+              HasSubstr(" --allow-process shows why; rcme run with --retry no_answer asks again\n"));
   EXPECT_EQ(Statuses()["no_answer"], 3);
   const ProgramResult retried = RunRcme(RunArguments({"--retry", "no_answer,timed_out"}));
   EXPECT_EQ(retried.exit_code, 0) << retried.err;

@@ -58,6 +58,17 @@ MotionEstimate Ask(const MotionEstimator& estimator, std::uint64_t seed = 1) {
   return estimator.Estimate(DrawNoisyProblem(seed), rng);
 }
 
+TEST(OutsideCovariance, AMessageSaysWhoseItIs) {
+  OutsideAnswer answer;
+  answer.t << 1.0, 0.0, 0.0;
+  const auto message = [&] { return CallOutside(DrawNoisyProblem(1), [&] { return answer; }).message; };
+  EXPECT_EQ(message(), kCovarianceOfRcme);
+  answer.message = "found";
+  EXPECT_EQ(message(), "found; " + std::string(kCovarianceOfRcme));
+  answer.pose_cov = Matrix6d::Identity();
+  EXPECT_EQ(message(), "found");
+}
+
 TEST(OutsideCovariance, IsThatOfTheTangent) {
   const RelativePose pose{RotationFromVector({0.1, -0.2, 0.05}),
                           Eigen::Vector3d(0.3, -0.8, 0.4).normalized()};

@@ -199,8 +199,8 @@ class Requests(unittest.TestCase):
             Path(folder, "study.yaml").write_text("conditions: {}\n")
             with self.assertRaisesRegex(PlotError, "no answer of mine states a probability of failure; sure_failure needs"):
                 check("sure_failure", (0, 0), (5, 0))
-            with self.assertRaisesRegex(PlotError, "states a covariance; coverage"):
-                check("coverage", (5, 0))
+            with self.assertRaisesRegex(PlotError, "states a covariance; miscoverage"):
+                check("miscoverage", (5, 0))
             check("sure_failure", (5, 1), (5, 0))
             check("failure", (0, 0))
 
@@ -287,10 +287,10 @@ class Events(unittest.TestCase):
         self.assertEqual([event_of("sure_failure", row) for row in (sure_failure, doubtful, silent, absent)], [1, -1, -1, -1])
         rotation_alone, invalid = ({**sure_failure, "direction_error_deg": "", "status": status} for status in ("ok", "invalid_motion"))
         self.assertEqual([event_of("sure_failure", row) for row in (rotation_alone, invalid)], [-1, 1])
-        self.assertEqual([event_of("coverage", row) for row in (sure_failure, doubtful, silent)], [1, -1, -1])
-        self.assertEqual(event_of("coverage", {**silent, "outcome": "success", "nees": "5"}), 0)
+        self.assertEqual([event_of("miscoverage", row) for row in (sure_failure, doubtful, silent)], [1, -1, -1])
+        self.assertEqual(event_of("miscoverage", {**silent, "outcome": "success", "nees": "5"}), 0)
 
-    def test_a_coverage_comes_with_its_sharpness(self):
+    def test_a_miscoverage_comes_with_its_sharpness(self):
         rows = [{"sd_over_crb": bound, "rotation_sd_deg": "0.5", "direction_sd_deg": sd} for bound, sd in
                 (("1", "2"), ("1.5", "4"), ("", "3"), ("9", ""))]
         known = sharpness_of(rows)

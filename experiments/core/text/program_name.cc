@@ -19,6 +19,10 @@ std::string& Name() {
 
 const std::string& ProgramName() { return Name(); }
 
+std::string CommandName() {
+  return Name() == kRcme ? "rcme" : Name().substr(0, Name().rfind(" (" + kRcme + ")"));
+}
+
 void NameProgram(const std::string& path) {
   std::string name = Printable(std::filesystem::path(path).filename().string(), 100);
   std::ranges::replace(name, ',', '_');  // result files list several programs with commas

@@ -8,6 +8,9 @@ namespace rcme {
 // (rcme 0.1.0)".
 const std::string& ProgramName();
 
+// The word that starts this program in a command for people: "rcme", "own_rcme".
+std::string CommandName();
+
 // Sets the name from argv[0]. Call this first.
 void NameProgram(const std::string& path);
 

@@ -5,7 +5,10 @@
 #include <memory>
 
 #include "estimator/conform/conform_estimator.h"
+#include "experiments/core/text/program_name.h"
+#include "experiments/core/text/shell_word.h"
 #include "parameters/input_error.h"
+#include "parameters/settings.h"
 
 namespace rcme {
 namespace {
@@ -38,6 +41,16 @@ void AddOtherEstimator(const EstimatorSpec& spec, std::vector<std::string>* advi
   if (spec.name != "rcme_calibrated")
     advice->push_back(
         "another estimator: --estimator rcme_calibrated estimates the noise and states its doubts");
+}
+
+// "rcme check-estimator NAME" with the options that differ from their defaults, to be pasted into a shell.
+std::string FormatCheckCommand(const EstimatorSpec& spec) {
+  std::string command = QuoteForShell(CommandName()) + " check-estimator " + QuoteForShell(spec.name);
+  const Settings defaults = DefaultEstimator(spec.name).options;
+  for (const auto& [option, value] : spec.options) {
+    if (FindSetting(defaults, option) != value) command += " --set " + QuoteForShell(option + "=" + value);
+  }
+  return command;
 }
 
 }  // namespace
@@ -97,8 +110,7 @@ std::vector<std::string> AdviceFor(const MotionEstimate& estimate, const Estimat
     case MotionStatus::kUnreadableAnswer:
     case MotionStatus::kInvalidMotion:
     case MotionStatus::kInvalidCovariance:
-      advice.push_back(
-          fmt::format("what it should answer, and what it does: rcme check-estimator {}", spec.name));
+      advice.push_back(fmt::format("what it should answer, and what it does: {}", FormatCheckCommand(spec)));
       AddOtherEstimator(spec, &advice);
       break;
     case MotionStatus::kInvalidInput:

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "experiments/core/files/first_difference.h"
+#include "experiments/study/command_files.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_lock.h"
 #include "parameters/input_error.h"
@@ -55,6 +56,12 @@ std::string DescribeHeld(const RunDescription& run) {
 // Throws InputError unless the wanted run continues the file, which holds trials.
 void CheckIsThatRun(const ResultFile& file, const RunDescription& wanted) {
   const RunDescription& held = file.description;
+  if (const auto changed = FindChangedCommandFile(held.identity, wanted.identity)) {
+    throw InputError(
+        fmt::format("{}: holds answers of another version: {} is not what it was. Give another --out, or "
+                    "restore the file",
+                    file.path, *changed));
+  }
   if (held.identity != wanted.identity) {
     throw InputError(
         fmt::format("{}: holds the results of another study, run by {}; first difference: {}. Give another "

@@ -9,6 +9,7 @@
 #include "experiments/core/text/program_name.h"
 #include "experiments/run/store/open_for_run.h"
 #include "experiments/run/store/trial_writer.h"
+#include "experiments/study/command_files.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
@@ -90,6 +91,8 @@ void ResultStore::CheckTrials() const {
   connection_->are_trials_checked = true;
 }
 
+const std::string& ResultStore::path() const { return connection_->file.path; }
+
 RunDescription ResultStore::Description() const {
   const ResultFile& file = connection_->file;
   RunDescription run = file.description;
@@ -112,6 +115,10 @@ StudyPlan ResultStore::Plan(const Study& stored, PlanEstimators estimators) cons
   const RunDescription run = Description();
   if (!run.stopping_rule.empty()) CheckTrials();
   StudyPlan plan = NamingProgram(run, [&] { return MakePlan(stored, path, estimators); });
+  if (const auto changed = FindChangedCommandFile(run.identity, plan.identity)) {
+    throw InputError(fmt::format(
+        "{}: its trials cannot be run again: {} is not what it was; restore the file", path, *changed));
+  }
   if (plan.identity != run.identity) {
     throw InputError(fmt::format("{}: the data of its study have changed since: {}", path,
                                  FirstDifference(run.identity, plan.identity)));

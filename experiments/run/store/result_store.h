@@ -38,6 +38,8 @@ class ResultStore {
   ResultStore(ResultStore&&) noexcept;
   ~ResultStore();  // commits added trials
 
+  const std::string& path() const;
+
   // Returns the description of the run. A condition's number of trials is the planned one; under a stopping
   // rule, the number in the file. The options of --until are present only if they alone produce the trials
   // in the file.

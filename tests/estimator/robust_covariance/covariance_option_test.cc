@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "parameters/input_error.h"
 #include "tests/test_support/fit_all_matches.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -86,6 +87,28 @@ TEST(CovarianceOption, WeighsMatchesAsTheEstimatorDoes) {
   const auto not_weighed = WithRobustCovariance(std::make_unique<FixedModel>(c.answer), false);
   EXPECT_EQ(EstimateWithCovariance(*weighed, c.problem, true).pose_cov, expected(c.problem));
   EXPECT_EQ(EstimateWithCovariance(*not_weighed, c.problem, true).pose_cov, expected(all_alike));
+}
+
+TEST(CovarianceOption, RefusesOptionsOfTheRobustOneWithoutIt) {
+  const NoisyCase c = MakeNoisyCase();
+  for (const auto& [option, value] : Settings{{"covariance_factor", "2"},
+                                              {"covariance_jackknife", "added"},
+                                              {"focal_sd", "0.2"},
+                                              {"principal_point_sd_px", "50"},
+                                              {"distortion_sd", "0.01"}}) {
+    const auto model = WithRobustCovariance(std::make_unique<FixedModel>(c.answer));
+    const std::vector<Parameter> parameters = model->Parameters();
+    FindParameter(parameters, option).SetFromText(value);
+    try {
+      model->Make();
+      ADD_FAILURE() << option;
+    } catch (const InputError& error) {
+      EXPECT_EQ(std::string(error.what()).find(option + " has no effect without covariance=robust"), 0u)
+          << error.what();
+    }
+    FindParameter(parameters, "covariance").SetFromText("robust");
+    EXPECT_NO_THROW(model->Make()) << option;
+  }
 }
 
 TEST(CovarianceOption, IsNotAddedASecondTime) {

@@ -184,6 +184,23 @@ TEST(CameraPlausibility, KeyPointsStandForASizeThatIsNotKnown) {
   EXPECT_EQ(SayOfPoints(sized, few, true), "");
 }
 
+TEST(CameraPlausibility, NormalisedCoordinatesAreNamedOnce) {
+  RandomStream rng({.seed = 1, .purpose = 77});
+  std::vector<Correspondence> matches(60);
+  for (Correspondence& match : matches) {
+    for (Eigen::Vector2d* x_px : {&match.x1_px, &match.x2_px}) *x_px << rng.Normal(), 0.5 * rng.Normal();
+  }
+  const Camera camera1{700.0, 700.0, 319.5, 239.5, 640, 480}, camera2{710.0, 710.0, 330.5, 230.5, 640, 480};
+  for (const bool is_known : {false, true}) {
+    const auto doubts = FindPairDoubts(camera1, camera2, matches, {"1", "2"}, {is_known, is_known});
+    ASSERT_EQ(doubts.size(), 1U);
+    EXPECT_NE(doubts[0].what.find("do not look like pixels"), std::string::npos) << doubts[0].what;
+  }
+  matches[5].x2_px << 40.0, 30.0;
+  for (const CameraDoubt& doubt : FindPairDoubts(camera1, camera2, matches, {"1", "2"}))
+    EXPECT_EQ(doubt.what.find("do not look like pixels"), std::string::npos) << doubt.what;
+}
+
 TEST(CameraPlausibility, ASizeThatContradictsKAndKeyPointsIsTheOneFinding) {
   const Camera camera{600, 600, 319.5, 239.5, 330, 250};
   const std::vector<CameraDoubt> doubts = FindPairDoubts(camera, camera, PointsOnAGrid(), {"1", "2"});

@@ -117,6 +117,8 @@ TEST_F(MatchFileTest, OtherColumnNames) {
                         {":10: column names '" + names + "'", "give x1,y1,x2,y2[,...], before the first"}))
         << names;
   }
+  EXPECT_TRUE(Refuses(MatchHeader() + "u1,v1,u2,v2\n" + MatchRows(9),
+                      {":5: column names 'u1,v1,u2,v2'", "give x1,y1,x2,y2", "columns: sigma_px, score"}));
   EXPECT_TRUE(Refuses(FullText() + "x1,y1,x2,y2\n", {":13: column names 'x1,y1,x2,y2'", "before the first"}));
   EXPECT_TRUE(Refuses(FullText() + "x1,nonsense\n", {":13: column names 'x1,nonsense'"}));
 }

@@ -11,6 +11,7 @@
 
 #include "experiments/study/study_plan.h"
 #include "tests/test_support/expect_input_error.h"
+#include "tests/test_support/match_text.h"
 #include "tests/test_support/paths.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
@@ -285,6 +286,44 @@ TEST(ToYaml, RoundTripOfADesignWhoseNumbersAreNotInTheirShortestForm) {
   const std::vector<std::vector<std::string>> rows = {{"0.1"}, {"0.3"}, {"0.5"}};
   EXPECT_EQ(DesignRows(study), rows);
   EXPECT_EQ(DesignRows(ParseStudy(ToYaml(study), "stored.yaml")), rows);
+}
+
+// A factor would replace the value in `data`, except in a one-at-a-time design.
+TEST(LoadStudy, RefusesAFactorThatIsAlsoInData) {
+  const TempFolder folder;
+  const auto write = [&](const std::string& value, const std::string& more = "") {
+    return folder.Write("both.yaml", "data:\n  scene: uniform_volume\n  outlier_ratio: " + value +
+                                         "\nfactors:\n  outlier_ratio: [0.3, 0.4]\n" +
+                                         "estimators: [{name: standard}]\n" + more);
+  };
+  EXPECT_TRUE(ThrowsInputError([&] { LoadStudy(write("0.1")); },
+                               {"both.yaml:5: factors: outlier_ratio is also in data (",
+                                "both.yaml:3), where "
+                                "'0.1' would have no effect"}));
+  EXPECT_NO_THROW(LoadStudy(write("0.3", "design: one_at_a_time\n")));
+  const Study study = LoadStudy(write("0.2"));  // the default, which ToYaml writes
+  EXPECT_NO_THROW(LoadStudy(folder.Write("written.yaml", ToYaml(study))));
+}
+
+TEST(LoadStudy, SaysHowAnEstimatorIsNamed) {
+  const auto refuses = [](const std::string& entry, const std::vector<std::string>& fragments) {
+    return Refuses("data: {scene: uniform_volume}\nestimators:\n  - " + entry + "\n", fragments);
+  };
+  EXPECT_TRUE(refuses("rcme_calibrated", {"bad.yaml:3", "write {name: rcme_calibrated}"}));
+  EXPECT_TRUE(refuses("opencv_magsac", {"bad.yaml:3", "write {file: opencv_magsac}"}));
+  EXPECT_TRUE(refuses("{name: magsac}", {"did you mean 'opencv_magsac'?", "known: standard, ",
+                                         "estimator files: calibrated_information, "}));
+}
+
+TEST(LoadStudy, KnowsAMatchFile) {
+  const TempFolder folder;
+  const std::string row = "1,2,3,4\n";
+  for (const std::string& text : {MatchHeader() + "x1,y1,x2,y2\n" + row, MatchHeader() + row,
+                                  "1 2 3 4\n" + row, std::string("\x1f\x8b\x08")}) {
+    const std::string path = folder.Write("matches.csv", text);
+    EXPECT_TRUE(ThrowsInputError([&] { LoadStudy(path); },
+                                 {"is a match file, not a study; `rcme estimate " + path + "`"}));
+  }
 }
 
 TEST(LoadStudy, RefusesWhatIsNoFile) {

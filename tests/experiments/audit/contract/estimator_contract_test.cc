@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "parameters/input_error.h"
+#include "peers/outside_answer.h"
 #include "stats/constants.h"
 #include "tests/test_support/estimator_variants.h"
 #include "tests/test_support/expect_input_error.h"
@@ -129,6 +130,22 @@ TEST(EstimatorContract, EveryFaultIsFound) {
     again.problem = result.problem;
     EXPECT_FALSE(RunContractCheck(fault.check, fault.make, again).has_passed);
   }
+}
+
+// Of an estimator outside the program that states no covariance.
+TEST(EstimatorContract, CovariancesOfRcmeAreNotHeldAgainstTheEstimator) {
+  const auto planted = [](const std::string& message) {
+    return Planted([message](MotionEstimate& e) {
+      if (e.status != MotionStatus::kOk) return;
+      e.pose_cov.setConstant(kNaN);
+      e.message = message;
+    });
+  };
+  const std::string end(kCovarianceOfRcme);
+  const ContractResult result = RunContractCheck("answers", planted("found; " + end), {});
+  EXPECT_TRUE(result.has_passed) << result.finding;
+  EXPECT_THAT(result.finding, HasSubstr("not checked: " + end));
+  EXPECT_FALSE(RunContractCheck("answers", planted("found"), {}).has_passed);
 }
 
 TEST(EstimatorContract, AStateThatCallsLeaveBehindIsFound) {
