@@ -198,7 +198,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     if (second.modes.empty()) return estimate;
     whitened.Restore(&again);
     if (again.probability_domain == ProbabilityDomain::kVerified)
-      again.probability_domain = ProbabilityDomain::kExtrapolated;  // the check was fitted to single passes
+      again.probability_domain = ProbabilityDomain::kExtrapolated;  // not verified for second passes alone
     *workings = std::move(second);
     if (second_posterior) {
       whitened.Restore(&*second_posterior);

@@ -23,7 +23,7 @@ def list_as_markdown(program, name):
     """The same text wherever it is made: without estimators that are not in every build, and versions of libraries."""
     lines = subprocess.run([program, "list", name, "--format", "markdown"], check=True, capture_output=True,
                            text=True).stdout.strip().splitlines()
-    lines = [line for line in lines if not line.startswith("| poselib ")]
+    lines = [line for line in lines if not line.startswith("| poselib")]
     lines = [re.sub(r"\b(OpenCV|OpenGV) [\d.]+\b", r"\1", line) for line in lines]
     if name in SHORTENED:
         lines = joined(shorter_ranges(merged(lines)), column=1)

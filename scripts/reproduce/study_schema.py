@@ -6,6 +6,7 @@ import subprocess
 
 NUMBER = re.compile(r"a (whole )?number(?: in \[([^,\]]+), ([^\]]+)\]| >= (\S+))?")
 WIDTH = 110
+OF_SOME_BUILDS = ["poselib", "poselib_gravity"]  # estimators of a library that not every build finds
 CHOICES = ["scene", "cameras", "motion", "noise", "outliers"]
 LISTS_OF_CHOICES = dict(zip(CHOICES, ["scenes", "cameras", "motions", "noise", "outliers"]))
 
@@ -77,13 +78,13 @@ def option_schemas(lists):
     """{estimator: {option: schema}}, without estimators that are not in every build."""
     options = {}
     for row in lists["options"]:
-        if row["estimator"] != "poselib":
+        if row["estimator"] not in OF_SOME_BUILDS:
             options.setdefault(row["estimator"], {})[row["option"]] = described(row, value_schema(row.get("allowed", "")))
     return options
 
 
 def estimator_schema(lists, blocks):
-    names = [row["estimator"] for row in lists["estimators"] if row["estimator"] != "poselib"] + ["poselib"]
+    names = [row["estimator"] for row in lists["estimators"] if row["estimator"] not in OF_SOME_BUILDS] + OF_SOME_BUILDS
     properties = {**blocks["estimator"], **blocks["estimators"]}
     properties["name"] = {**properties["name"], "enum": names}
     properties["options"] = {**properties["options"], "type": "object"}
