@@ -74,7 +74,10 @@ std::string DidYouMean(std::string_view given, const std::vector<std::string>& n
     least = distance;
     nearest = name;
   }
-  if (nearest.empty()) nearest = ShortestWithPart(word, names);
+  // A whole part of a name is nearer than two slips: `magsac` is opencv_magsac, not msac.
+  if (nearest.empty() || least > 1) {
+    if (const std::string whole = ShortestWithPart(word, names); !whole.empty()) nearest = whole;
+  }
   return nearest.empty() ? "" : " (did you mean " + Quoted(nearest) + "?)";
 }
 

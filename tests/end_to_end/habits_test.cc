@@ -164,6 +164,9 @@ TEST_F(Habits, WrongUsesAreNamed) {
   EXPECT_TRUE(IsRefused(RunRcme({"run", matches, "--out", out_}), {"is a match file", "rcme estimate "}));
   EXPECT_TRUE(IsRefused(RunRcme({"estimate", matches, "--estimator", "magsac"}),
                         {"did you mean 'opencv_magsac'?", "known: standard, ", "estimator files: "}));
+  const std::string study =
+      folder_.Write("bare.yaml", "data: {scene: uniform_volume}\nestimators:\n  - opencv_magsac\n");
+  EXPECT_TRUE(IsRefused(RunRcme({"run", study, "--out", out_}), {"bare.yaml:3", "{file: opencv_magsac}"}));
   EXPECT_TRUE(IsRefused(RunRcme({"estimate", matches, "--seed", "1", "--seed", "2"}),
                         {"rcme: --seed is given twice; give it once\n"}));
   EXPECT_TRUE(IsRefused(RunRcme({"estimate", matches, "--estimator", "standard", "--set", "focal_sd=0.2"}),

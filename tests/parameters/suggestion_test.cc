@@ -46,7 +46,7 @@ TEST(Suggestion, TheNearestNameOrNone) {
   EXPECT_EQ(DidYouMean("reprot", names), " (did you mean 'report'?)");
   for (const std::string far : {"frobnicate", "", "x", "moons"}) EXPECT_EQ(DidYouMean(far, names), "") << far;
   EXPECT_EQ(DidYouMean("ratio", names), " (did you mean 'outlier_ratio'?)") << "a part of it";
-  EXPECT_EQ(DidYouMean("magsac", {"opencv_magsac_3_sigma", "opencv_magsac", "opencv_usac"}),
+  EXPECT_EQ(DidYouMean("magsac", {"msac", "opencv_magsac_3_sigma", "opencv_magsac", "opencv_usac"}),
             " (did you mean 'opencv_magsac'?)");
   EXPECT_EQ(DidYouMean("px", names), "") << "too short";
   EXPECT_EQ(DidYouMean(std::string(100000, 'a'), names), "");
