@@ -5,6 +5,7 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "estimator/estimator_registry.h"
@@ -31,6 +32,17 @@ inline std::vector<std::string> ListChoiceWords(const Parameter& option) {
   return words;
 }
 
+// Adds a setting, and covariance=robust where it has no effect without. Returns false if the variant has
+// another covariance.
+inline bool AddSetting(const std::string& option, const std::string& word, EstimatorVariant* variant) {
+  variant->options.emplace_back(option, word);
+  if (option != "covariance_jackknife" || word == "off") return true;
+  const auto covariance = std::ranges::find(variant->options, "covariance", &Settings::value_type::first);
+  if (covariance != variant->options.end()) return covariance->second == "robust";
+  variant->options.emplace_back("covariance", "robust");
+  return true;
+}
+
 inline std::vector<EstimatorVariant> EstimatorVariants(const std::vector<std::string>& chosen = {
                                                            "reading", "implementation"}) {
   std::vector<EstimatorVariant> all;
@@ -42,8 +54,8 @@ inline std::vector<EstimatorVariant> EstimatorVariants(const std::vector<std::st
       std::vector<EstimatorVariant> more;
       for (const EstimatorVariant& variant : variants) {
         for (const std::string& word : ListChoiceWords(option)) {
-          more.push_back({variant.name + "_" + word, variant.estimator, variant.options});
-          more.back().options.emplace_back(option.name(), word);
+          EstimatorVariant next{variant.name + "_" + word, variant.estimator, variant.options};
+          if (AddSetting(option.name(), word, &next)) more.push_back(std::move(next));
         }
       }
       variants = std::move(more);
