@@ -125,7 +125,10 @@ TEST_F(AskProgram, RefusesWhatIsNoCamera) {
               HasSubstr("--at-most: '500%' is not allowed; give a number in [1e-06, 0.5]"));
   EXPECT_THAT(Ask({"--image", "640x480", "--outliers", "repeated_texture"}).err,
               HasSubstr("with --scene corridor, in which nothing is repeated; give --scene lattice"));
-  EXPECT_THAT(Ask({"--image", "640x480", "--focal", "4.2"}).err, HasSubstr("give the focal length in px"));
+  EXPECT_THAT(RunRcme({"ask", "--image", "640x480", "--focal", "4.2", "--noise", "0.5", "--wrong", "0.2",
+                       "--scene", "corridor", "--out", folder_.Path("asked")})
+                  .err,
+              HasSubstr("give the focal length in px"));
   EXPECT_FALSE(std::filesystem::exists(folder_.Path("asked")));
 }
 

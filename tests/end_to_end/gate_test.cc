@@ -65,7 +65,8 @@ TEST_F(Gate, JudgesOneVersionByALimit) {
   const ProgramResult loose = judge("0.9"), strict = judge("0.001");
   EXPECT_EQ(loose.exit_code, 0) << loose.out << loose.err;
   EXPECT_THAT(loose.out, HasSubstr("The failure rate of ours is below the limit, after"));
-  EXPECT_THAT(loose.out, testing::ContainsRegex("quantity +verdict +pairs +new +rate +limit"));
+  EXPECT_THAT(loose.out, testing::ContainsRegex("quantity +verdict +pairs +new +rate\n"));
+  EXPECT_THAT(loose.out, testing::ContainsRegex("quantity +limit\n"));
   EXPECT_THAT(loose.out, Not(HasSubstr("margin")));
   EXPECT_NE(strict.exit_code, 0);
   EXPECT_NE(strict.exit_code, 2) << strict.err;

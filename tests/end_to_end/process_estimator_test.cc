@@ -214,8 +214,8 @@ TEST_F(ProcessEstimators, MissingAnswersAreAskedForAgain) {
   const ProgramResult first = RunRcme(RunArguments());
   ASSERT_EQ(first.exit_code, 0);
   EXPECT_THAT(first.err,
-              HasSubstr("warning: asked gave no answer in 3 of the 6 trials run now (no_answer 3); "
-                        "rcme replay " +
+              HasSubstr("warning: asked gave no valid answer in any of the 6 trials run now (no_answer 3, "
+                        "invalid_covariance 3); rcme replay " +
                         out_ + " --condition 0 --trial "));
   EXPECT_THAT(first.err,
               HasSubstr(" --allow-process shows why; rcme run with --retry no_answer asks again\n"));
