@@ -13,7 +13,7 @@
 namespace rcme {
 namespace {
 
-std::string IdentityOf(const std::string& command, int seed = 1) {
+std::string MakeIdentity(const std::string& command, int seed = 1) {
   ProcessEntryName();
   Study study = ParseStudy(fmt::format("seed: {}\ndata: {{scene: uniform_volume}}\nestimators:\n"
                                        "  - {{name: process, label: mine, options: {{command: \"{}\"}}}}\n",
@@ -26,14 +26,14 @@ std::string IdentityOf(const std::string& command, int seed = 1) {
 TEST(CommandFiles, ArePartOfTheIdentityOfARun) {
   const TempFolder folder;
   const std::string script = folder.Write("a.sh", "one"), command = "sh " + script;
-  const std::string before = IdentityOf(command), of_other_seed = IdentityOf(command, 2);
+  const std::string before = MakeIdentity(command), of_other_seed = MakeIdentity(command, 2);
   EXPECT_EQ(FindChangedCommandFile(before, before), std::nullopt);
   EXPECT_EQ(FindChangedCommandFile(before, of_other_seed), std::nullopt) << "that is another study";
   folder.Write("a.sh", "two");
-  EXPECT_EQ(FindChangedCommandFile(before, IdentityOf(command)), "file " + script + " of estimator mine");
+  EXPECT_EQ(FindChangedCommandFile(before, MakeIdentity(command)), "file " + script + " of estimator mine");
   folder.Write("a.sh", "one");
-  EXPECT_EQ(IdentityOf(command), before);
-  EXPECT_EQ(IdentityOf("no_such_program --fast").find("# file"), std::string::npos);
+  EXPECT_EQ(MakeIdentity(command), before);
+  EXPECT_EQ(MakeIdentity("no_such_program --fast").find("# file"), std::string::npos);
 }
 
 }  // namespace

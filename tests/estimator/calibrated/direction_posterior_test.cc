@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimator/calibrated/direction_axis.h"
 #include "estimator/geometry/sampson.h"
 #include "stats/constants.h"
 #include "stats/intervals.h"
@@ -56,6 +57,15 @@ std::vector<Eigen::Vector3d> Corners() {
   for (int k = 0; k < 8; ++k)
     corners.push_back(Eigen::Vector3d(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1).normalized());
   return corners;
+}
+
+// The image covers width / fx by height / fy: with fx = 400 and fy = 1600 px, 1.6 by 0.3 rad. A mean of the
+// two focal lengths gives another area.
+TEST(CollectDisplacements, TheImageIsMeasuredByBothFocalLengths) {
+  ParallaxCase c = MakeParallax(0, 20, 30.0);
+  Camera& camera2 = c.random.problem.camera2;
+  camera2.fx = 400.0, camera2.fy = 1600.0, camera2.width = 640, camera2.height = 480;
+  EXPECT_NEAR(CollectDisplacements(c.random.problem, c.mode).image_rad, std::sqrt(1.6 * 0.3), 1e-12);
 }
 
 TEST(PosteriorOfDirection, IsOneAboutTheDirectionOfAClearParallax) {

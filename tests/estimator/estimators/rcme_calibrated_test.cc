@@ -424,8 +424,10 @@ void DoubleNoiseOfHalf(RandomProblem* random) {
   }
 }
 
-// Each case covers, and errs less than without the second pass. That a fit without any use has a geometric
-// mean ratio of errors below .97 in 60 trials has a probability below .01 (measured ratios: .7 to .9).
+// Each case covers, and errs less than without the second pass, whose ratio is exactly 1. In 300 other trials
+// the geometric mean of the ratio was .77 to .78 in every case, its logarithm's standard deviation per trial
+// .36 to .39: a false alarm has a probability of 1e-3 in all, and a second pass that only changes errors at
+// random passes a case with one of .04.
 TEST_F(RcmeCalibratedOf, TheSecondPassKeepsOptionsPriorsAndNoiseScales) {
   constexpr int kTrials = 60;
   for (const SecondPassCase& c : ListSecondPassCases()) {
@@ -451,7 +453,7 @@ TEST_F(RcmeCalibratedOf, TheSecondPassKeepsOptionsPriorsAndNoiseScales) {
       log_ratio += 0.5 * std::log(in_sd(away) / in_sd(other)) / kTrials;
     }
     EXPECT_TRUE(coverage.Admits(0.95)) << c.name << ": " << coverage;
-    EXPECT_LT(std::exp(log_ratio), 0.97) << c.name;
+    EXPECT_LT(std::exp(log_ratio), 0.92) << c.name;
     EXPECT_GE(num_used, kTrials - 4) << c.name << ": a right prior is contradicted in one of a hundred";
   }
 }
