@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "estimator/calibrated/direction_posterior.h"
+#include "estimator/calibrated/neighbour_matches.h"
 #include "estimator/calibrated/twisted_pair.h"
 #include "estimator/noise_scale.h"
 #include "stats/order_statistic.h"
@@ -16,10 +16,8 @@ namespace rcme {
 namespace {
 
 constexpr size_t kMostCompared = 128;
-constexpr double kCut = 3.0;            // of residuals and parallaxes, standard deviations
-constexpr double kPlaneBound = 4.0;     // standard deviations of a match
-constexpr double kApart = 0.5;          // of two displacements, relative to the distance
-constexpr double kLeastDistance = 1.0;  // px; nearer ones are the same key point
+constexpr double kCut = 3.0;         // of residuals and parallaxes, standard deviations
+constexpr double kPlaneBound = 4.0;  // standard deviations of a match
 // share of the information along a direction that is kept without a block
 constexpr double kLeastKept = 0.05;
 
@@ -36,33 +34,9 @@ Split SplitMatches(const Explanation& explanation) {
   return split;
 }
 
-// The nearest neighbour in image 1 of each of the first kMostCompared of `some`, as an index into `some`; its
-// own index if it has none. Neighbours are at least `least_px` apart in both images.
-std::vector<size_t> NearestNeighbours(const MotionProblem& problem, const std::vector<size_t>& some,
-                                      double least_px) {
-  const size_t n = std::min(some.size(), kMostCompared);
-  const double least = least_px * least_px;
-  std::array<Correspondence, kMostCompared> matches;
-  std::array<double, kMostCompared> square{};
-  std::vector<size_t> nearest(n);
-  for (size_t a = 0; a < n; ++a) {
-    matches[a] = problem.matches[some[a]];
-    square[a] = std::numeric_limits<double>::infinity();
-    nearest[a] = a;
-    for (size_t b = 0; b < a; ++b) {
-      const double away = (matches[a].x1_px - matches[b].x1_px).squaredNorm();
-      if (away >= square[a] && away >= square[b]) continue;
-      if (away < least || (matches[a].x2_px - matches[b].x2_px).squaredNorm() < least) continue;
-      if (away < square[a]) square[a] = away, nearest[a] = b;
-      if (away < square[b]) square[b] = away, nearest[b] = a;
-    }
-  }
-  return nearest;
-}
-
 void CheckNeighbours(const MotionProblem& problem, const Split& split, const ExplainedMode& answer,
                      ModelCheck* check) {
-  const std::vector<size_t> nearest = NearestNeighbours(problem, split.right, 0.0);
+  const std::vector<size_t> nearest = FindNearestNeighbours(problem, split.right, 0.0);
   const auto residual = [&](size_t place) {
     const double u = answer.explanation.terms.residual[split.right[place]] / answer.mode.mixture.scale;
     return std::clamp(u, -kCut, kCut);
@@ -75,20 +49,6 @@ void CheckNeighbours(const MotionProblem& problem, const Split& split, const Exp
   }
   if (count == 0.0) return;
   check->neighbour_z = sum / std::sqrt(count);
-}
-
-double WrongCoherence(const MotionProblem& problem, const Split& split) {
-  const std::vector<size_t> nearest = NearestNeighbours(problem, split.wrong, kLeastDistance);
-  double together = 0.0, count = 0.0;
-  for (size_t a = 0; a < nearest.size(); ++a) {
-    if (nearest[a] == a) continue;
-    const Correspondence &match = problem.matches[split.wrong[a]],
-                         &other = problem.matches[split.wrong[nearest[a]]];
-    const Eigen::Vector2d from = other.x1_px - match.x1_px, to = other.x2_px - match.x2_px;
-    together += (to - from).norm() < kApart * from.norm() + kCut * problem.sigma_px;
-    count += 1.0;
-  }
-  return count > 0.0 ? together / count : 0.0;
 }
 
 double PlanarShare(const MotionProblem& problem, const Split& split, const ExplainedMode& answer) {
@@ -299,7 +259,7 @@ ModelCheck CheckModel(const MotionProblem& problem, const std::vector<ExplainedM
   CheckBlocks(problem, split, answer, &check);
   check.log_num_right = LogWithin(static_cast<double>(split.right.size()), 1.0, 1e9);
   check.wrong_share = static_cast<double>(split.wrong.size()) / static_cast<double>(problem.matches.size());
-  check.wrong_coherence = WrongCoherence(problem, split);
+  check.wrong_coherence = ComputeCoherence(problem, split.wrong);
   CheckRightMatches(split, answer, &check);
   check.log_rotation_sd =
       LogWithin(std::sqrt(answer.mode.inverse_hessian.topLeftCorner<3, 3>().trace()), 1e-6, 3.0);

@@ -40,11 +40,9 @@ struct ModelCheck {
   // motion if a block is left out, summed over the blocks, over the sum of the squared scores of single
   // matches. For independent residuals some tenths above 0.
   double log_design_2 = 0.0, log_design_4 = 0.0;
-  double log_num_right = 0.0;  // ln(max(number of right matches, 1))
-  double wrong_share = 0.0;    // wrong matches over all matches
-  // The share of wrong matches that move as their nearest wrong neighbour does: their displacements differ by
-  // no more than half the distance of the two plus three standard deviations.
-  double wrong_coherence = 0.0;
+  double log_num_right = 0.0;    // ln(max(number of right matches, 1))
+  double wrong_share = 0.0;      // wrong matches over all matches
+  double wrong_coherence = 0.0;  // ComputeCoherence (neighbour_matches.h) of the wrong matches
   // Over the right matches: the mean probability of being right, the mean of ln(density of the residual / q)
   // (mixture_parameters.h), and the greatest leverage (explanation.h).
   double mean_probability = 1.0, mean_gain = 0.0, greatest_leverage = 0.0;
