@@ -95,7 +95,7 @@ Matrix5d SandwichCovariance(const Mode& mode, const Explanation& e, const Matrix
     if (!(mode.used[i / kBlockSize] >> (i % kBlockSize) & 1)) continue;
     const double u = e.terms.residual[i] / m.scale;
     const double psi = e.probability[i] * NoiseWeight(m.noise, u) * u;
-    const double factor = psi / (std::max(1.0 - e.leverage[i], 0.05) * m.scale);
+    const double factor = psi / (std::sqrt(std::max(1.0 - e.leverage[i], 0.05)) * m.scale);
     const Vector5d J = ReadDerivative(e.terms, i);
     const Matrix5d outer = J * J.transpose();
     scores += factor * factor * outer;

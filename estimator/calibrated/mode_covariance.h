@@ -19,8 +19,9 @@ Matrix5d InverseOfObserved(const MatchBlocks& matches, const Mode& mode, const M
 Vector5d EffectiveMatches(const Mode& mode, const Explanation& explanation, const Matrix5d& axes);
 
 // The sandwich H^-1 S H^-1. S is a sum over the matches, with psi = v u:
-// - S = sum (p psi / ((1 - h) s))^2 J'J. Each residual gives its own variance. A residual with leverage h is
-//   smaller than its error by a factor of 1 - h (HC3, MacKinnon and White 1985).
+// - S = sum (p psi / s)^2 / (1 - h) J'J. Each residual gives its own variance. If all errors have the same, a
+//   residual with leverage h has the variance 1 - h of its error (HC2, MacKinnon and White 1985). The greater
+//   (1 - h)^2 of HC3 makes standard deviations of ten to thirty matches 1.4 times as great.
 // - Along a direction in which the mean variance of all residuals gives a greater S, S is that one: a few
 //   matches that decide a direction estimate their own variance poorly.
 // - A match is an outlier with probability w / 2 (influence.h; w is about twice too great). It would have

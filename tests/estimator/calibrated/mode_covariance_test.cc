@@ -24,8 +24,8 @@ Matrix5d ComputeIntrinsics(const FittedMode& f, const CalibratedOptions& options
   return IntrinsicsCovariance(f.problem, options, f.mode, InverseOfObserved(f.matches, f.mode));
 }
 
-// 400 scenes without wrong matches. The sandwich is a little wide for few matches (its HC3 factor and the
-// greater of two middles), so that a range is nominal: .94 to .99. Its exact interval of confidence 0.9999
+// 400 scenes without wrong matches. The sandwich is a little wide for few matches (the greater of two
+// middles), so that a range is nominal: .94 to .99. Its exact interval of confidence 0.9999
 // must meet it: a false alarm in 10,000 at most. A covariance half as great covers .81, which it finds with
 // certainty.
 TEST(SandwichCovariance, CoversTheTruthAsOftenAsItSays) {
