@@ -30,13 +30,14 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
                 {{"information", CovarianceKind::kInformation},
                  {"sandwich", CovarianceKind::kSandwich},
                  {"robust", CovarianceKind::kRobust}},
-                "inverse information, from the residuals (HC3), or one that allows correlated errors and "
+                "inverse information, from the residuals (HC2), or one that allows correlated errors and "
                 "repeated matches"),
       P::Real("second_motion_odds", &o.second_motion_odds, {0.0, 1.0}, "",
-              "odds that a second motion with as many matches is the camera's own"),
+              "odds that a second motion with as many matches over as large an area is the camera's own"),
       P::Choice("leave_out", &o.leave_out,
                 {{"none", CalibratedStep::kNone},
                  {"split", CalibratedStep::kSplit},
+                 {"second_motion", CalibratedStep::kSecondMotion},
                  {"influence", CalibratedStep::kInfluence},
                  {"branches", CalibratedStep::kBranches},
                  {"twisted_pair", CalibratedStep::kTwistedPair},

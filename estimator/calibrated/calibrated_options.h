@@ -15,7 +15,7 @@ enum class SigmaKnowledge {
 
 enum class CovarianceKind {
   kInformation,  // the inverse of the likelihood's Hessian
-  kSandwich,     // HC3: variances from the residuals themselves
+  kSandwich,     // HC2: variances from the residuals themselves
   kRobust,  // for dependent errors (robust_covariance.h), on average no smaller than the checked sandwich
 };
 
@@ -23,6 +23,7 @@ enum class CovarianceKind {
 enum class CalibratedStep {
   kNone,
   kSplit,
+  kSecondMotion,  // the search among the matches that no mode explains (split_mode.h)
   kInfluence,
   kBranches,
   kTwistedPair,
@@ -46,7 +47,8 @@ struct CalibratedOptions {
 
   SigmaKnowledge sigma = SigmaKnowledge::kEstimated;
   CovarianceKind covariance = CovarianceKind::kSandwich;
-  // Odds that a second motion is the camera's if it explains as many matches as the answer (mode_weights.h).
+  // Odds that a second motion is the camera's if it explains as many matches as the answer, over as large an
+  // area (mode_weights.h).
   double second_motion_odds = 0.6;
   CalibratedStep leave_out = CalibratedStep::kNone;
   CalibrationPrior calibration;    // uncertainty of the intrinsics, added to the covariance

@@ -14,6 +14,38 @@ double NoiseDensity(const NoiseLaw& noise, double u) {
 
 double NoiseWeight(const NoiseLaw& noise, double u) { return 2.0 * noise.power / (noise.dof() + u * u); }
 
+namespace {
+
+// Scatter of points in an image.
+struct Scatter {
+  double sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0, sum_yy = 0.0;
+
+  void Add(double x, double y) {
+    sum_x += x, sum_y += y;
+    sum_xx += x * x, sum_xy += x * y, sum_yy += y * y;
+  }
+  double Determinant(double n) const {
+    const double xx = sum_xx - sum_x * sum_x / n, xy = sum_xy - sum_x * sum_y / n,
+                 yy = sum_yy - sum_y * sum_y / n;
+    return std::max(xx * yy - xy * xy, 0.0) / (n * n);
+  }
+};
+
+double ComputeExtent(const MatchBlocks& matches, const std::vector<double>& probability, int num_explained) {
+  if (num_explained == 0) return 0.0;
+  Scatter in_image1, in_image2;
+  for (size_t i = 0; i < probability.size(); ++i) {
+    if (!(probability[i] > 0.5)) continue;
+    const MatchBlock& block = matches[static_cast<int>(i / kBlockSize)];
+    const size_t lane = i % kBlockSize;
+    in_image1.Add(block.x1[lane], block.y1[lane]);
+    in_image2.Add(block.x2[lane], block.y2[lane]);
+  }
+  return std::pow(in_image1.Determinant(num_explained) * in_image2.Determinant(num_explained), 0.125);
+}
+
+}  // namespace
+
 Explanation Explain(const MatchBlocks& matches, const Mode& mode) {
   const auto n = static_cast<size_t>(matches.num_matches());
   const MixtureParameters& m = mode.mixture;
@@ -45,6 +77,7 @@ Explanation Explain(const MatchBlocks& matches, const Mode& mode) {
     const double left = std::sqrt(std::max(1.0 - h, 1e-4));
     e.left_out_density[i] = NoiseDensity(m.noise, is_used ? u / left : u * left) * left * in_front;
   }
+  e.extent = ComputeExtent(matches, e.probability, e.num_explained);
   return e;
 }
 

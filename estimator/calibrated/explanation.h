@@ -22,6 +22,9 @@ struct Explanation {
   std::vector<double> left_out_density;
   std::vector<double> noise_scale;  // w_i (mixture_parameters.h); empty if all are 1
   int num_explained = 0;            // matches whose probability exceeds one half
+  // The eighth root of the product of the determinants of the explained matches' scatters in the two images,
+  // in whitened coordinates: about the radius of the area that they cover.
+  double extent = 0.0;
 };
 
 // The density of r' of match i if it is an outlier; `per_sigma` is that of r.

@@ -49,6 +49,14 @@ inline constexpr FittedTerm kModeTerms[] = {
 
 // Fitted to
 //
+//   studies/right_calibration.yaml, seed 74, 4000 draws, 4 trials of each condition
+inline constexpr FittedTerm kSecondMotionTerms[] = {
+    {"number", 2.04282006},
+    {"extent", 5.16928383},
+};
+
+// Fitted to
+//
 //   studies/right_calibration.yaml, seed 51, 6000 draws, 4 trials of each condition
 //   studies/any_condition.yaml, seed 55, 3000 draws, 4 trials of each condition, for P alone
 //   studies/calibrated/indoor.yaml, seed 53, 20 trials of each condition, weight 0.6

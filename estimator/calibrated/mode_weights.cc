@@ -102,9 +102,24 @@ bool IsSecondMotion(const Contrast& contrast) {
   return contrast.num_clearly_a >= kLeastMatches && contrast.num_clearly_b >= kLeastMatches;
 }
 
-double SecondMotionLogOdds(double odds, int num_answer, int num_second) {
-  if (!(odds > 0.0) || num_second == 0) return -std::numeric_limits<double>::infinity();
-  return std::log(odds) + 3.0 * std::log(static_cast<double>(num_second) / std::max(num_answer, 1));
+const std::array<const char*, kNumSecondMotionTerms> kSecondMotionTermNames = {"number", "extent"};
+
+std::array<double, kNumSecondMotionTerms> ComputeSecondMotionTerms(const MotionSupport& a,
+                                                                   const MotionSupport& b) {
+  constexpr double kMostLogExtent = 1.5;
+  const double number = static_cast<double>(std::max(a.num_better, 1)) / std::max(b.num_better, 1);
+  const bool is_known = a.extent > 0.0 && b.extent > 0.0;
+  const double log_extent = is_known ? std::log(a.extent / b.extent) : 0.0;
+  return {std::log(number), std::clamp(log_extent, -kMostLogExtent, kMostLogExtent)};
+}
+
+double SecondMotionLogOdds(double odds, const MotionSupport& answer, const MotionSupport& second) {
+  static_assert(std::size(kSecondMotionTerms) == kNumSecondMotionTerms);
+  if (!(odds > 0.0) || second.num_better == 0) return -std::numeric_limits<double>::infinity();
+  const std::array<double, kNumSecondMotionTerms> terms = ComputeSecondMotionTerms(second, answer);
+  double log_odds = std::log(odds);
+  for (size_t k = 0; k < kNumSecondMotionTerms; ++k) log_odds += kSecondMotionTerms[k].weight * terms[k];
+  return log_odds;
 }
 
 }  // namespace rcme

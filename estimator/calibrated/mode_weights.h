@@ -97,8 +97,26 @@ Matrix5d FindMatchInformation(const MotionPrior* prior, const Mode& mode);
 // matches clearly better than the other.
 bool IsSecondMotion(const Contrast& a_against_b);
 
-// Prior log-odds that the second motion is the camera's: log(odds (num_second / num_answer)^3). The numbers
-// count the matches that either explains better.
-double SecondMotionLogOdds(double odds, int num_answer, int num_second);
+// What one of two motions explains.
+struct MotionSupport {
+  int num_better = 0;   // matches that it explains better than the other
+  double extent = 0.0;  // of all that it explains (explanation.h)
+};
+
+inline constexpr size_t kNumSecondMotionTerms = 2;
+extern const std::array<const char*, kNumSecondMotionTerms> kSecondMotionTermNames;
+
+// What speaks for motion a against b:
+//
+//   number   ln(n_a / n_b) of the numbers of matches that either explains better, each at least 1
+//   extent   ln(a_a / a_b) of the extents, within [-1.5, 1.5]; 0 if the matches of one lie on a line
+//
+// The scene surrounds an object: its matches cover more of the images, even if there are fewer of them.
+std::array<double, kNumSecondMotionTerms> ComputeSecondMotionTerms(const MotionSupport& a,
+                                                                   const MotionSupport& b);
+
+// Log-odds that the second of two motions is the camera's, ln odds + sum_k b_k x_k, the b_k by a logistic
+// regression as those of ModeLogOdds. -inf if the odds are 0 or it explains nothing better.
+double SecondMotionLogOdds(double odds, const MotionSupport& answer, const MotionSupport& second);
 
 }  // namespace rcme

@@ -7,6 +7,7 @@
 #include "estimator/calibrated/candidates.h"
 #include "estimator/calibrated/explanation.h"
 #include "estimator/calibrated/hypothesis_search.h"
+#include "estimator/calibrated/neighbour_matches.h"
 #include "estimator/noise_scale.h"
 
 namespace rcme {
@@ -17,6 +18,11 @@ constexpr double kTightScale = 1.5;  // of the soft score, in units of the assum
 // relative to one motion's noise level; above, a mode may be a compromise
 constexpr double kWideScale = 1.15;
 constexpr size_t kLeastMatches = 12;  // of the second motion
+// Of the first kFirst matches, those wrong by this many standard deviations of the first mode's noise are
+// taken to move together if more than kLeastCoherence of them do. Of unrelated wrong matches 3 % do at most,
+// of an object's at least a fifth.
+constexpr int kFirst = 128;
+constexpr double kWrong = 3.0, kLeastCoherence = 0.1;
 // Nats: pays for the search for the second motion and its five parameters, with a margin.
 constexpr double kLeastSplitGain = 40.0;
 
@@ -32,6 +38,18 @@ std::vector<size_t> Unexplained(const Explanation& explanation) {
 void Leave(const std::vector<size_t>& only, MatchMask* mask) {
   std::ranges::fill(*mask, std::uint8_t{0});
   for (const size_t i : only) (*mask)[i / kBlockSize] |= static_cast<std::uint8_t>(1u << (i % kBlockSize));
+}
+
+// Whether the matches that the mode does not explain move as their neighbours do, judged by the first of
+// them.
+bool IsRestCoherent(const MotionProblem& problem, const MatchBlocks& matches, const Mode& mode) {
+  MatchTermLists terms;
+  EvaluateTerms(matches, mode.pose, &terms, kFirst);
+  std::vector<size_t> wrong;
+  const auto n = static_cast<size_t>(std::min(matches.num_matches(), kFirst));
+  for (size_t i = 0; i < n; ++i)
+    if (std::abs(terms.residual[i]) > kWrong * mode.mixture.scale) wrong.push_back(i);
+  return wrong.size() >= kLeastMatches && ComputeCoherence(problem, wrong) > kLeastCoherence;
 }
 
 // The best motion of some of the matches at the assumed scale. Samples are ranked and candidates refined at
@@ -124,6 +142,28 @@ void SplitCompromise(const MotionProblem& problem, const MatchBlocks& matches, c
   std::erase_if(*modes, [&](const Mode& mode) { return mode.mixture.scale > kWideScale * scale; });
   modes->push_back(split->first);
   modes->push_back(split->second);
+}
+
+void AddSecondMotion(const MotionProblem& problem, const MatchBlocks& matches, const MixturePrior& prior,
+                     std::vector<Mode>* modes, RandomStream& rng) {
+  if (modes->empty() || !IsRestCoherent(problem, matches, modes->front())) return;
+  const std::vector<size_t> not_of_first = Unexplained(Explain(matches, modes->front()));
+  std::vector<size_t> rest = not_of_first;
+  for (size_t k = 1; k < modes->size(); ++k) {
+    const Explanation explanation = Explain(matches, (*modes)[k]);
+    std::erase_if(rest, [&](size_t i) { return explanation.probability[i] > 0.5; });
+  }
+  if (rest.size() < kLeastMatches) return;
+  MixturePrior fixed = prior;
+  fixed.estimates_scale = false;
+  fixed.motion = nullptr;
+  std::optional<Mode> found = SearchMotion(problem, matches, fixed, rest, rng);
+  if (!found) return;
+  Leave(not_of_first, &found->used);
+  const bool is_new =
+      FitMode(matches, prior, kSplitSteps, &*found) &&
+      std::ranges::none_of(*modes, [&](const Mode& mode) { return IsSameMode(mode, *found); });
+  if (is_new) modes->push_back(std::move(*found));
 }
 
 }  // namespace rcme

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "estimator/calibrated/candidates.h"
 #include "estimator/geometry/pose.h"
@@ -44,19 +45,29 @@ class ModeComparison {
     return CompareModes(modes_[a].explanation, modes_[b].explanation, background);
   }
   double LogOdds(size_t a, size_t b, const Contrast& contrast) const {
-    if (IsSecondMotion(contrast))
-      return PriorLogOdds(a, b) - SecondMotionLogOdds(1.0, contrast.num_better_a, contrast.num_better_b);
+    if (IsSecondMotion(contrast)) return PriorLogOdds(a, b) - SecondLogOdds(1.0, a, b, contrast);
     return PriorLogOdds(a, b) + ModeLogOdds(contrast, traits_[a], traits_[b]);
   }
   double PriorLogOdds(size_t a, size_t b) const { return prior_evidence_[a] - prior_evidence_[b]; }
+  double SecondLogOdds(double odds, size_t answer, size_t second, const Contrast& contrast) const {
+    const auto [of_answer, of_second] = FindSupports(answer, second, contrast);
+    return SecondMotionLogOdds(odds, of_answer, of_second);
+  }
   double PriorEvidence(size_t i) const { return prior_evidence_[i]; }
   ModePair Pair(size_t a, size_t b) const {
     const Contrast contrast = Compare(a, b);
-    return {a, b, ComputeModeTerms(contrast, traits_[a], traits_[b]), IsSecondMotion(contrast)};
+    const auto [of_a, of_b] = FindSupports(a, b, contrast);
+    return {a, b, ComputeModeTerms(contrast, traits_[a], traits_[b]), IsSecondMotion(contrast),
+            ComputeSecondMotionTerms(of_a, of_b)};
   }
   double LogOdds(size_t a, size_t b) const { return LogOdds(a, b, Compare(a, b)); }
 
  private:
+  std::pair<MotionSupport, MotionSupport> FindSupports(size_t a, size_t b, const Contrast& contrast) const {
+    return {{contrast.num_better_a, modes_[a].explanation.extent},
+            {contrast.num_better_b, modes_[b].explanation.extent}};
+  }
+
   std::span<const ExplainedMode> modes_;
   std::vector<ModeTraits> traits_;
   std::vector<double> prior_evidence_;  // nats
@@ -137,9 +148,8 @@ ModeWeights WeighModes(const std::vector<ExplainedMode>& modes, const MotionBoun
     const bool is_second = i != weights.answer && IsSecondMotion(contrast);
     double log_odds = i == weights.answer ? 0.0 : -comparison.LogOdds(weights.answer, i, contrast);
     if (is_second)
-      log_odds =
-          SecondMotionLogOdds(options.second_motion_odds, contrast.num_better_a, contrast.num_better_b) +
-          comparison.PriorLogOdds(i, weights.answer);
+      log_odds = comparison.SecondLogOdds(options.second_motion_odds, weights.answer, i, contrast) +
+                 comparison.PriorLogOdds(i, weights.answer);
     weights.is_second_motion.push_back(is_second);
     weights.of_modes.push_back(std::exp(std::min(log_odds, 0.0)));
   }

@@ -21,8 +21,8 @@ struct ModeWeights {
 };
 
 // The answer is the mode against which no other one has positive log-odds, by ModeLogOdds. Two motions of
-// their own (IsSecondMotion) are compared by the number of matches that either explains better. The search
-// starts at modes[0].
+// their own (IsSecondMotion) are compared by what either explains (SecondMotionLogOdds). The search starts at
+// modes[0].
 //
 // Modes within `bounds` of the answer are the same motion found more than once: together they have the weight
 // of one. Rivals resemble each other, too, so that their odds add up to less than their sum: to (sum
@@ -44,7 +44,8 @@ std::vector<bool> FindRivals(const std::vector<ExplainedMode>& modes, size_t ans
 struct ModePair {
   size_t a = 0, b = 0;
   std::array<double, kNumModeTerms> terms{};
-  bool is_second_motion = false;  // two motions, whose odds do not depend on the terms
+  bool is_second_motion = false;  // two motions, whose odds depend on the following terms instead
+  std::array<double, kNumSecondMotionTerms> second_motion_terms{};
 };
 
 // Log-odds that mode a is the camera's motion rather than b, by their matches and the priors

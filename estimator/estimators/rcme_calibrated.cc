@@ -360,6 +360,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     std::vector<Mode> found =
         FindModes(matches, prior, search.candidates, static_cast<size_t>(options_.num_modes));
     if (options_.leave_out != CalibratedStep::kSplit) SplitCompromise(problem, matches, prior, &found, rng);
+    if (options_.leave_out != CalibratedStep::kSecondMotion)
+      AddSecondMotion(problem, matches, prior, &found, rng);
     return ExplainMatches(problem, matches, prior, options_, std::move(found));
   }
 

@@ -15,12 +15,14 @@
 // modes: what speaks for a right mode against a wrong one (ComputeModeTerms), a row per wrong mode:
 //   mode_*               the terms
 //   share                one over the number of the trial's rows
+// second_motions: the same of two motions of their own (IsSecondMotion, ComputeSecondMotionTerms)
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,9 +48,9 @@ std::string MakeCheckHeader() {
   return header + ",posterior,homography_share,nees,failed\n";
 }
 
-std::string MakeModesHeader() {
+std::string MakeTermsHeader(std::span<const char* const> names) {
   std::string header;
-  for (const char* name : kModeTermNames) header += fmt::format(",mode_{}", name);
+  for (const char* name : names) header += fmt::format(",mode_{}", name);
   return header + ",share\n";
 }
 
@@ -81,35 +83,83 @@ std::string FindPermutedRow(const WeightInspection& estimator, const TrialData& 
   return FindCheckRow(estimator, permuted, none, labels, rng);
 }
 
-// Of the modes that explain at least half as many matches as the one that explains the most: the most likely
-// one within the failure bounds of the truth against each beyond them. Two motions of their own are left out.
-std::string FindModeRows(const WeightInspection& estimator, const TrialData& data,
-                         const FailureBounds& failure, const std::string& labels, RandomStream& rng) {
-  const std::vector<ExplainedMode> modes = estimator.ListModes(data.problem, rng);
+// The terms for a right mode against a wrong one, a row per wrong mode, each with one over their number.
+std::string FormatPairs(const std::vector<std::vector<double>>& pairs, const std::string& labels) {
+  std::string rows;
+  for (const std::vector<double>& terms : pairs) {
+    rows += labels;
+    for (const double x : terms) rows += fmt::format(",{:.9g}", x);
+    rows += fmt::format(",{:.9g}\n", 1.0 / static_cast<double>(pairs.size()));
+  }
+  return rows;
+}
+
+// The terms of a pair, for the right mode.
+template <typename Terms>
+std::vector<double> OrientTerms(const Terms& terms, bool is_right_first) {
+  std::vector<double> oriented(terms.begin(), terms.end());
+  if (!is_right_first)
+    for (double& x : oriented) x = -x;
+  return oriented;
+}
+
+// The modes that explain at least `share` as many matches as the one that explains the most; which of them
+// are within the failure bounds of the truth, and the most likely one of these.
+struct JudgedByTruth {
+  std::vector<ExplainedMode> modes;
+  std::vector<bool> is_right, is_notable;
+  size_t right = 0;  // the number of modes if none is
+};
+JudgedByTruth JudgeByTruth(std::vector<ExplainedMode> modes, const TrialData& data,
+                           const FailureBounds& failure, double share) {
   int most = 0;
   for (const ExplainedMode& mode : modes) most = std::max(most, mode.explanation.num_explained);
   const MotionBounds bounds{kRadPerDeg * failure.max_rotation_error_deg,
                             kRadPerDeg * failure.max_direction_error_deg};
-  std::vector<bool> is_right, is_notable;
-  size_t right = modes.size();
-  for (size_t i = 0; i < modes.size(); ++i) {
-    is_notable.push_back(2 * modes[i].explanation.num_explained >= most);
-    is_right.push_back(IsWithin(*data.truth.cam2_from_cam1_true, bounds, modes[i].mode.pose));
-    if (!is_notable[i] || !is_right[i]) continue;
-    if (right == modes.size() || modes[i].mode.log_likelihood > modes[right].mode.log_likelihood) right = i;
+  JudgedByTruth judged;
+  judged.modes = std::move(modes);
+  judged.right = judged.modes.size();
+  for (size_t i = 0; i < judged.modes.size(); ++i) {
+    const ExplainedMode& mode = judged.modes[i];
+    judged.is_notable.push_back(mode.explanation.num_explained >= share * most);
+    judged.is_right.push_back(IsWithin(*data.truth.cam2_from_cam1_true, bounds, mode.mode.pose));
+    if (!judged.is_notable[i] || !judged.is_right[i]) continue;
+    if (judged.right == judged.modes.size() ||
+        mode.mode.log_likelihood > judged.modes[judged.right].mode.log_likelihood)
+      judged.right = i;
   }
-  std::vector<std::string> of_pairs;
-  for (const ModePair& pair : ListModePairs(modes)) {
-    if (pair.is_second_motion || (pair.a != right && pair.b != right)) continue;
-    const size_t other = pair.a == right ? pair.b : pair.a;
-    if (is_right[other] || !is_notable[other]) continue;
-    std::string& terms = of_pairs.emplace_back();
-    for (const double x : pair.terms) terms += fmt::format(",{:.9g}", pair.a == right ? x : -x);
+  return judged;
+}
+
+// Lists the pairs of the right mode and a wrong one that are two motions of their own, or those that are not.
+template <typename FindTerms>
+std::string FindPairRows(const JudgedByTruth& judged, bool are_second_motions, const FindTerms& find_terms,
+                         const std::string& labels) {
+  std::vector<std::vector<double>> pairs;
+  for (const ModePair& pair : ListModePairs(judged.modes)) {
+    if (pair.is_second_motion != are_second_motions) continue;
+    if (pair.a != judged.right && pair.b != judged.right) continue;
+    const size_t other = pair.a == judged.right ? pair.b : pair.a;
+    if (judged.is_right[other] || !judged.is_notable[other]) continue;
+    pairs.push_back(OrientTerms(find_terms(pair), pair.a == judged.right));
   }
-  std::string rows;
-  for (const std::string& terms : of_pairs)
-    rows += fmt::format("{}{},{:.9g}\n", labels, terms, 1.0 / static_cast<double>(of_pairs.size()));
-  return rows;
+  return FormatPairs(pairs, labels);
+}
+
+// Of the modes that explain at least half as many matches as the one that explains the most.
+std::string FindModeRows(const WeightInspection& estimator, const TrialData& data,
+                         const FailureBounds& failure, const std::string& labels, RandomStream& rng) {
+  const JudgedByTruth judged = JudgeByTruth(estimator.ListModes(data.problem, rng), data, failure, 0.5);
+  return FindPairRows(
+      judged, false, [](const ModePair& pair) { return pair.terms; }, labels);
+}
+
+// Of all modes: the camera's motion may have far fewer matches than an object's.
+std::string FindSecondMotionRows(const WeightInspection& estimator, const TrialData& data,
+                                 const FailureBounds& failure, const std::string& labels, RandomStream& rng) {
+  const JudgedByTruth judged = JudgeByTruth(estimator.ListModes(data.problem, rng), data, failure, 0.0);
+  return FindPairRows(
+      judged, true, [](const ModePair& pair) { return pair.second_motion_terms; }, labels);
 }
 
 // What is listed of a trial.
@@ -122,8 +172,9 @@ struct Listing {
 Listing FindListing(const std::string& name) {
   if (name == "check") return {MakeCheckHeader(), FindCheckRow};
   if (name == "permuted") return {MakeCheckHeader(), FindPermutedRow};
-  if (name == "modes") return {MakeModesHeader(), FindModeRows};
-  throw InputError("LISTING is check, permuted or modes, not '" + name + "'");
+  if (name == "modes") return {MakeTermsHeader(kModeTermNames), FindModeRows};
+  if (name == "second_motions") return {MakeTermsHeader(kSecondMotionTermNames), FindSecondMotionRows};
+  throw InputError("LISTING is check, permuted, modes or second_motions, not '" + name + "'");
 }
 
 std::string MakeHeader(const StudyPlan& plan, const Listing& listing) {
@@ -171,7 +222,9 @@ int Run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    fmt::print(stderr, "usage: rcme_calibrated_terms check|permuted|modes STUDY [SEED] [TRIALS] [THREADS]\n");
+    fmt::print(
+        stderr,
+        "usage: rcme_calibrated_terms check|permuted|modes|second_motions STUDY [SEED] [TRIALS] [THREADS]\n");
     return 2;
   }
   try {

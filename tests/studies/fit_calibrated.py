@@ -70,6 +70,13 @@ def sources_of_modes(scale):
     return training, [Source("studies/right_calibration.yaml", 82, draws(800), 4, listing="modes")]
 
 
+def sources_of_second_motions(scale):
+    """(training, held out) of the weights of two motions, the camera's and an object's."""
+    draws = lambda n: max(20, int(n * scale))
+    of = lambda seed, number: [Source("studies/right_calibration.yaml", seed, draws(number), 4, listing="second_motions")]
+    return of(74, 4000), of(83, 2000)
+
+
 def sources(scale):
     """(training, held out) of the check; `scale` 1 for the committed constants."""
     draws = lambda n: max(20, int(n * scale))
@@ -499,10 +506,10 @@ def write_signs_table(folder, check, train, test):
         table.writerow(["all", len(check.products), f"{loss([]) - base:.4f}"])
 
 
-def write_modes_table(folder, train, test, b):
-    """What each term of the modes' weights costs when it is left out, on trials that were not fitted to."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / "modes.csv", "w", newline="") as file:
+def write_terms_table(made, train, test, b):
+    """What each term costs when it is left out, on trials that were not fitted to."""
+    made.parent.mkdir(parents=True, exist_ok=True)
+    with open(made, "w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(["term", "weight", "log_loss_more_without", "wrong_mode_more_without_percent"])
         for weight, name in zip(b, train.names):
@@ -525,15 +532,23 @@ def fit_mode_terms(train, left_out=None):
     return b
 
 
-def fit_modes(arguments):
-    training, held_out = sources_of_modes(arguments.scale)
+def fit_terms(array, made, training, held_out, arguments):
+    """Fits an array of weights to pairs of modes; whether it is what the header has."""
     files = make_all(training + held_out, arguments)
     train = ModePairs(files[:len(training)], training)
     b = fit_mode_terms(train)
     if not arguments.report_only:
-        write_array("kModeTerms", weight_rows([name.removeprefix("mode_") for name in train.names], b), training)
-    write_modes_table(arguments.out, train, ModePairs(files[len(training):], held_out), b)
-    return is_same(read_numbers("kModeTerms")[:, 0], b)
+        write_array(array, weight_rows([name.removeprefix("mode_") for name in train.names], b), training)
+    write_terms_table(arguments.out / made, train, ModePairs(files[len(training):], held_out), b)
+    return is_same(read_numbers(array)[:, 0], b)
+
+
+def fit_modes(arguments):
+    return fit_terms("kModeTerms", "modes.csv", *sources_of_modes(arguments.scale), arguments)
+
+
+def fit_second_motions(arguments):
+    return fit_terms("kSecondMotionTerms", "second_motions.csv", *sources_of_second_motions(arguments.scale), arguments)
 
 
 def fit_check(arguments):
@@ -579,6 +594,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     job = parser.add_mutually_exclusive_group()
     job.add_argument("--modes", action="store_true", help="the weights of the modes, in place of the check")
+    job.add_argument("--second-motions", action="store_true", help="the weights of two motions, the camera's and an object's")
     job.add_argument("--cross-validate", action="store_true", help="only compare numbers of products and ridges of the check")
     parser.add_argument("--programs", default=ROOT / "build/release/bin", type=pathlib.Path, help="folder of the two programs")
     parser.add_argument("--trials", default=ROOT / "build/fit_calibrated", type=pathlib.Path, help="folder of the trials")
@@ -588,7 +604,7 @@ def main():
     parser.add_argument("--report-only", action="store_true", help="leave the constants as they are; exit code 1 if a fit gives others")
     arguments = parser.parse_args()
     arguments.trials.mkdir(parents=True, exist_ok=True)
-    do = fit_modes if arguments.modes else compare_forms if arguments.cross_validate else fit_check
+    do = fit_modes if arguments.modes else fit_second_motions if arguments.second_motions else compare_forms if arguments.cross_validate else fit_check
     if not do(arguments):
         sys.exit("fit_calibrated: the constants of estimator/calibrated/fitted_constants.h are not those of this fit")
 

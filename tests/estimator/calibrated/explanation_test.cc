@@ -48,6 +48,30 @@ TEST(Explanation, OfEveryMatchIsThatOfTheScalarTwin) {
   }
 }
 
+// From the scatters of the two images by Eigen.
+TEST(Explanation, ExtentIsTheRadiusOfTheExplainedMatches) {
+  const FittedMode f = FitScene(200, 0.5, 0.3, 3);
+  const Explanation e = Explain(f.matches, f.mode);
+  Eigen::Matrix2d scatter[2] = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+  for (const bool second : {false, true}) {
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    const auto point = [&](size_t i) -> Eigen::Vector2d {
+      const MatchBlock& block = f.matches[static_cast<int>(i / kBlockSize)];
+      const size_t lane = i % kBlockSize;
+      return second ? Eigen::Vector2d(block.x2[lane], block.y2[lane])
+                    : Eigen::Vector2d(block.x1[lane], block.y1[lane]);
+    };
+    for (size_t i = 0; i < e.probability.size(); ++i)
+      if (e.probability[i] > 0.5) mean += point(i) / e.num_explained;
+    for (size_t i = 0; i < e.probability.size(); ++i) {
+      const Eigen::Vector2d away = point(i) - mean;
+      if (e.probability[i] > 0.5) scatter[second] += away * away.transpose() / e.num_explained;
+    }
+  }
+  EXPECT_NEAR(e.extent, std::pow(scatter[0].determinant() * scatter[1].determinant(), 0.125),
+              1e-9 * e.extent);
+}
+
 // sum p v J' H^-1 J / s^2 is the trace of H^-1 times the information of all; H has between 0.6 of that and
 // all of it (mixture_sums.h).
 TEST(Explanation, LeveragesAddUpToTheFiveThatAMotionTakes) {

@@ -106,11 +106,26 @@ TEST(SecondMotion, NeedsADozenClearMatchesOnEitherSide) {
   EXPECT_FALSE(IsSecondMotion(contrast));
 }
 
-TEST(SecondMotion, HasThePriorOfItsShare) {
-  EXPECT_NEAR(SecondMotionLogOdds(0.6, 50, 50), std::log(0.6), 1e-12);
-  EXPECT_NEAR(SecondMotionLogOdds(0.6, 100, 50), std::log(0.6 / 8.0), 1e-12);
-  EXPECT_EQ(std::exp(SecondMotionLogOdds(0.0, 100, 50)), 0.0);
-  EXPECT_EQ(std::exp(SecondMotionLogOdds(0.6, 100, 0)), 0.0);
+TEST(SecondMotion, TermsAreAntisymmetric) {
+  const MotionSupport a{50, 100.0}, b{100, 200.0};
+  const auto of_a = ComputeSecondMotionTerms(a, b), of_b = ComputeSecondMotionTerms(b, a);
+  EXPECT_NEAR(of_a[0], std::log(0.5), 1e-12);
+  EXPECT_NEAR(of_a[1], std::log(0.5), 1e-12);
+  for (size_t k = 0; k < of_a.size(); ++k) EXPECT_EQ(of_a[k], -of_b[k]);
+  EXPECT_EQ(ComputeSecondMotionTerms({50, 1e9}, {50, 1.0})[1], 1.5) << "no more than that";
+  EXPECT_EQ(ComputeSecondMotionTerms({50, 0.0}, {50, 1.0})[1], 0.0) << "matches on a line";
+  EXPECT_EQ(ComputeSecondMotionTerms({0, 1.0}, {1, 1.0})[0], 0.0) << "no number below one";
+}
+
+TEST(SecondMotion, HasTheOddsOfItsNumberAndExtent) {
+  const double number = kSecondMotionTerms[0].weight, extent = kSecondMotionTerms[1].weight;
+  EXPECT_GT(number, 0.0);
+  EXPECT_GT(extent, 0.0);
+  EXPECT_NEAR(SecondMotionLogOdds(0.6, {50, 10.0}, {50, 10.0}), std::log(0.6), 1e-12);
+  EXPECT_NEAR(SecondMotionLogOdds(0.6, {100, 10.0}, {50, 20.0}),
+              std::log(0.6) + (extent - number) * std::log(2.0), 1e-12);
+  EXPECT_EQ(std::exp(SecondMotionLogOdds(0.0, {100}, {50})), 0.0);
+  EXPECT_EQ(std::exp(SecondMotionLogOdds(0.6, {100}, {0})), 0.0);
 }
 
 // Of the matches of two bodies: each motion fitted from its own, over all matches.

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "estimator/calibrated/fitted_constants.h"
 #include "estimator/calibrated/mode_weights.h"
 
 namespace rcme {
@@ -122,7 +123,7 @@ TEST(WeighModes, ThePriorOfTheMotionCanBeLeftOut) {
   EXPECT_NEAR(without.of_modes[0], without.of_modes[1], 1e-12);
 }
 
-// Two motions of their own, 20 matches against 15: the prior odds of the options times (15 / 20)^3.
+// Two motions of their own, 20 matches against 15: the prior odds of the options times (15 / 20)^b.
 TEST(WeighModes, ASecondMotionHasThePriorOfTheOptions) {
   ExplainedMode first = ModeAt(0.0), second = ModeAt(0.2);
   for (ExplainedMode* mode : {&first, &second}) {
@@ -145,8 +146,8 @@ TEST(WeighModes, ASecondMotionHasThePriorOfTheOptions) {
       EXPECT_EQ(weights.answer, is_turned ? 1u : 0u);
       EXPECT_TRUE(weights.is_second_motion[other]);
       EXPECT_FALSE(weights.is_second_motion[weights.answer]);
-      EXPECT_NEAR(weights.of_modes[other] / weights.of_modes[weights.answer], odds * std::pow(0.75, 3.0),
-                  1e-9);
+      EXPECT_NEAR(weights.of_modes[other] / weights.of_modes[weights.answer],
+                  odds * std::pow(0.75, kSecondMotionTerms[0].weight), 1e-9);
     }
   }
 }
