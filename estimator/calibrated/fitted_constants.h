@@ -37,14 +37,14 @@ struct FittedProduct {
 //   studies/calibrated/hard.yaml, seed 73, 20 trials of each condition, weight 2.0
 //   studies/calibrated/few_matches.yaml, seed 73, 20 trials of each condition, weight 2.0
 inline constexpr FittedTerm kModeTerms[] = {
-    {"exclusive", 0.167033572},
-    {"shared", 0.44334997},
-    {"explained", 5.66994305},
-    {"noise", -2.51796388},
-    {"width", 0.509813831},
-    {"forward", -1.34001046},
-    {"axial", 2.03604679},
-    {"turn", -1.94411532},
+    {"exclusive", 0.168938139},
+    {"shared", 0.437320825},
+    {"explained", 5.19515438},
+    {"noise", -2.28459974},
+    {"width", 0.478917376},
+    {"forward", -1.44136011},
+    {"axial", 2.01619338},
+    {"turn", -1.92496907},
 };
 
 // Fitted to

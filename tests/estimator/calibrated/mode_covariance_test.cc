@@ -235,7 +235,7 @@ TEST(SandwichCovariance, IsThatOfTheHeader) {
       for (size_t k = 0; k < 5; ++k) J(static_cast<Eigen::Index>(k)) = e.terms.derivative[k][i];
       const double u = e.terms.residual[i] / m.scale, v = 6.0 / (5.0 + u * u), p = e.probability[i];
       const double psi = p * v * u / m.scale, h = e.leverage[i];
-      S += std::pow(psi / std::max(1.0 - h, 0.05), 2) * J * J.transpose();
+      S += psi * psi / std::max(1.0 - h, 0.05) * J * J.transpose();
       geometry += p * J * J.transpose();
       const double kept = std::max(1.0 - h, 0.01);
       doubt += 0.5 * wrong[i] * (psi * psi / (kept * kept) + p * v / (m.scale * m.scale) / kept) * J *
