@@ -108,6 +108,25 @@ def verdict_counts(spec):
     return f"Of {len(rows)} claims, " + ", ".join(f"{count} {phrases[verdict]}" for count, verdict in counts) + "."
 
 
+def verdict_families(spec):
+    """A row per family of claims: which hold, hold for small noise only, are undecided and do not hold, without the family's name."""
+    rows, verdicts_shown = read_table(spec.argument), spec.parts("verdicts")
+    claims = {row["claim"]: row for row in rows}
+    body = []
+    for family in dict.fromkeys(claim.partition(".")[0] for claim in claims):
+        line = [family]
+        for verdict, _ in verdicts_shown:
+            names = []
+            for claim, row in claims.items():
+                start, _, name = claim.partition(".")
+                if start == family and row["claim_verdict"] == verdict:
+                    limit = f" ({float(row['holds_up_to_sigma_px']):g} px)" if "limit" in verdict else ""
+                    names.append(f"{name}{limit}")
+            line.append(", ".join(names) or "-")
+        body.append(line)
+    return markdown(["family", *(words for _, words in verdicts_shown)], body)
+
+
 def power(spec):
     """How often the audit called a wrong sigma "does not hold" / "holds"."""
     rows = select(read_table(spec.argument), "statistic=" + spec.get("statistic", "drawn"))
@@ -303,7 +322,7 @@ def winners(spec):
 
 
 SPECIAL = {"made": made, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
-           "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
+           "verdict_counts": verdict_counts, "verdict_families": verdict_families, "power": power, "better": better, "one_at_a_time": one_at_a_time,
            "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "against": against, "transfer": transfer,
            "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,
            "caught": caught, "closures": closures, "validation_values": validation_values, "median_ratios": median_ratios, "twins": twins, "twin_values": twin_values}

@@ -3,7 +3,7 @@
 import math
 import statistics
 
-from tables import levels_of, markdown, read_table, rms_over_sd, select, the_row, words_of
+from tables import filled, levels_of, markdown, read_table, rms_over_sd, select, the_row, words_of
 
 
 def truth_free(spec):
@@ -48,17 +48,25 @@ def share_with_interval(hits, n):
 
 def caught(spec):
     """In how many sets each test gave the verdict that something is wrong, with an exact 95 % interval in %, a row per table
-    (tables: NAME as WORDS; ...; also: further verdicts that count)."""
+    (tables: NAME as WORDS; ...; also: further verdicts that count). With `intervals: below` cells are counts, and a line below the
+    table has the intervals of none, half and all."""
+    below = spec.get("intervals") == "below"
     wrong = {"too small", "correlated", "wrong", *words_of(spec.get("also"))}
-    body, tests = [], spec.parts("tests")
+    body, tests, sizes = [], spec.parts("tests"), set()
     for name, words in spec.parts("tables"):
         rows = read_table(name)
         line = [words]
         for test, _ in tests:
             verdicts = [row["verdict"] for row in select(rows, f"test={test}")]
-            line.append(share_with_interval(sum(verdict in wrong for verdict in verdicts), len(verdicts)))
+            hits, n = sum(verdict in wrong for verdict in verdicts), len(verdicts)
+            sizes.add(n)
+            line.append(f"{hits}/{n}" if below else share_with_interval(hits, n))
         body.append(line)
-    return markdown(["what is planted", *(heading for _, heading in tests)], body)
+    table = markdown(["what is planted", *(heading for _, heading in tests)], body)
+    if not below:
+        return table
+    intervals = [share_with_interval(hits, n) for n in sorted(sizes, reverse=True) for hits in (0, n // 2, n)]
+    return f"{table}\n\n" + filled(f"Exact 95 % intervals, %: {', '.join(intervals)}.")
 
 
 def validation_values(spec):
