@@ -141,11 +141,12 @@ def power(spec):
 
 
 def better(spec):
-    """In how many conditions each estimator is surely better or worse than the reference."""
+    """In how many conditions each estimator is surely better or worse than the reference; `only` picks estimators."""
     rows = read_table(spec.argument)
+    chosen = [name for name, _ in spec.parts("only")] or levels_of(rows, "estimator")
     body = []
     for event, words in spec.parts("events"):
-        for estimator in levels_of(rows, "estimator"):
+        for estimator in chosen:
             pairs = [row for row in rows if row["estimator"] == estimator and row["event"] == event]
             sure = [float(row["risk_difference"]) for row in pairs if float(row["p_holm"]) < 0.05]
             body.append([words, estimator, f"{sum(each < 0 for each in sure)} of {len(pairs)}",
