@@ -128,9 +128,9 @@ def verdict_families(spec):
 
 
 def power(spec):
-    """How often the audit called a wrong sigma "does not hold" / "holds"."""
+    """How often the audit called a wrong sigma "does not hold" / "holds"; `errors` picks errors."""
     rows = select(read_table(spec.argument), "statistic=" + spec.get("statistic", "drawn"))
-    errors = sorted({as_number(row["sigma_error"]) for row in rows})
+    errors = [float(word) for word in spec.get("errors").split(",") if word] or sorted({as_number(row["sigma_error"]) for row in rows})
     body = []
     for claim in levels_of(rows, "claim"):
         for budget in levels_of(rows, "budget"):
