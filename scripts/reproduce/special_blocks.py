@@ -66,11 +66,11 @@ def mean_rate(rows):
 
 
 def pooled(spec):
-    """Failure and refusal over all conditions, and in how many of them Holm's p is below 0.05, of several studies."""
-    body = []
+    """Failure and refusal over all conditions, and in how many of them Holm's p is below 0.05, of several studies; `only` picks estimators."""
+    body, chosen = [], [name for name, _ in spec.parts("only")]
     for name, words in spec.parts("tables"):
         summary, paired = read_table(name), read_table(name + "_paired")
-        for estimator in [level for level in levels_of(summary, "estimator") if level != "scene"]:
+        for estimator in chosen or [level for level in levels_of(summary, "estimator") if level != "scene"]:
             rates = [sum(mean_rate(select(summary, f"{estimator}, {quantity}")) for quantity in quantities)
                      for quantities in (("failure",), REFUSALS)]
             pairs = [row for row in paired if row["estimator"] == estimator and row["event"] == "failure_or_refusal"]
