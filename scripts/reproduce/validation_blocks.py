@@ -49,20 +49,31 @@ def share_with_interval(hits, n):
 def caught(spec):
     """In how many sets each test gave the verdict that something is wrong, with an exact 95 % interval in %, a row per table
     (tables: NAME as WORDS; ...; also: further verdicts that count). With `intervals: below` cells are counts, and a line below the
-    table has the intervals of none, half and all."""
+    table has the intervals of none, half and all. `own: WORDS as TEST; ...` adds in how many the fault of a row is named, and the most of any
+    other of these tests and of `others`."""
     below = spec.get("intervals") == "below"
     wrong = {"too small", "correlated", "wrong", *words_of(spec.get("also"))}
-    body, tests, sizes = [], spec.parts("tests"), set()
+    body, tests, sizes, own = [], spec.parts("tests"), set(), spec.parts("own")
+    naming = list(dict.fromkeys([test for _, named in own for test in words_of(named)] + words_of(spec.get("others"))))
+
+    def count(rows, test):
+        verdicts = [row["verdict"] for row in select(rows, f"test={test}")]
+        sizes.add(len(verdicts))
+        return sum(verdict in wrong for verdict in verdicts), len(verdicts)
+
     for name, words in spec.parts("tables"):
         rows = read_table(name)
         line = [words]
         for test, _ in tests:
-            verdicts = [row["verdict"] for row in select(rows, f"test={test}")]
-            hits, n = sum(verdict in wrong for verdict in verdicts), len(verdicts)
-            sizes.add(n)
+            hits, n = count(rows, test)
             line.append(f"{hits}/{n}" if below else share_with_interval(hits, n))
+        if own:
+            mine = words_of(dict(own).get(words, ""))
+            shares = [[f"{hits}/{n}" for hits, n in sorted(count(rows, test) for test in some)] for some in
+                      (mine, [test for test in naming if test not in mine])]
+            line += [", ".join(shares[0]) or "-", shares[1][-1] if shares[1] else "-"]
         body.append(line)
-    table = markdown(["what is planted", *(heading for _, heading in tests)], body)
+    table = markdown(["what is planted", *(heading for _, heading in tests), *(["the fault named", "another named, most"] if own else [])], body)
     if not below:
         return table
     intervals = [share_with_interval(hits, n) for n in sorted(sizes, reverse=True) for hits in (0, n // 2, n)]
