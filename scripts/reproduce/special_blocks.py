@@ -154,6 +154,18 @@ def better(spec):
     return markdown(["event", "estimator", "less often", "more often"], body)
 
 
+def greatest(spec):
+    """Of each estimator the study in which its paired difference is greatest, with the interval, and the others whose interval is above
+    0, or below ("less")."""
+    rows = [row for name in spec.argument.split() for row in select(read_table(name), spec.get("where"))]
+    body = []
+    for estimator in levels_of(rows, "estimator"):
+        here = sorted(select(rows, f"estimator={estimator}"), key=lambda row: -float(row["risk_difference"]))
+        others = [row["study"] for row in here[1:] if float(row["lower"]) > 0] + [f"{row['study']} (less)" for row in here if float(row["upper"]) < 0]
+        body.append([estimator, here[0]["study"], rate(here[0]), ", ".join(others) or "-"])
+    return markdown([heading for _, heading in spec.parts("columns")], body)
+
+
 def one_at_a_time(spec):
     """A row where every factor is at its usual level, and one for each other level; `only` picks estimators, `show` factors."""
     rows = read_table(spec.argument)
@@ -323,7 +335,7 @@ def winners(spec):
 
 
 SPECIAL = {"made": made, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
-           "verdict_counts": verdict_counts, "verdict_families": verdict_families, "power": power, "better": better, "one_at_a_time": one_at_a_time,
+           "verdict_counts": verdict_counts, "verdict_families": verdict_families, "power": power, "better": better, "greatest": greatest, "one_at_a_time": one_at_a_time,
            "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "against": against, "transfer": transfer,
            "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,
            "caught": caught, "closures": closures, "validation_values": validation_values, "median_ratios": median_ratios, "twins": twins, "twin_values": twin_values}
