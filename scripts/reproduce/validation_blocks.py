@@ -117,12 +117,13 @@ def median_ratios(spec):
 
 def closures(spec):
     """Of `rcme validate --loops`, a row per set and number of images: the loops, and for each table (tables: NAME as WORDS; ...) the share
-    within the 95 % region and the root mean square over its standard deviation, shared errors allowed for and ignored; `where` picks rows."""
+    within the 95 % region and the root mean square over its standard deviation, shared errors allowed for and ignored (`kinds`: one of them);
+    `where` picks rows."""
     def cell(row):
         return f"{100 * float(row['covered']):.0f} %; {rms_over_sd(row)}"
 
     tables = [(select(read_table(name), spec.get("where", "of=pairs")), words) for name, words in spec.parts("tables")]
-    kinds = ("allowed for", "ignored")
+    kinds = words_of(spec.get("kinds", "allowed for, ignored"))
     head = ["set", "images", *(f"{words}: {what}" for _, words in tables for what in ("loops", *(f"shared errors {kind}" for kind in kinds)))]
     body = []
     for place in dict.fromkeys((row["set"], row["images"]) for rows, _ in tables for row in rows):
