@@ -5,8 +5,8 @@ import json
 import re
 
 from recipes import MADE, RESULTS, ROOT, data, read_recipes
-from tables import as_number, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
-from validation_blocks import caught, closures, median_ratios, truth_free, validation_values
+from tables import is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
+from validation_blocks import caught, truth_free
 
 REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
 
@@ -81,23 +81,6 @@ def pooled(spec):
     return markdown(["study", "estimator", "failure, %", "refusal, %", "better in", "worse in"], body)
 
 
-def verdicts(spec):
-    """A row per claim of the audit, and how many of its numbers hold, are undecided and do not hold; `only`: what the claims begin with."""
-    rows, body = read_table(spec.argument), []
-    for claim in levels_of(rows, "claim"):
-        if not claim.startswith(tuple(spec.get("only").split(", "))):
-            continue
-        here = select(rows, f"claim={claim}")
-        words, found = here[0]["claim_verdict"], [row["verdict"] for row in here]
-        sides = {row["side"] for row in here if row["side"]}
-        if "limit" in words:
-            words = f"limit only, up to {float(here[0]['holds_up_to_sigma_px']):g} px"
-        elif words == "does not hold" and len(sides) == 1:
-            words += f": {sides.pop()}"
-        body.append([claim, here[0]["reading"], words, " / ".join(str(found.count(each)) for each in ("holds", "undecided", "does not hold"))])
-    return markdown(["claim", "reading", "verdict", "numbers that hold / undecided / do not"], body)
-
-
 def verdict_counts(spec):
     """How many claims have which verdict, in a sentence."""
     rows = {row["claim"]: row["claim_verdict"] for row in read_table(spec.argument)}
@@ -125,19 +108,6 @@ def verdict_families(spec):
             line.append(", ".join(names) or "-")
         body.append(line)
     return markdown(["family", *(words for _, words in verdicts_shown)], body)
-
-
-def power(spec):
-    """How often the audit called a wrong sigma "does not hold" / "holds"; `errors` picks errors."""
-    rows = select(read_table(spec.argument), "statistic=" + spec.get("statistic", "drawn"))
-    errors = [float(word) for word in spec.get("errors").split(",") if word] or sorted({as_number(row["sigma_error"]) for row in rows})
-    body = []
-    for claim in levels_of(rows, "claim"):
-        for budget in levels_of(rows, "budget"):
-            here = select(rows, f"claim={claim}, budget={budget}")
-            cells = [the_row(here, f"sigma_error={error:g}") for error in errors]
-            body.append([f"{claim}, {budget}"] + [f"{row['does_not_hold']} / {row['holds']}" for row in cells])
-    return markdown(["claim, budget"] + [f"{100 * error:+g} %" if error else "0" for error in errors], body)
 
 
 def better(spec):
@@ -224,18 +194,6 @@ def ratios(spec):
         name, _, target = words.partition(", target ")
         body.append([name, *measured, target])
     return markdown(["ratio", *(f"{file['run']['processor']}, {file['run']['instruction_set']}" for file in files), "target set beforehand"], body)
-
-
-def against(spec):
-    """The time of each stage, call and workload over that of a former commit, and memory: the JSON of `scripts/benchmark --against`. Only
-    what differs by more than a share `by`, and names that begin with `always`."""
-    content, by, always = json.loads((RESULTS / spec.argument).read_text()), float(spec.get("by", "0")), spec.get("always", "-")
-    units = {"time": "us", "memory": "MB"}
-    body = [[row["name"], f"{row['ratio']:.2f} [{row['lower']:.2f}, {row['upper']:.2f}]", *(f"{row[side]:.3g} {units[row['quantity']]}"
-                                                                                      for side in ("before", "now"))]
-            for row in sorted((row for row in content["rows"] if "ratio" in row), key=lambda row: -row["ratio"])
-            if abs(row["ratio"] - 1) >= by or row["name"].startswith(always)]
-    return markdown(["stage or call", f"now / {content['against']}", content["against"], "now"], body)
 
 
 def transfer(spec):
@@ -334,8 +292,7 @@ def winners(spec):
     return markdown(["study", *head], body)
 
 
-SPECIAL = {"made": made, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
-           "verdict_counts": verdict_counts, "verdict_families": verdict_families, "power": power, "better": better, "greatest": greatest, "one_at_a_time": one_at_a_time,
-           "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "against": against, "transfer": transfer,
-           "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,
-           "caught": caught, "closures": closures, "validation_values": validation_values, "median_ratios": median_ratios, "twins": twins, "twin_values": twin_values}
+SPECIAL = {"made": made, "largest_sigma": largest_sigma, "pooled": pooled, "verdict_counts": verdict_counts,
+           "verdict_families": verdict_families, "better": better, "greatest": greatest, "one_at_a_time": one_at_a_time, "rare": rare,
+           "pooled_rates": pooled_rates, "ratios": ratios, "transfer": transfer, "least_coverage": least_coverage, "winners": winners,
+           "truth_free": truth_free, "caught": caught, "twins": twins, "twin_values": twin_values}
