@@ -13,11 +13,12 @@ A page shows a block between two comments, and the file of the same name with `.
                     quantities of `cells`; further columns about the problem by `scene: quantity as Heading; ...`;
                     `where` picks rows, `only` picks columns, `having` leaves out rows without that column, `format`
                     says how a cell is shown (tables.py)
-    table TABLE ... the columns of `columns` ("column as Heading; format: NAME as Heading; ...") of the rows of `where`
+    table TABLE ... the columns of `columns` ("column as Heading; format: NAME as Heading; ...") of the rows of `where`; `beginning` picks
+                    rows whose first cell begins with one of "TEXT; TEXT; ..."
     say             the lines below it, with numbers in braces: {TABLE: conditions | format}; `use` names a table and
                     `where` conditions that hold for all of them
     text FILE       lines of a committed text file as they stand; `from` and `to` say with what the first and the last begin, `before`
-                    with what the line after them does
+                    with what the line after them does, `lines` how many at most
     same PAGE NAME  the block NAME of another page, named from the root of the repository
     made NAME ...   what made the results: command, commit, CPU minutes
     ...             the kinds of special_blocks.py
@@ -111,7 +112,10 @@ def table(spec):
     rows = select(rows, spec.get("where")) if spec.get("where") else rows
     columns = spec.parts("columns")
     forms = [what[len("format: "):] if what.startswith("format: ") else f"column {what}" for what, _ in columns]
-    return markdown([heading for _, heading in columns], [[shown(row, form) for form in forms] for row in rows])
+    body = [[shown(row, form) for form in forms] for row in rows]
+    if spec.get("beginning"):
+        body = [line for line in body if line[0].startswith(tuple(text for text, _ in spec.parts("beginning")))]
+    return markdown([heading for _, heading in columns], body)
 
 
 def say(spec):
@@ -137,6 +141,8 @@ def text(spec):
         lines = lines[:next(i for i, line in enumerate(lines) if line.startswith(spec.get("to"))) + 1]
     if spec.get("before"):
         lines = lines[:next(i for i, line in enumerate(lines) if line.startswith(spec.get("before")))]
+    if spec.get("lines"):
+        lines = lines[:int(spec.get("lines"))]
     return "```text\n" + "\n".join(lines).strip("\n") + "\n```"
 
 

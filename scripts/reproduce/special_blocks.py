@@ -5,8 +5,8 @@ import json
 import re
 
 from recipes import MADE, RESULTS, ROOT, data, read_recipes
-from tables import as_number, is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
-from validation_blocks import caught, closures, median_ratios, truth_free, validation_values
+from tables import is_level, levels_of, markdown, rate, read_table, scientific, select, the_row
+from validation_blocks import caught, truth_free
 
 REFUSALS = ("no_candidate", "other_refusal")  # what the summary tells apart
 
@@ -66,11 +66,11 @@ def mean_rate(rows):
 
 
 def pooled(spec):
-    """Failure and refusal over all conditions, and in how many of them Holm's p is below 0.05, of several studies."""
-    body = []
+    """Failure and refusal over all conditions, and in how many of them Holm's p is below 0.05, of several studies; `only` picks estimators."""
+    body, chosen = [], [name for name, _ in spec.parts("only")]
     for name, words in spec.parts("tables"):
         summary, paired = read_table(name), read_table(name + "_paired")
-        for estimator in [level for level in levels_of(summary, "estimator") if level != "scene"]:
+        for estimator in chosen or [level for level in levels_of(summary, "estimator") if level != "scene"]:
             rates = [sum(mean_rate(select(summary, f"{estimator}, {quantity}")) for quantity in quantities)
                      for quantities in (("failure",), REFUSALS)]
             pairs = [row for row in paired if row["estimator"] == estimator and row["event"] == "failure_or_refusal"]
@@ -79,23 +79,6 @@ def pooled(spec):
                          f"{sum(each < 0 for each in sure)} of {len(pairs)}" if pairs else "(reference)",
                          f"{sum(each > 0 for each in sure)} of {len(pairs)}" if pairs else ""])
     return markdown(["study", "estimator", "failure, %", "refusal, %", "better in", "worse in"], body)
-
-
-def verdicts(spec):
-    """A row per claim of the audit, and how many of its numbers hold, are undecided and do not hold; `only`: what the claims begin with."""
-    rows, body = read_table(spec.argument), []
-    for claim in levels_of(rows, "claim"):
-        if not claim.startswith(tuple(spec.get("only").split(", "))):
-            continue
-        here = select(rows, f"claim={claim}")
-        words, found = here[0]["claim_verdict"], [row["verdict"] for row in here]
-        sides = {row["side"] for row in here if row["side"]}
-        if "limit" in words:
-            words = f"limit only, up to {float(here[0]['holds_up_to_sigma_px']):g} px"
-        elif words == "does not hold" and len(sides) == 1:
-            words += f": {sides.pop()}"
-        body.append([claim, here[0]["reading"], words, " / ".join(str(found.count(each)) for each in ("holds", "undecided", "does not hold"))])
-    return markdown(["claim", "reading", "verdict", "numbers that hold / undecided / do not"], body)
 
 
 def verdict_counts(spec):
@@ -108,30 +91,49 @@ def verdict_counts(spec):
     return f"Of {len(rows)} claims, " + ", ".join(f"{count} {phrases[verdict]}" for count, verdict in counts) + "."
 
 
-def power(spec):
-    """How often the audit called a wrong sigma "does not hold" / "holds"."""
-    rows = select(read_table(spec.argument), "statistic=" + spec.get("statistic", "drawn"))
-    errors = sorted({as_number(row["sigma_error"]) for row in rows})
+def verdict_families(spec):
+    """A row per family of claims: which hold, hold for small noise only, are undecided and do not hold, without the family's name."""
+    rows, verdicts_shown = read_table(spec.argument), spec.parts("verdicts")
+    claims = {row["claim"]: row for row in rows}
     body = []
-    for claim in levels_of(rows, "claim"):
-        for budget in levels_of(rows, "budget"):
-            here = select(rows, f"claim={claim}, budget={budget}")
-            cells = [the_row(here, f"sigma_error={error:g}") for error in errors]
-            body.append([f"{claim}, {budget}"] + [f"{row['does_not_hold']} / {row['holds']}" for row in cells])
-    return markdown(["claim, budget"] + [f"{100 * error:+g} %" if error else "0" for error in errors], body)
+    for family in dict.fromkeys(claim.partition(".")[0] for claim in claims):
+        line = [family]
+        for verdict, _ in verdicts_shown:
+            names = []
+            for claim, row in claims.items():
+                start, _, name = claim.partition(".")
+                if start == family and row["claim_verdict"] == verdict:
+                    limit = f" ({float(row['holds_up_to_sigma_px']):g} px)" if "limit" in verdict else ""
+                    names.append(f"{name}{limit}")
+            line.append(", ".join(names) or "-")
+        body.append(line)
+    return markdown(["family", *(words for _, words in verdicts_shown)], body)
 
 
 def better(spec):
-    """In how many conditions each estimator is surely better or worse than the reference."""
+    """In how many conditions each estimator is surely better or worse than the reference; `only` picks estimators."""
     rows = read_table(spec.argument)
+    chosen = [name for name, _ in spec.parts("only")] or levels_of(rows, "estimator")
     body = []
     for event, words in spec.parts("events"):
-        for estimator in levels_of(rows, "estimator"):
+        for estimator in chosen:
             pairs = [row for row in rows if row["estimator"] == estimator and row["event"] == event]
             sure = [float(row["risk_difference"]) for row in pairs if float(row["p_holm"]) < 0.05]
             body.append([words, estimator, f"{sum(each < 0 for each in sure)} of {len(pairs)}",
                          f"{sum(each > 0 for each in sure)} of {len(pairs)}"])
     return markdown(["event", "estimator", "less often", "more often"], body)
+
+
+def greatest(spec):
+    """Of each estimator the study in which its paired difference is greatest, with the interval, and the others whose interval is above
+    0, or below ("less")."""
+    rows = [row for name in spec.argument.split() for row in select(read_table(name), spec.get("where"))]
+    body = []
+    for estimator in levels_of(rows, "estimator"):
+        here = sorted(select(rows, f"estimator={estimator}"), key=lambda row: -float(row["risk_difference"]))
+        others = [row["study"] for row in here[1:] if float(row["lower"]) > 0] + [f"{row['study']} (less)" for row in here if float(row["upper"]) < 0]
+        body.append([estimator, here[0]["study"], rate(here[0]), ", ".join(others) or "-"])
+    return markdown([heading for _, heading in spec.parts("columns")], body)
 
 
 def one_at_a_time(spec):
@@ -192,18 +194,6 @@ def ratios(spec):
         name, _, target = words.partition(", target ")
         body.append([name, *measured, target])
     return markdown(["ratio", *(f"{file['run']['processor']}, {file['run']['instruction_set']}" for file in files), "target set beforehand"], body)
-
-
-def against(spec):
-    """The time of each stage, call and workload over that of a former commit, and memory: the JSON of `scripts/benchmark --against`. Only
-    what differs by more than a share `by`, and names that begin with `always`."""
-    content, by, always = json.loads((RESULTS / spec.argument).read_text()), float(spec.get("by", "0")), spec.get("always", "-")
-    units = {"time": "us", "memory": "MB"}
-    body = [[row["name"], f"{row['ratio']:.2f} [{row['lower']:.2f}, {row['upper']:.2f}]", *(f"{row[side]:.3g} {units[row['quantity']]}"
-                                                                                      for side in ("before", "now"))]
-            for row in sorted((row for row in content["rows"] if "ratio" in row), key=lambda row: -row["ratio"])
-            if abs(row["ratio"] - 1) >= by or row["name"].startswith(always)]
-    return markdown(["stage or call", f"now / {content['against']}", content["against"], "now"], body)
 
 
 def transfer(spec):
@@ -302,8 +292,7 @@ def winners(spec):
     return markdown(["study", *head], body)
 
 
-SPECIAL = {"made": made, "largest_sigma": largest_sigma, "pooled": pooled, "verdicts": verdicts,
-           "verdict_counts": verdict_counts, "power": power, "better": better, "one_at_a_time": one_at_a_time,
-           "rare": rare, "pooled_rates": pooled_rates, "ratios": ratios, "against": against, "transfer": transfer,
-           "least_coverage": least_coverage, "winners": winners, "truth_free": truth_free,
-           "caught": caught, "closures": closures, "validation_values": validation_values, "median_ratios": median_ratios, "twins": twins, "twin_values": twin_values}
+SPECIAL = {"made": made, "largest_sigma": largest_sigma, "pooled": pooled, "verdict_counts": verdict_counts,
+           "verdict_families": verdict_families, "better": better, "greatest": greatest, "one_at_a_time": one_at_a_time, "rare": rare,
+           "pooled_rates": pooled_rates, "ratios": ratios, "transfer": transfer, "least_coverage": least_coverage, "winners": winners,
+           "truth_free": truth_free, "caught": caught, "twins": twins, "twin_values": twin_values}
