@@ -197,8 +197,6 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
         whitened.problem(), same, &second, posterior != nullptr ? &second_posterior : nullptr);
     if (second.modes.empty()) return estimate;
     whitened.Restore(&again);
-    if (again.probability_domain == ProbabilityDomain::kVerified)
-      again.probability_domain = ProbabilityDomain::kExtrapolated;  // not verified for second passes alone
     *workings = std::move(second);
     if (second_posterior) {
       whitened.Restore(&*second_posterior);
