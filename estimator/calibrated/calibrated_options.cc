@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "estimator/robust_covariance/covariance_option.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -61,6 +62,9 @@ void Validate(const CalibratedOptions& options) {
     throw InputError(fmt::format("min_samples is {}, more than max_samples, {}", options.min_samples,
                                  options.max_samples));
   }
+  if (options.covariance == CovarianceKind::kRobust) return;
+  RobustCovarianceOptions given = options.robust, unset;
+  RequireUnset(Parameters(given), Parameters(unset));
 }
 
 }  // namespace rcme

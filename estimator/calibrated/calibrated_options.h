@@ -58,7 +58,7 @@ struct CalibratedOptions {
 // The fields by name. They point into `options`, which must outlive them.
 std::vector<Parameter> Parameters(CalibratedOptions& options);
 
-// Throws InputError if two options contradict each other.
+// Throws InputError if two options contradict each other, or one of the robust covariance has no effect.
 void Validate(const CalibratedOptions& options);
 
 }  // namespace rcme

@@ -31,17 +31,6 @@ std::vector<Parameter> ListRobustParameters(RobustCovarianceOptions& options) {
   return all;
 }
 
-// Throws InputError that names the first option that differs from its default.
-void RequireNoRobustOption(RobustCovarianceOptions options) {
-  RobustCovarianceOptions defaults;
-  const std::vector<Parameter> given = ListRobustParameters(options), unset = ListRobustParameters(defaults);
-  for (size_t i = 0; i < given.size(); ++i) {
-    if (given[i].Value() == unset[i].Value()) continue;
-    throw InputError(fmt::format("{} has no effect without {}=robust; add that option or leave {} out",
-                                 given[i].name(), kOption, given[i].name()));
-  }
-}
-
 class WithRobust : public MotionEstimator {
  public:
   WithRobust(std::unique_ptr<MotionEstimator> estimator, const RobustCovarianceOptions& options,
@@ -83,7 +72,10 @@ class ModelWithRobust : public EstimatorModel {
   void LiftLimits() override { model_->LiftLimits(); }
   std::optional<Effort> EffortOption() const override { return model_->EffortOption(); }
   std::unique_ptr<MotionEstimator> Make() const override {
-    if (!is_robust_) RequireNoRobustOption(options_);
+    if (!is_robust_) {
+      RobustCovarianceOptions given = options_, unset;
+      RequireUnset(ListRobustParameters(given), ListRobustParameters(unset));
+    }
     std::unique_ptr<MotionEstimator> estimator = model_->Make();
     if (!is_robust_) return estimator;
     return std::make_unique<WithRobust>(std::move(estimator), options_, uses_noise_scale_);
@@ -97,6 +89,14 @@ class ModelWithRobust : public EstimatorModel {
 };
 
 }  // namespace
+
+void RequireUnset(const std::vector<Parameter>& given, const std::vector<Parameter>& unset) {
+  for (size_t i = 0; i < given.size(); ++i) {
+    if (given[i].Value() == unset[i].Value()) continue;
+    throw InputError(fmt::format("{} has no effect without {}=robust; add that option or leave {} out",
+                                 given[i].name(), kOption, given[i].name()));
+  }
+}
 
 void MakeCovarianceRobust(const MotionProblem& problem, const RobustCovarianceOptions& options,
                           const std::optional<Matrix5d>& own_cov, MotionEstimate* estimate) {

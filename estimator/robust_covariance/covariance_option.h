@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "estimator/estimator_model.h"
 #include "estimator/motion_estimate.h"
@@ -22,6 +23,10 @@ namespace rcme {
 // robust covariance is that of a fit that weights all matches equally.
 std::unique_ptr<EstimatorModel> WithRobustCovariance(std::unique_ptr<EstimatorModel> model,
                                                      bool uses_noise_scale = false);
+
+// Throws InputError that names the first option of the robust covariance whose value differs from its
+// default, for an estimator without `covariance: robust`. The lists have the same options in the same order.
+void RequireUnset(const std::vector<Parameter>& given, const std::vector<Parameter>& unset);
 
 // Replaces the covariance of a motion by the robust one, or refuses the motion. An invalid answer (motion not
 // finite, inliers that are no matches) stays unchanged.

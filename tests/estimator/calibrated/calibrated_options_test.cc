@@ -42,5 +42,20 @@ TEST(CalibratedOptions, AreSetByTheirNames) {
   EXPECT_EQ(options.calibration.focal_sd, 0.01);
 }
 
+// Those of the robust covariance alone; the uncertainty of the intrinsics widens every covariance.
+TEST(CalibratedOptions, RefuseOptionsOfTheRobustCovarianceWithoutIt) {
+  CalibratedOptions options;
+  options.calibration.focal_sd = 0.01;
+  EXPECT_NO_THROW(Validate(options));
+  options.robust.factor = 2.0;
+  EXPECT_THROW(Validate(options), InputError);
+  options.covariance = CovarianceKind::kRobust;
+  EXPECT_NO_THROW(Validate(options));
+  options.robust = {};
+  options.robust.adds_jackknife = true;
+  options.covariance = CovarianceKind::kSandwich;
+  EXPECT_THROW(Validate(options), InputError);
+}
+
 }  // namespace
 }  // namespace rcme
