@@ -13,16 +13,21 @@
 namespace rcme {
 namespace {
 
-constexpr int kSplitSteps = 15, kSplitShareSteps = 6, kSplitSamples = 512, kCandidates = 8;
+constexpr int kSplitSteps = 15, kSplitShareSteps = 6;
+// Greatest numbers of samples and of candidates of a search.
+struct SearchEffort {
+  int max_samples, num_candidates;
+};
+constexpr SearchEffort kForSplit{512, 8}, kForSecond{128, 2};
 constexpr double kTightScale = 1.5;  // of the soft score, in units of the assumed sigma
 // relative to one motion's noise level; above, a mode may be a compromise
 constexpr double kWideScale = 1.15;
 constexpr size_t kLeastMatches = 12;  // of the second motion
-// Of the first kFirst matches, those wrong by this many standard deviations of the first mode's noise are
-// taken to move together if more than kLeastCoherence of them do. Of unrelated wrong matches 3 % do at most,
-// of an object's at least a fifth.
+// Of the first kFirst matches, those that are off by kWrong standard deviations of the first mode's noise
+// move together if more than kLeastCoherence of them do. Of unrelated wrong matches 3 % do on average, of an
+// object's at least a fifth.
 constexpr int kFirst = 128;
-constexpr double kWrong = 3.0, kLeastCoherence = 0.1;
+constexpr double kWrong = 6.0, kLeastCoherence = 0.1;
 // Nats: pays for the search for the second motion and its five parameters, with a margin.
 constexpr double kLeastSplitGain = 40.0;
 
@@ -52,15 +57,23 @@ bool IsRestCoherent(const MotionProblem& problem, const MatchBlocks& matches, co
   return wrong.size() >= kLeastMatches && ComputeCoherence(problem, wrong) > kLeastCoherence;
 }
 
+// Whether the mode explains a quarter of some of the matches, and a dozen.
+bool ExplainsEnough(const MatchBlocks& matches, const Mode& mode, const std::vector<size_t>& some) {
+  const Explanation explanation = Explain(matches, mode);
+  const auto count = static_cast<size_t>(
+      std::ranges::count_if(some, [&](size_t i) { return explanation.probability[i] > 0.5; }));
+  return count >= kLeastMatches && 4 * count >= some.size();
+}
+
 // The best motion of some of the matches at the assumed scale. Samples are ranked and candidates refined at
 // this scale, too: at a wider one, a compromise between two motions would win.
 std::optional<Mode> SearchMotion(const MotionProblem& problem, const MatchBlocks& matches,
                                  const MixturePrior& fixed, const std::vector<size_t>& some,
-                                 RandomStream& rng) {
+                                 const SearchEffort& effort, RandomStream& rng) {
   const MatchBlocks blocks(SelectPart(problem, some));
   CalibratedOptions options;
-  options.max_samples = kSplitSamples;
-  options.num_candidates = kCandidates;
+  options.max_samples = effort.max_samples;
+  options.num_candidates = effort.num_candidates;
   const HypothesisSearch search = SearchHypotheses(blocks, ScoreMatches(blocks), options, rng, kTightScale);
   std::optional<Mode> best;
   for (const ScoredEssential& candidate : search.candidates) {
@@ -114,12 +127,12 @@ std::optional<std::pair<Mode, Mode>> SplitMode(const MotionProblem& problem, con
   fixed.motion = nullptr;  // one of the two is not the camera's
   std::vector<size_t> all(problem.matches.size());
   std::iota(all.begin(), all.end(), size_t{0});
-  std::optional<Mode> first = SearchMotion(problem, matches, fixed, all, rng);
+  std::optional<Mode> first = SearchMotion(problem, matches, fixed, all, kForSplit, rng);
   if (!first) return std::nullopt;
   const Explanation by_first = Explain(matches, *first);
   const std::vector<size_t> rest = Unexplained(by_first);
   if (rest.size() < kLeastMatches) return std::nullopt;
-  std::optional<Mode> second = SearchMotion(problem, matches, fixed, rest, rng);
+  std::optional<Mode> second = SearchMotion(problem, matches, fixed, rest, kForSplit, rng);
   if (!second) return std::nullopt;
   const TwoMotions mix = Mix(by_first, Explain(matches, *second), prior.uniform_density);
   const double of_prior = prior.motion != nullptr ? EvaluatePrior(*prior.motion, mode.pose).cost : 0.0;
@@ -157,8 +170,8 @@ void AddSecondMotion(const MotionProblem& problem, const MatchBlocks& matches, c
   MixturePrior fixed = prior;
   fixed.estimates_scale = false;
   fixed.motion = nullptr;
-  std::optional<Mode> found = SearchMotion(problem, matches, fixed, rest, rng);
-  if (!found) return;
+  std::optional<Mode> found = SearchMotion(problem, matches, fixed, rest, kForSecond, rng);
+  if (!found || !ExplainsEnough(matches, *found, rest)) return;
   Leave(not_of_first, &found->used);
   const bool is_new =
       FitMode(matches, prior, kSplitSteps, &*found) &&
