@@ -34,7 +34,7 @@ class FigureParser(Parser):
         group.add_argument("--highlight", default="", metavar="A,B",
                            help="draw these estimators in colour and the others grey")
         group.add_argument("--no-caption", action="store_true", help="leave out the small print below the figure")
-        group.add_argument("--format", metavar="A,B",
+        group.add_argument("--format", action="append", metavar="A,B",
                            help=f"what to write, of {', '.join(sheet.FORMATS)} (default: png,pdf)")
         group.add_argument("--style", metavar="FILE.toml",
                            help="a file with width, caption, formats, highlight, [labels] and [colors], for all figures of a "
@@ -44,7 +44,7 @@ class FigureParser(Parser):
         options = super().parse_args(arguments, namespace)
         shared, labels = read_style(options.style), dict(map(label_of, options.labels))
         highlight = tuple(filter(None, options.highlight.split(",")))
-        formats = shared.get("formats", ["png", "pdf"]) if options.format is None else names_of("--format", options.format, "pdf")
+        formats = shared.get("formats", ["png", "pdf"]) if options.format is None else names_of("--format", ",".join(options.format), "pdf")
         options.sheet = sheet.Sheet(
             width=self.checked_width(shared.get("width") if options.width is None else options.width),
             labels={**shared.get("labels", {}), **labels}, has_caption=shared.get("caption", True) and not options.no_caption,
