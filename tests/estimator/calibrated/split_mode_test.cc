@@ -148,8 +148,8 @@ ObjectInScene FitObjectInScene(std::uint32_t trial) {
   return {camera, FitFromTruth(SelectPart(random.problem, order), moved)};
 }
 
-// Samples of all matches would lie on the scene in one of a hundred. The search misses 3 of 1,000 such scenes,
-// so that it misses three of twenty with a probability of 3e-5.
+// Samples of all matches would lie on the scene in one of a hundred. The search misses 3 of 1,000 such
+// scenes, so that it misses three of twenty with a probability of 3e-5.
 TEST(AddSecondMotion, FindsTheSceneBesideAnObjectWithMostMatches) {
   int num_found = 0;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
