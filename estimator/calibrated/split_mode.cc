@@ -24,8 +24,8 @@ constexpr double kTightScale = 1.5;  // of the soft score, in units of the assum
 constexpr double kWideScale = 1.15;
 constexpr size_t kLeastMatches = 12;  // of the second motion
 // Of the first kFirst matches, those that are off by kWrong standard deviations of the first mode's noise
-// move together if more than kLeastCoherence of them do. Of unrelated wrong matches 3 % do on average, of an
-// object's at least a fifth.
+// move together if more than kLeastCoherence of them do. Among all matches that an answer did not explain, 0
+// to 5 % do on average, by outlier model, and about a fifth or more beside a moving object.
 constexpr int kFirst = 128;
 constexpr double kWrong = 6.0, kLeastCoherence = 0.1;
 // Nats: pays for the search for the second motion and its five parameters, with a margin.
