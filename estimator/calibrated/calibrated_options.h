@@ -23,7 +23,7 @@ enum class CovarianceKind {
 enum class CalibratedStep {
   kNone,
   kSplit,
-  kSecondMotion,  // the search among the matches that no mode explains (split_mode.h)
+  kSecondMotion,  // the search among the matches that no mode explains (second_motion.h)
   kInfluence,
   kBranches,
   kTwistedPair,

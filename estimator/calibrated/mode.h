@@ -6,6 +6,9 @@
 
 namespace rcme {
 
+// Matches that alone must support a motion beside another one for both to be motions of their own.
+inline constexpr size_t kLeastOfSecondMotion = 12;
+
 // The origin of a mode.
 enum class ModeOrigin {
   kSample,       // a minimal sample

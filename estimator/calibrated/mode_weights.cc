@@ -98,8 +98,8 @@ double ComputePriorEvidence(const MotionPrior& prior, const Mode& mode) {
 }
 
 bool IsSecondMotion(const Contrast& contrast) {
-  constexpr int kLeastMatches = 12;
-  return contrast.num_clearly_a >= kLeastMatches && contrast.num_clearly_b >= kLeastMatches;
+  constexpr int kLeast = kLeastOfSecondMotion;
+  return contrast.num_clearly_a >= kLeast && contrast.num_clearly_b >= kLeast;
 }
 
 const std::array<const char*, kNumSecondMotionTerms> kSecondMotionTermNames = {"number", "extent"};

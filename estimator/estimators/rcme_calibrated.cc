@@ -20,6 +20,7 @@
 #include "estimator/calibrated/noise_choice.h"
 #include "estimator/calibrated/noise_shape.h"
 #include "estimator/calibrated/prior_check.h"
+#include "estimator/calibrated/second_motion.h"
 #include "estimator/calibrated/settle_direction.h"
 #include "estimator/calibrated/split_mode.h"
 #include "estimator/calibrated/upright_search.h"

@@ -7,6 +7,7 @@
 //                    calibrated/upright_search.h       three-point samples too, if gravity is measured
 //   2  modes         calibrated/candidates.h           optima of a mixture likelihood (mixture_fit.h)
 //                    calibrated/split_mode.h           two motions in place of a compromise between them
+//                    calibrated/second_motion.h        adds the motion of matches that no mode explains
 //   3  influence     calibrated/influence.h            discounts matches that determine a motion alone
 //                    calibrated/leverage_branches.h    adds fits without single matches of large influence
 //   4  twisted pair  calibrated/twisted_pair.h         adds the other motion of a plane, opposite directions
