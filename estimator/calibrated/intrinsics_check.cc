@@ -127,4 +127,14 @@ IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer
   return Check<2 * kOfCamera>(problem, answer, explanation);
 }
 
+CalibrationPrior ExceedUsualErrors(CalibrationPrior stated) {
+  const auto exceed = [](double sd, double usual) {
+    return std::sqrt(std::max(sd * sd - usual * usual, 0.0));
+  };
+  stated.focal_sd = exceed(stated.focal_sd, kFocalSd);
+  stated.principal_point_sd_px = exceed(stated.principal_point_sd_px, kPrincipalPointSdPx);
+  stated.distortion_sd = exceed(stated.distortion_sd, kDistortionSd);
+  return stated;
+}
+
 }  // namespace rcme

@@ -21,6 +21,7 @@
 
 #include "estimator/calibrated/explanation.h"
 #include "estimator/motion_problem.h"
+#include "estimator/uncertainty/calibration_prior.h"
 
 namespace rcme {
 
@@ -34,5 +35,9 @@ struct IntrinsicsCheck {
 
 IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer,
                                 const Explanation& explanation);
+
+// What stated errors of the calibration add to the usual ones: the root of the excess of each variance, or 0.
+// The check knows the usual errors: a third of the trials that it was fitted to have them.
+CalibrationPrior ExceedUsualErrors(CalibrationPrior stated);
 
 }  // namespace rcme

@@ -4,6 +4,7 @@
 
 #include "estimator/calibrated/checked_probability.h"
 #include "estimator/calibrated/failure_probability.h"
+#include "estimator/calibrated/intrinsics_check.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -19,15 +20,20 @@ double FindCheckFactor(const ModelCheck& check, const CalibratedOptions& options
   return is_checked ? CovarianceFactor(check) : 1.0;
 }
 
-// How much of the probability within the bounds is left if the intrinsics are uncertain, at least 1e-6.
-// `reach`: the covariance of the answer if they are exact.
-double ComputeLeftByIntrinsics(const JudgedModes& judged, const Mode& mode, const Matrix5d& of_intrinsics,
+// How much of the probability within the bounds is left if the intrinsics are uncertain, at least 1e-6, and
+// beyond what the check knows. `curvature`: InverseOfObserved. `reach`: the covariance of the answer if the
+// intrinsics are exact.
+double ComputeLeftByIntrinsics(const JudgedModes& judged, const Mode& mode, const Matrix5d& curvature,
                                const Matrix5d& reach, RandomStream& rng) {
-  if (judged.options.calibration.IsNone()) return 1.0;
-  const MotionBounds bounds = MakeMotionBounds(judged.options);
+  const CalibratedOptions& options = judged.options;
+  const bool is_checked = options.leave_out != CalibratedStep::kModelCheck;
+  const CalibrationPrior unknown = is_checked ? ExceedUsualErrors(options.calibration) : options.calibration;
+  if (unknown.IsNone()) return 1.0;
+  const Matrix5d of_unknown = IntrinsicsCovariance(judged.problem, unknown, mode, curvature);
+  const MotionBounds bounds = MakeMotionBounds(options);
   RandomStream same = rng;
   const double exact = MassWithin(mode.pose, bounds, mode.pose, reach, same);
-  const double uncertain = MassWithin(mode.pose, bounds, mode.pose, reach + of_intrinsics, rng);
+  const double uncertain = MassWithin(mode.pose, bounds, mode.pose, reach + of_unknown, rng);
   return std::clamp(uncertain / std::max(exact, 1e-6), 1e-6, 1.0);
 }
 
@@ -65,10 +71,10 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
     success += weight * (weak_direction && !weights.is_second_motion[i]
                              ? weak_direction->mass_within
                              : MassWithin(answer.pose, bounds, mode.pose, reach, rng));
-    const Matrix5d of_intrinsics = IntrinsicsCovariance(problem, options, mode, curvature);
+    const Matrix5d of_intrinsics = IntrinsicsCovariance(problem, options.calibration, mode, curvature);
     if (i == weights.answer) {
       const Matrix5d exact = weak_direction ? Matrix5d(Matrix5d::Zero()) : reach;
-      verdict.left_by_intrinsics = ComputeLeftByIntrinsics(judged, mode, of_intrinsics, exact, rng);
+      verdict.left_by_intrinsics = ComputeLeftByIntrinsics(judged, mode, curvature, exact, rng);
       if (weak_direction) of_weak = WidenWeakDirection(judged, of_intrinsics);
     }
     if (spreads != nullptr) (*spreads)[i] = reach + of_intrinsics;

@@ -150,12 +150,11 @@ Matrix5d BoundByUniformMotion(Matrix5d covariance) {
   return bounded.allFinite() ? bounded : U;
 }
 
-Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,
+Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibrationPrior& calibration,
                               const Mode& mode, const Matrix5d& inverse_of_observed) {
-  return CalibrationCovariance(
-      problem, options.calibration, inverse_of_observed, [&](const MotionProblem& changed) {
-        return SumMixtureGradient(MatchBlocks(changed), mode.used, mode.pose, mode.mixture);
-      });
+  return CalibrationCovariance(problem, calibration, inverse_of_observed, [&](const MotionProblem& changed) {
+    return SumMixtureGradient(MatchBlocks(changed), mode.used, mode.pose, mode.mixture);
+  });
 }
 
 }  // namespace rcme

@@ -48,7 +48,7 @@ Matrix5d CovarianceWithPrior(const Matrix5d& covariance_of_matches, const Mode& 
 
 // The covariance that uncertain intrinsics add (uncertainty/calibration_prior.h), by the mixture's
 // likelihood.
-Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibratedOptions& options,
+Matrix5d IntrinsicsCovariance(const MotionProblem& problem, const CalibrationPrior& calibration,
                               const Mode& mode, const Matrix5d& inverse_of_observed);
 
 // Adds the information that every motion has, because rotations and directions are bounded: that of a uniform

@@ -9,7 +9,8 @@ struct ModesVerdict {
   double by_modes = 1.0;             // probability of failure according to the modes alone
   double failure_probability = 1.0;  // after the model check, and with uncertain intrinsics
   double mass_beyond = 0.0;          // weight of the modes within the bounds that lies beyond them
-  // The share of the probability within the bounds that is left if the intrinsics are uncertain.
+  // The share of the probability within the bounds that is left if the intrinsics are more uncertain than
+  // usual (intrinsics_check.h).
   double left_by_intrinsics = 1.0;
   Matrix5d pose_cov = Matrix5d::Zero();
 };

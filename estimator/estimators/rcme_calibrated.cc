@@ -265,7 +265,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (!(weights.of_modes[i] >= kNegligibleWeight)) continue;
       const Matrix5d curvature = InverseOfObserved(matches, modes[i].mode);
       Matrix5d covariance = ComputeModeCovariance(
-          modes[i], curvature, IntrinsicsCovariance(problem, options_, modes[i].mode, curvature),
+          modes[i], curvature, IntrinsicsCovariance(problem, options_.calibration, modes[i].mode, curvature),
           of_matches.checked.check, prior, options_);
       if (of_matches.weak_direction && !weights.is_second_motion[i])
         covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));

@@ -25,8 +25,8 @@ void Undistort(Camera& camera, Eigen::Vector2d Correspondence::*x_px, double k1,
 Parameter FocalParameter(double* focal_sd) {
   return Parameter::Real(
       "focal_sd", focal_sd, {0.0, 0.5}, "",
-      "relative standard deviation; widens the covariance (covariance=robust or rcme_calibrated), raises "
-      "rcme_calibrated's probability of failure");
+      "relative standard deviation; widens the covariance (covariance=robust or rcme_calibrated); one above the "
+      "usual raises rcme_calibrated's probability of failure");
 }
 
 Parameter PrincipalPointParameter(double* principal_point_sd_px) {

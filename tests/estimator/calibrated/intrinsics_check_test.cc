@@ -110,5 +110,17 @@ TEST(IntrinsicsCheck, PlantedDistortionIsSeen) {
   EXPECT_NEAR(log_ratio, 0.0, std::log(2.0));
 }
 
+// Beyond the usual standard deviations of the header, their excess; within them nothing.
+TEST(ExceedUsualErrors, IsTheExcessOfEachVariance) {
+  CalibrationPrior stated{
+      .focal_sd = std::hypot(0.014, 0.03), .principal_point_sd_px = 4.7, .distortion_sd = 0.0};
+  stated.of_pixels1(0, 1) = 2.0;
+  const CalibrationPrior beyond = ExceedUsualErrors(stated);
+  EXPECT_NEAR(beyond.focal_sd, 0.03, 1e-12);
+  EXPECT_NEAR(beyond.principal_point_sd_px, 0.0, 1e-6);
+  EXPECT_EQ(beyond.distortion_sd, 0.0);
+  EXPECT_EQ(beyond.of_pixels1(0, 1), 2.0);
+}
+
 }  // namespace
 }  // namespace rcme

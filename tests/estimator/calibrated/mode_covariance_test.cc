@@ -20,8 +20,8 @@ namespace {
 Matrix5d ComputeSandwich(const FittedMode& f) {
   return SandwichCovariance(f.mode, Explain(f.matches, f.mode), InverseOfObserved(f.matches, f.mode));
 }
-Matrix5d ComputeIntrinsics(const FittedMode& f, const CalibratedOptions& options) {
-  return IntrinsicsCovariance(f.problem, options, f.mode, InverseOfObserved(f.matches, f.mode));
+Matrix5d ComputeIntrinsics(const FittedMode& f, const CalibrationPrior& calibration) {
+  return IntrinsicsCovariance(f.problem, calibration, f.mode, InverseOfObserved(f.matches, f.mode));
 }
 
 // 400 scenes without wrong matches. The sandwich is a little wide for few matches (the greater of two
@@ -159,16 +159,16 @@ TEST(IntrinsicsCovariance, IsThatOfFitsWithOtherIntrinsics) {
       of_points += by_shift * by_shift.transpose();
     }
   }
-  CalibratedOptions options;
-  options.calibration.focal_sd = kFocal;
-  const Matrix5d focal = ComputeIntrinsics(f, options);
+  CalibrationPrior calibration;
+  calibration.focal_sd = kFocal;
+  const Matrix5d focal = ComputeIntrinsics(f, calibration);
   EXPECT_LT((focal - of_focal).norm(), 0.2 * of_focal.norm()) << focal << "\n\n" << of_focal;
-  options = {};
-  options.calibration.principal_point_sd_px = kShiftPx;
-  const Matrix5d points = ComputeIntrinsics(f, options);
+  calibration = {};
+  calibration.principal_point_sd_px = kShiftPx;
+  const Matrix5d points = ComputeIntrinsics(f, calibration);
   EXPECT_LT((points - of_points).norm(), 0.2 * of_points.norm()) << points << "\n\n" << of_points;
-  options.calibration.focal_sd = kFocal;
-  EXPECT_LT((ComputeIntrinsics(f, options) - focal - points).norm(), 1e-9 * points.norm());
+  calibration.focal_sd = kFocal;
+  EXPECT_LT((ComputeIntrinsics(f, calibration) - focal - points).norm(), 1e-9 * points.norm());
   EXPECT_EQ(ComputeIntrinsics(f, {}).norm(), 0.0);
 }
 
@@ -188,10 +188,10 @@ TEST(IntrinsicsCovariance, OfPrincipalPointsInOtherPixels) {
       expected += moved * moved.transpose();
     }
   }
-  CalibratedOptions options;
-  options.calibration.principal_point_sd_px = kShiftPx;
-  options.calibration.of_pixels1 = options.calibration.of_pixels2 = of_pixels;
-  const Matrix5d found = ComputeIntrinsics(f, options);
+  CalibrationPrior calibration;
+  calibration.principal_point_sd_px = kShiftPx;
+  calibration.of_pixels1 = calibration.of_pixels2 = of_pixels;
+  const Matrix5d found = ComputeIntrinsics(f, calibration);
   EXPECT_LT((found - expected).norm(), 0.2 * expected.norm()) << found << "\n\n" << expected;
 }
 
@@ -213,10 +213,10 @@ TEST(IntrinsicsCovariance, OfOneCameraIsOfACommonError) {
     camera->fy *= 1.0 + kFocal;
   }
   const Vector5d moved = MovedBy(f, changed);
-  CalibratedOptions options;
-  options.calibration.focal_sd = kFocal;
+  CalibrationPrior calibration;
+  calibration.focal_sd = kFocal;
   const Matrix5d expected = moved * moved.transpose();
-  EXPECT_LT((ComputeIntrinsics(f, options) - expected).norm(), 0.2 * expected.norm());
+  EXPECT_LT((ComputeIntrinsics(f, calibration) - expected).norm(), 0.2 * expected.norm());
 }
 
 // The formula of the header match by match, of 12 matches, where leverages are great and all axes rest on
