@@ -15,6 +15,11 @@ inline double NoiseScaleAt(const MotionProblem& problem, size_t i) {
   return problem.noise_scale.empty() ? 1.0 : problem.noise_scale[i];
 }
 
+// A noise level of the problem's pixels in those of the images as they were taken, px.
+inline double InImagePixels(const MotionProblem& problem, double sigma_px) {
+  return problem.undistortion ? sigma_px / problem.undistortion->noise_growth : sigma_px;
+}
+
 // Stated standard deviations (any unit, all > 0) divided by their median; empty if empty. Only the ratios
 // matter: the noise level itself is assumed (sigma_px) or estimated.
 std::vector<double> ComputeNoiseScale(std::vector<double> sigmas);
@@ -23,6 +28,7 @@ std::vector<double> ComputeNoiseScale(std::vector<double> sigmas);
 template <typename Indices>
 MotionProblem SelectPart(const MotionProblem& problem, const Indices& which) {
   MotionProblem part{{}, problem.camera1, problem.camera2, problem.sigma_px, {}, problem.prior};
+  part.undistortion = problem.undistortion;
   for (const auto index : which) {
     const auto i = static_cast<size_t>(index);
     part.matches.push_back(problem.matches[i]);

@@ -45,10 +45,22 @@ UndistortedProblem UndistortProblem(const Lens& lens1, const Lens& lens2, Motion
     ratios.push_back(NoiseScaleAt(distorted, i) * found->noise_ratio);
     if (!distorted.match_quality.empty()) problem.match_quality.push_back(distorted.match_quality[i]);
   }
-  problem.sigma_px = distorted.sigma_px * (ratios.empty() ? 1.0 : ComputeMedian(ratios));
+  problem.undistortion = {lens1, lens2, ratios.empty() ? 1.0 : ComputeMedian(ratios)};
+  problem.sigma_px = distorted.sigma_px * problem.undistortion->noise_growth;
   problem.noise_scale = ComputeNoiseScale(std::move(ratios));
   problem.prior = std::move(distorted.prior);
   return undistorted;
+}
+
+void RestoreDistorted(const MotionProblem& problem, const std::vector<size_t>& kept, size_t num_distorted,
+                      MotionEstimate* estimate) {
+  estimate->sigma_estimated_px = InImagePixels(problem, estimate->sigma_estimated_px);
+  estimate->sigma_estimated_sd_px = InImagePixels(problem, estimate->sigma_estimated_sd_px);
+  for (int& inlier : estimate->inliers) inlier = static_cast<int>(kept[static_cast<size_t>(inlier)]);
+  if (estimate->inlier_probabilities.empty()) return;
+  std::vector<double> probabilities(num_distorted, 0.0);
+  for (size_t i = 0; i < kept.size(); ++i) probabilities[kept[i]] = estimate->inlier_probabilities[i];
+  estimate->inlier_probabilities = std::move(probabilities);
 }
 
 }  // namespace rcme

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "estimator/geometry/lens.h"
+#include "estimator/motion_estimate.h"
 #include "estimator/motion_problem.h"
 
 namespace rcme {
@@ -37,12 +38,18 @@ std::optional<UndistortedMatch> UndistortMatch(const Lens& lens1, const Lens& le
 
 struct UndistortedProblem {
   // The pinhole cameras with the lenses' K, and the matches that have rays. sigma_px is that of the match of
-  // median noise; noise_scale is relative to it.
+  // median noise; noise_scale is relative to it. `undistortion` is set if there is a lens.
   MotionProblem problem;
   std::vector<size_t> kept;  // for each match, its index among the distorted ones
 };
 // Converts the problem to pinhole cameras. The matches, sigma_px and noise_scale of `distorted` belong to the
 // distorted images; its cameras are ignored. If both lenses are pinholes, the matches stay unchanged.
 UndistortedProblem UndistortProblem(const Lens& lens1, const Lens& lens2, MotionProblem distorted);
+
+// Makes an estimate of the undistorted problem one of the distorted matches: noise levels in the pixels of
+// the images, inliers and probabilities by the place of a match among all `num_distorted`. A match that has
+// no ray is no inlier, with a probability of 0. `kept` as above.
+void RestoreDistorted(const MotionProblem& problem, const std::vector<size_t>& kept, size_t num_distorted,
+                      MotionEstimate* estimate);
 
 }  // namespace rcme

@@ -106,15 +106,6 @@ Lens MakeCamera(const std::string& model, const std::vector<double>& parameters,
   return MakeNamedLens(model, parameters, {width, height}, model);
 }
 
-// The first row whose pixel no ray reaches.
-std::optional<py::ssize_t> FindUnreached(const Lens& camera, const Array& x_px) {
-  if (camera.model == LensModel::kPinhole) return std::nullopt;
-  for (py::ssize_t i = 0; i < x_px.shape(0); ++i) {
-    if (!Undistort(camera, {x_px.at(i, 0), x_px.at(i, 1)})) return i;
-  }
-  return std::nullopt;
-}
-
 struct ChosenEstimator {
   EstimatorSpec spec;
   std::unique_ptr<MotionEstimator> estimator;
@@ -135,13 +126,20 @@ ChosenEstimator MakeChosen(const std::string& name, const std::string& file, con
   return {specs.front(), Make(specs.front())};
 }
 
-// The undistorted problem; every row must have rays (FindUnreached).
-MotionProblem MakeProblem(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2,
-                          double sigma_px, std::vector<double> noise_scale) {
+UndistortedProblem MakeProblem(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2,
+                               double sigma_px, std::vector<double> noise_scale) {
   MotionProblem problem{{}, {}, {}, sigma_px, std::move(noise_scale)};
   for (py::ssize_t i = 0; i < x1.shape(0); ++i)
     problem.matches.push_back({{x1.at(i, 0), x1.at(i, 1)}, {x2.at(i, 0), x2.at(i, 1)}});
-  return UndistortProblem(camera1, camera2, std::move(problem)).problem;
+  return UndistortProblem(camera1, camera2, std::move(problem));
+}
+
+// The answer to a pair of `num_matches` matches, in terms of these.
+EstimateForBounds Answer(const MotionEstimator& estimator, const UndistortedProblem& pair, size_t num_matches,
+                         const std::vector<FailureBounds>& bounds, std::uint64_t seed) {
+  EstimateForBounds found = AnswerProblem(estimator, pair.problem, bounds, seed);
+  RestoreDistorted(pair.problem, pair.kept, num_matches, &found.estimate);
+  return found;
 }
 
 // Row-major and checked by the package; an empty list means not measured. `rotation`: R, then its covariance,
@@ -180,13 +178,13 @@ py::dict EstimatePair(const Array& x1, const Array& x2, const Lens& camera1, con
                       bool allow_process, const AnglePairs& bounds, double integrity_risk,
                       const std::optional<MotionPrior>& prior, const Functions& functions) {
   const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process, functions);
-  MotionProblem problem = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
-  problem.prior = prior;
+  UndistortedProblem pair = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
+  pair.problem.prior = prior;
   const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
   EstimateForBounds found;
   {
     const py::gil_scoped_release unlocked;
-    found = AnswerProblem(*chosen.estimator, problem, failure_bounds, seed);
+    found = Answer(*chosen.estimator, pair, static_cast<size_t>(x1.shape(0)), failure_bounds, seed);
   }
   py::dict dict = MakeDict(found.estimate);
   dict["protection_levels"] = LevelsAt(found.estimate, integrity_risk);
@@ -248,14 +246,16 @@ class AnswerArrays {
 using GivenPair = std::tuple<Array, Array, Lens, Lens, std::vector<double>>;
 
 std::vector<EstimateForBounds> AnswerOnThreads(const MotionEstimator& estimator,
-                                               const std::vector<MotionProblem>& problems,
+                                               std::span<const GivenPair> pairs,
+                                               const std::vector<UndistortedProblem>& undistorted,
                                                const std::vector<FailureBounds>& bounds, std::uint64_t seed,
                                                int threads) {
-  std::vector<EstimateForBounds> found(problems.size());
+  std::vector<EstimateForBounds> found(pairs.size());
   RunStoppable([&] {
-    ForEachIndex(std::ssize(problems), threads, [&](std::int64_t i) {
+    ForEachIndex(std::ssize(pairs), threads, [&](std::int64_t i) {
       const auto place = static_cast<size_t>(i);
-      found[place] = AnswerProblem(estimator, problems[place], bounds, seed);
+      const auto num_matches = static_cast<size_t>(std::get<0>(pairs[place]).shape(0));
+      found[place] = Answer(estimator, undistorted[place], num_matches, bounds, seed);
     });
     if (IsStopRequested()) throw Stopped("stopped");
   });
@@ -271,11 +271,11 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
   constexpr size_t kNumTogether = 2'000;  // number of pairs whose full answers are in memory at a time
   for (size_t begin = 0; begin < pairs.size(); begin += kNumTogether) {
     const std::span block = std::span(pairs).subspan(begin, std::min(kNumTogether, pairs.size() - begin));
-    std::vector<MotionProblem> problems;
+    std::vector<UndistortedProblem> undistorted;
     for (const auto& [x1, x2, camera1, camera2, noise_scale] : block)
-      problems.push_back(MakeProblem(x1, x2, camera1, camera2, sigma_px, noise_scale));
+      undistorted.push_back(MakeProblem(x1, x2, camera1, camera2, sigma_px, noise_scale));
     const std::vector<EstimateForBounds> found =
-        AnswerOnThreads(*chosen.estimator, problems, failure_bounds, seed, threads);
+        AnswerOnThreads(*chosen.estimator, block, undistorted, failure_bounds, seed, threads);
     for (size_t i = 0; i < found.size(); ++i) arrays.Set(static_cast<py::ssize_t>(begin + i), found[i]);
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   }
@@ -287,7 +287,7 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
 }  // namespace
 
 void BindEstimate(py::module_& module) {
-  py::class_<Lens>(module, "Camera").def(py::init(&MakeCamera)).def("find_unreached", &FindUnreached);
+  py::class_<Lens>(module, "Camera").def(py::init(&MakeCamera));
   py::class_<MotionPrior>(module, "MotionPrior").def(py::init(&MakePrior));
   module.def("estimate", &EstimatePair);
   module.def("estimate_many", &EstimateMany);

@@ -98,10 +98,10 @@ std::string DescribeReason(const MotionEstimate& e, const ModelCheck& check) {
 
 }  // namespace
 
-std::string DescribeAnswer(const MotionEstimate& e, const ModelCheck& check) {
+std::string DescribeAnswer(const MotionEstimate& e, double sigma_px, const ModelCheck& check) {
   return fmt::format("{} of {} matches agree, sigma {:.2g} px; wrong with probability {}{}", e.inliers.size(),
-                     e.inlier_probabilities.size(), e.sigma_estimated_px,
-                     ProbabilityText(e.failure_probability), DescribeReason(e, check));
+                     e.inlier_probabilities.size(), sigma_px, ProbabilityText(e.failure_probability),
+                     DescribeReason(e, check));
 }
 
 }  // namespace rcme

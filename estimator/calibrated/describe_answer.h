@@ -14,7 +14,8 @@ namespace rcme {
 Doubt FindDoubt(const std::vector<ExplainedMode>& modes, const ModeWeights& weights,
                 const ModesVerdict& verdict);
 
-// One sentence. `estimate` needs all fields but its message.
-std::string DescribeAnswer(const MotionEstimate& estimate, const ModelCheck& check);
+// One sentence. `estimate` needs all fields but its message; `sigma_px`: its noise level in the pixels of the
+// images.
+std::string DescribeAnswer(const MotionEstimate& estimate, double sigma_px, const ModelCheck& check);
 
 }  // namespace rcme

@@ -318,7 +318,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     const ModeWeights reweighed = ReweighModes(weights, verdict);
     FillOtherModes(modes, reweighed, &estimate);
     estimate.doubt = FindDoubt(modes, weights, verdict);
-    estimate.message = DescribeAnswer(estimate, check);
+    estimate.message = DescribeAnswer(estimate, InImagePixels(problem, estimate.sigma_estimated_px), check);
     if (estimate.failure_probability > options_.max_failure_probability) {
       estimate.status = MotionStatus::kTooUncertain;
     } else if (options_.covariance == CovarianceKind::kRobust) {

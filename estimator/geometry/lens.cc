@@ -98,8 +98,6 @@ Eigen::Matrix2d DistortJacobian(const Lens& lens, const Eigen::Vector2d& ray) {
   return FisheyeJacobian(lens.k, ray);
 }
 
-constexpr double kLargestRay = 10.0;  // focal lengths from the axis: 84.3 deg
-
 // Whether the distorted radius grows all the way from the centre to `ray`. If so, this is the first ray that
 // reaches its pixel.
 bool IsOnFirstBranch(const Lens& lens, const Eigen::Vector2d& ray) {

@@ -36,8 +36,11 @@ Lens MakeLens(const Camera& camera, LensModel model, const std::vector<double>& 
 Eigen::Vector2d ProjectThrough(const Lens& lens, const Eigen::Vector2d& ray);
 Eigen::Matrix2d ProjectThroughJacobian(const Lens& lens, const Eigen::Vector2d& ray);
 
-// Whether the lens images this ray at its projection: the ray is less than ten focal lengths (84.3 deg) from
-// the axis, and not beyond the fold of the distortion, where the image radius stops growing.
+// A ray is at most so many focal lengths from the axis: 84.3 deg.
+inline constexpr double kLargestRay = 10.0;
+
+// Whether the lens images this ray at its projection: the ray is less than kLargestRay from the axis, and not
+// beyond the fold of the distortion, where the image radius stops growing.
 bool IsImaged(const Lens& lens, const Eigen::Vector2d& ray);
 
 // Pixel of the same ray in a pinhole camera with the lens's K. nullopt if no ray that IsImaged reaches this

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "estimator/loop_inspection.h"
+#include "estimator/undistortion.h"
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
@@ -107,6 +108,14 @@ std::vector<std::string> ListFiles(const std::vector<std::string>& arguments) {
   return files;
 }
 
+// A pair of images as its file has it.
+struct ReadPair {
+  TrialData data = {};
+  double seconds_between = kNaN;
+  std::vector<size_t> rows;  // of the matches in a file with lenses (match_file.h)
+  size_t num_rows = 0;
+};
+
 // Reads pairs and estimates their motions.
 class Answerer {
  public:
@@ -124,27 +133,36 @@ class Answerer {
   const MotionEstimator& estimator() const { return *estimator_; }
 
   // Throws InputError (match_file.h). `doubts`: about the file's cameras.
-  TrialData Read(const std::string& path, std::vector<CameraDoubt>* doubts, double* seconds_between) const {
+  ReadPair Read(const std::string& path, std::vector<CameraDoubt>* doubts) const {
     const bool is_input = path == kStandardInput;
     MatchFile file = is_input ? ReadMatchesFromInput(given_) : ReadMatchFile(path, given_);
     *doubts = file.doubts;
-    *seconds_between = file.seconds_between;
-    TrialData data;
+    ReadPair pair{.seconds_between = file.seconds_between, .rows = file.rows, .num_rows = file.num_rows};
+    TrialData& data = pair.data;
     data.origin = file.path;
     data.truth.cam2_from_cam1_true = file.cam2_from_cam1_true;
     data.truth.sd = file.truth_sd;
     data.problem = MakeMotionProblem(std::move(file), arguments_.sigma_px);
     if (noise_) data.problem = ApplyNoise(std::move(data.problem), *noise_, data.origin);
-    return data;
+    return pair;
   }
 
-  PairAnswer Answer(const TrialData& given, double seconds_between) const {
+  PairAnswer Answer(const ReadPair& pair) const {
+    PairAnswer answer = AnswerMatches(pair);
+    if (!pair.data.problem.undistortion) return answer;
+    RestoreDistorted(pair.data.problem, pair.rows, pair.num_rows, &answer.estimate);
+    answer.num_left_out = static_cast<int>(pair.num_rows - pair.rows.size());
+    return answer;
+  }
+
+ private:
+  PairAnswer AnswerMatches(const ReadPair& pair) const {
     PairAnswer answer;
-    TrialData data = given;
+    TrialData data = pair.data;
     EstimateForBounds found = Ask(data.problem);
     if (noise_ && RemovesReadout(*noise_) && found.estimate.status == MotionStatus::kOk) {
-      data.problem =
-          CorrectReadout(std::move(data.problem), found.estimate.cam2_from_cam1, *noise_, seconds_between);
+      data.problem = CorrectReadout(std::move(data.problem), found.estimate.cam2_from_cam1, *noise_,
+                                    pair.seconds_between);
       found = Ask(data.problem);
     }
     if (noise_) WidenCovariance(data.problem, *noise_, HasRobustCovariance(spec_), &found.estimate);
@@ -162,7 +180,6 @@ class Answerer {
     return answer;
   }
 
- private:
   EstimateForBounds Ask(const MotionProblem& problem) const {
     return AnswerProblem(*estimator_, problem, bounds_, static_cast<std::uint64_t>(arguments_.seed));
   }
@@ -196,9 +213,7 @@ void PrintCaution(const LoopInspection& inspection, const MotionProblem& problem
 FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
   FileAnswer file{.path = path};
   try {
-    double seconds_between = kNaN;
-    const TrialData data = answerer.Read(path, &file.doubts, &seconds_between);
-    file.answer = answerer.Answer(data, seconds_between);
+    file.answer = answerer.Answer(answerer.Read(path, &file.doubts));
   } catch (const InputError& error) {
     file.error = error.what();
   }
@@ -215,12 +230,11 @@ void PrintJsonLine(const FileAnswer& file, const AnswerTerms& terms) {
 
 void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, const std::string& path) {
   FileAnswer file{.path = path};
-  double seconds_between = kNaN;
-  const TrialData data = answerer.Read(path, &file.doubts, &seconds_between);
+  const ReadPair pair = answerer.Read(path, &file.doubts);
   CameraWarnings warnings;
   warnings.Add(file.doubts);
   warnings.Print();
-  file.answer = answerer.Answer(data, seconds_between);
+  file.answer = answerer.Answer(pair);
   const AnswerTerms terms = answerer.terms();
   if (arguments.format == kJsonLines) {
     PrintJsonLine(file, terms);
@@ -231,11 +245,11 @@ void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, con
   }
   const LoopInspection* const inspection = FindInspection(answerer.estimator());
   if (arguments.format == "table" && inspection && file.answer.estimate.status == MotionStatus::kOk)
-    PrintCaution(*inspection, data.problem, arguments.seed);
+    PrintCaution(*inspection, pair.data.problem, arguments.seed);
   // A refusal because of what the file holds is bad input; a refusal by the estimator's own tests is its
   // answer.
   if (IsBadInput(file.answer.estimate.status))
-    throw InputError(fmt::format("{}: {}", data.origin, file.answer.estimate.message));
+    throw InputError(fmt::format("{}: {}", pair.data.origin, file.answer.estimate.message));
 }
 
 // Processes every file even if others fail; the program fails at the end if any file did.

@@ -24,7 +24,7 @@ void AddIntrinsics(const std::string& number, const Camera& camera, Settings* se
 
 Settings IntrinsicsIn(const std::string& path) {
   const MatchFile file = ReadMatchFile(path);
-  if (file.had_lens) {
+  if (file.undistortion) {
     throw InputError(fmt::format(
         "{}: camera1, camera2: a lens is not allowed here; give K, or a study with cameras: radtan "
         "or fisheye",

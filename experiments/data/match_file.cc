@@ -177,32 +177,8 @@ void ReadScores(const MatchHeader& header, const MatchRows& rows, MatchFile* fil
   file->scores = std::move(*scores);
 }
 
-// Explains why a match cannot be undistorted.
-std::string DescribeLoss(const Lens& lens1, const Lens& lens2, const Correspondence& match) {
-  const auto describe = [](int camera, const Eigen::Vector2d& x_px) {
-    return fmt::format("no ray of camera {} reaches ({}, {}) px, by the lens that is stated", camera,
-                       x_px.x(), x_px.y());
-  };
-  if (!Undistort(lens1, match.x1_px)) return describe(1, match.x1_px);
-  if (!Undistort(lens2, match.x2_px)) return describe(2, match.x2_px);
-  return "the lenses that are stated magnify its noise beyond all numbers, or to nothing";
-}
-
-// Throws InputError that names the row of a match without rays.
-void UndistortMatches(const Lens& lens1, const Lens& lens2, const MatchRows& rows, MatchFile* file) {
-  if (lens1.model == LensModel::kPinhole && lens2.model == LensModel::kPinhole) return;
-  file->had_lens = true;
-  const size_t n = file->matches.size();
-  UndistortedProblem undistorted = UndistortProblem(
-      lens1, lens2, {file->matches, {}, {}, 1.0, ComputeNoiseScale(std::move(file->sigma_px))});
-  for (size_t i = 0; i < n && undistorted.kept.size() < n; ++i) {
-    if (i < undistorted.kept.size() && undistorted.kept[i] == i) continue;
-    throw InputError(fmt::format("{}: {}; leave the match out", rows.Place(i),
-                                 DescribeLoss(lens1, lens2, file->matches[i])));
-  }
-  file->matches = std::move(undistorted.problem.matches);
-  file->sigma_px = std::move(undistorted.problem.noise_scale);
-  file->noise_growth = undistorted.problem.sigma_px;
+double FindNoiseGrowth(const MatchFile& file) {
+  return file.undistortion ? file.undistortion->noise_growth : 1.0;
 }
 
 MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCameras& given) {
@@ -229,7 +205,9 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.camera1 = lens1.camera;
   file.camera2 = lens2.camera;
   file.doubts = FindHeaderDoubts(header, file, given);
-  UndistortMatches(lens1, lens2, rows, &file);
+  ReadScores(header, rows, &file);
+  UndistortMatches(
+      lens1, lens2, [&](size_t i) { return rows.Place(i); }, &file);
   file.cam2_from_cam1_true = ReadTruePose(header);
   file.truth_sd = ReadTruthSd(header);
   file.baseline = ReadBaseline(header);
@@ -237,7 +215,6 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.assumed_sigma_px = ReadAssumedSigma(header);
   file.seconds_between = ReadSecondsBetween(header);
   file.prior = ReadPrior(header);
-  ReadScores(header, rows, &file);
   file.scene = ReadScene(header);
   if (header.Has("image1")) file.image1 = header.Text("image1");
   if (header.Has("image2")) file.image2 = header.Text("image2");
@@ -254,16 +231,40 @@ MatchFile ReadMatchesFromInput(const GivenCameras& given) {
   return ReadMatches("standard input", GzipLines::OfStandardInput(), given);
 }
 
+void UndistortMatches(const Lens& lens1, const Lens& lens2, const std::function<std::string(size_t)>& place,
+                      MatchFile* file) {
+  if (lens1.model == LensModel::kPinhole && lens2.model == LensModel::kPinhole) return;
+  file->num_rows = file->matches.size();
+  MotionProblem distorted{
+      std::move(file->matches), {}, {}, 1.0, ComputeNoiseScale(std::move(file->sigma_px))};
+  distorted.match_quality = std::move(file->scores);
+  UndistortedProblem undistorted = UndistortProblem(lens1, lens2, std::move(distorted));
+  file->rows = std::move(undistorted.kept);
+  file->matches = std::move(undistorted.problem.matches);
+  file->sigma_px = std::move(undistorted.problem.noise_scale);
+  file->scores = std::move(undistorted.problem.match_quality);
+  file->undistortion = undistorted.problem.undistortion;
+  const size_t num_lost = file->num_rows - file->rows.size();
+  if (num_lost == 0) return;
+  size_t first = 0;
+  while (first < file->rows.size() && file->rows[first] == first) ++first;
+  const std::string others = num_lost > 1 ? fmt::format(" and {} more rows", num_lost - 1) : "";
+  file->doubts.push_back({place(first) + others,
+                          "a match is left out if its lens has no ray for one of its points; rays are taken "
+                          "up to 84.3 deg from the axis"});
+}
+
 MotionProblem MakeMotionProblem(MatchFile file, std::optional<double> sigma_px) {
   if (file.better_score == BetterScore::kLower)
     for (double& score : file.scores) score = -score;
   return {std::move(file.matches),
           file.camera1,
           file.camera2,
-          sigma_px.value_or(file.assumed_sigma_px.value_or(kUsualSigmaPx)) * file.noise_growth,
+          sigma_px.value_or(file.assumed_sigma_px.value_or(kUsualSigmaPx)) * FindNoiseGrowth(file),
           ComputeNoiseScale(std::move(file.sigma_px)),
           file.prior,
-          std::move(file.scores)};
+          std::move(file.scores),
+          file.undistortion};
 }
 
 void WriteMatchFile(const MatchFile& file, const std::string& path) {
@@ -288,7 +289,7 @@ void WriteMatchFile(const MatchFile& file, const std::string& path) {
   }
   if (file.baseline > 0.0) text += fmt::format("# baseline: {}\n", file.baseline);
   if (file.assumed_sigma_px)
-    text += fmt::format("# sigma_px: {}\n", *file.assumed_sigma_px * file.noise_growth);
+    text += fmt::format("# sigma_px: {}\n", *file.assumed_sigma_px * FindNoiseGrowth(file));
   if (file.noise_level != 1.0) text += fmt::format("# noise_level: {}\n", file.noise_level);
   if (file.seconds_between > 0.0) text += fmt::format("# seconds_between: {}\n", file.seconds_between);
   if (file.prior) text += FormatPrior(*file.prior);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -64,9 +65,10 @@ struct MatchFile {
   std::optional<TruthSd> truth_sd;
   std::string image1, image2;    // empty: not stated
   std::vector<double> sigma_px;  // per match; empty: the file has no such column
-  bool had_lens = false;         // matches are undistorted; camera1 and camera2 are pinholes
-  // Noise of the median match relative to that before undistortion.
-  double noise_growth = 1.0;
+  // Of images with lens distortion: matches are undistorted, camera1 and camera2 are pinholes.
+  std::optional<Undistortion> undistortion = {};
+  std::vector<size_t> rows = {};  // of the matches among all in the file; empty: the file has no other
+  size_t num_rows = 0;            // in the file, with those that are left out
   double baseline = std::numeric_limits<double>::quiet_NaN();         // NaN: not stated
   std::optional<double> assumed_sigma_px = {};                        // the header sigma_px
   double noise_level = 1.0;                                           // of a template
@@ -96,13 +98,18 @@ using GivenCameras = std::optional<CamerasOfOption>;
 //
 // Matches of images with lens distortion are undistorted. The result has the matches of pinhole cameras with
 // the same K, and sigma_px is the noise of each match there relative to the others
-// (estimator/undistortion.h). A match at a pixel that no ray reaches is an error, too.
+// (estimator/undistortion.h). A match at a pixel that no ray reaches is left out, and `doubts` says so.
 //
 // If the intrinsics are given, the file must not have any. If it does not state the image size either, that
 // is twice the principal point, or more if that does not contain all points.
 MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given = std::nullopt);
 // The same from standard input; the path of the result is "standard input".
 MatchFile ReadMatchesFromInput(const GivenCameras& given = std::nullopt);
+
+// Undistorts the matches of a file that are as its images have them, with sigma_px and scores. Those without
+// rays are left out; `place` names a row for the doubts of the file.
+void UndistortMatches(const Lens& lens1, const Lens& lens2, const std::function<std::string(size_t)>& place,
+                      MatchFile* file);
 
 // Returns the problem for estimators: the matches and cameras of a file, the noise level assumed for the
 // images as they were taken (`sigma_px`, or else that of the file, or else kUsualSigmaPx), each match's

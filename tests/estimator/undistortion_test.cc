@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "estimator/estimators/rcme_calibrated.h"
+#include "estimator/noise_scale.h"
 #include "simulator/noise/noise_laws.h"
 #include "simulator/observe.h"
 #include "simulator/scene_generator.h"
@@ -36,6 +37,31 @@ TEST(UndistortMatch, GivesTheMeanSquareOfBothImages) {
   EXPECT_DOUBLE_EQ(std::pow(found->noise_ratio, 2), 0.5 * (area1 + area2));
   EXPECT_GT(found->noise_ratio, 1.0);
   EXPECT_EQ(UndistortMatch(kNoLens, kNoLens, match)->noise_ratio, 1.0);
+}
+
+// Of 20 matches of which the second has no ray: what is estimated of the others, in their places.
+TEST(RestoreDistorted, PutsAnswersInTheirPlaces) {
+  MotionProblem distorted;
+  distorted.sigma_px = 0.5;
+  for (int i = 0; i < 20; ++i)
+    distorted.matches.push_back({{200.0 + 10.0 * i, 300.0}, {250.0 + 10.0 * i, 200.0}});
+  distorted.matches[1].x1_px = {-5000.0, 240.0};
+  const auto [problem, kept] = UndistortProblem(kFisheye, kFisheye, distorted);
+  ASSERT_EQ(kept.size(), 19U);
+  ASSERT_TRUE(problem.undistortion.has_value());
+  EXPECT_EQ(InImagePixels(problem, problem.sigma_px), 0.5);
+  EXPECT_GT(problem.sigma_px, 0.5);
+  MotionEstimate estimate;
+  estimate.inliers = {0, 1, 18};
+  estimate.inlier_probabilities.assign(19, 0.5);
+  estimate.sigma_estimated_px = 2.0 * problem.sigma_px;
+  RestoreDistorted(problem, kept, 20, &estimate);
+  EXPECT_EQ(estimate.inliers, (std::vector<int>{0, 2, 19}));
+  ASSERT_EQ(estimate.inlier_probabilities.size(), 20U);
+  EXPECT_EQ(estimate.inlier_probabilities[1], 0.0);
+  EXPECT_EQ(estimate.inlier_probabilities[19], 0.5);
+  EXPECT_DOUBLE_EQ(estimate.sigma_estimated_px, 1.0);
+  EXPECT_FALSE(UndistortProblem(kNoLens, kNoLens, distorted).problem.undistortion);
 }
 
 // Noise of .3 px in the distorted image: the square root of the determinant of 20,000 undistorted points'

@@ -292,6 +292,7 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
                {"num_matches", record.num_matches},
                {"num_inliers", record.num_inliers},
                {"failed_by_kappa", nullptr}};
+  if (answer.num_left_out > 0) json["num_left_out"] = answer.num_left_out;
   if (answer.has_prior) {
     json["prior"] = Name(estimate.prior);
     json["prior_p_value"] = JsonNumber(estimate.prior_p_value);

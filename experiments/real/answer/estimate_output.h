@@ -31,6 +31,7 @@ struct PairAnswer {
   // Of errors that the covariance does not have; empty if it has some, or without a motion.
   std::vector<CalibrationEffect> calibration_effects = {};
   bool has_prior = false;  // the problem had a prior
+  int num_left_out = 0;    // matches of the file that have no ray (estimator/undistortion.h)
 };
 
 // Formats the motion, its uncertainty and its evidence; for a refusal the reason and what to try.

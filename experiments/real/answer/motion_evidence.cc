@@ -50,7 +50,7 @@ MotionEvidence ComputeEvidence(const MotionProblem& problem, const MotionEstimat
   MotionEvidence evidence;
   evidence.num_matches = static_cast<int>(problem.matches.size());
   evidence.num_inliers = static_cast<int>(inliers.matches.size());
-  evidence.sigma_assumed_px = problem.sigma_px;
+  evidence.sigma_assumed_px = InImagePixels(problem, problem.sigma_px);
   evidence.sigma_px = evidence.sigma_sd_px = kNaN;
   evidence.parallax_median_deg = evidence.parallax_to_noise = kNaN;
   evidence.parallax_share = evidence.planar_share = kNaN;
@@ -66,6 +66,8 @@ MotionEvidence ComputeEvidence(const MotionProblem& problem, const MotionEstimat
   const TwoViewFits fits = FitTwoViewModels(inliers, rng);
   evidence.parallax_share = 1.0 - ComputeInlierShare(fits.rotation, TwoViewModel::kRotation);
   evidence.planar_share = ComputeInlierShare(fits.homography, TwoViewModel::kHomography);
+  evidence.sigma_px = InImagePixels(problem, evidence.sigma_px);
+  evidence.sigma_sd_px = InImagePixels(problem, evidence.sigma_sd_px);
   return evidence;
 }
 

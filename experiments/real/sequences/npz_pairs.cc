@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "estimator/problem_check.h"
-#include "estimator/undistortion.h"
 #include "experiments/data/camera_plausibility.h"
 #include "experiments/real/sequences/layout_files.h"
 #include "experiments/real/sequences/listed_pairs.h"
@@ -140,7 +139,8 @@ class NpzPairs : public ListedPairs {
     FillMatches(npz, &file);
     file.camera1 = CameraOfSize(file.matches, &Correspondence::x1_px);
     file.camera2 = CameraOfSize(file.matches, &Correspondence::x2_px);
-    UndistortNpzMatches(&file);
+    UndistortMatches(
+        lens_, lens_, [&](size_t row) { return fmt::format("{}: match {}", file.path, row); }, &file);
     return listed;
   }
 
@@ -169,21 +169,6 @@ class NpzPairs : public ListedPairs {
     camera.width = size[0];
     camera.height = size[1];
     return camera;
-  }
-
-  // Matches without rays are left out together with their scores.
-  void UndistortNpzMatches(MatchFile* file) const {
-    if (lens_.model == LensModel::kPinhole) return;
-    UndistortedProblem undistorted =
-        UndistortProblem(lens_, lens_, {std::move(file->matches), {}, {}, 1.0, {}});
-    file->had_lens = true;
-    file->matches = std::move(undistorted.problem.matches);
-    file->sigma_px = std::move(undistorted.problem.noise_scale);
-    file->noise_growth = undistorted.problem.sigma_px;
-    if (!file->better_score) return;
-    std::vector<double> scores;
-    for (const size_t i : undistorted.kept) scores.push_back(file->scores[i]);
-    file->scores = std::move(scores);
   }
 
   Lens lens_;

@@ -23,7 +23,7 @@ MotionEstimate EstimateWith(Doubt doubt) {
   return estimate;
 }
 std::string Describe(Doubt doubt, const ModelCheck& check = {}) {
-  return DescribeAnswer(EstimateWith(doubt), check);
+  return DescribeAnswer(EstimateWith(doubt), 0.5, check);
 }
 
 TEST(DescribeAnswer, SaysHowManyMatchesAgreeAndHowSureItIs) {
@@ -45,9 +45,10 @@ TEST(DescribeAnswer, AnotherMotionThatExplainsNoMoreIsSaidToExplainAsMuch) {
   MotionEstimate estimate = EstimateWith(Doubt::kOtherMotion);
   estimate.other_modes.resize(1);
   estimate.other_modes[0].explained_share = 0.25;
-  EXPECT_THAT(DescribeAnswer(estimate, {}), HasSubstr("another motion explains 25 % more of the matches"));
+  EXPECT_THAT(DescribeAnswer(estimate, 0.5, {}),
+              HasSubstr("another motion explains 25 % more of the matches"));
   estimate.other_modes[0].explained_share = 0.0;
-  EXPECT_THAT(DescribeAnswer(estimate, {}), HasSubstr("another motion explains the matches as well"));
+  EXPECT_THAT(DescribeAnswer(estimate, 0.5, {}), HasSubstr("another motion explains the matches as well"));
 }
 
 TEST(DescribeAnswer, TheModelsDoubtIsTheOneThatTheCheckFound) {
