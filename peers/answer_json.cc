@@ -153,6 +153,11 @@ AnswerLine AnswerFromJson(std::string_view line) {
     if (!json.is_object()) Fail(fmt::format("{} is no JSON object", Quoted(line.substr(0, 80))));
     if (const auto id = json.find("id"); id != json.end() && !id->is_null()) read.id = TextIn(*id, "id");
     read.answer = AnswerIn(json);
+  } catch (const Json::parse_error& error) {
+    read.fault = fmt::format(
+        "{} is not a JSON object on one line: byte {} (NaN and Infinity are no JSON; other "
+        "output belongs on standard error)",
+        Quoted(line.substr(0, 80)), error.byte);
   } catch (const Json::exception&) {
     read.fault = fmt::format("{} is not a JSON object on one line (other output belongs on standard error)",
                              Quoted(line.substr(0, 80)));

@@ -39,7 +39,7 @@ py::list Estimators() {
 
 PYBIND11_MODULE(_rcme, module) {
   FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres reports through its summary
-  NameProgram("rcme_python");
+  NameProgram("rcme");
   AddPeers();
   AddOutsideEstimators();
   AddPythonEstimator();

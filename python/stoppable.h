@@ -16,7 +16,7 @@ class StopShared {
  public:
   StopShared() {
     const std::scoped_lock lock(mutex_);
-    if (num_users_++ == 0) stop_.emplace();
+    if (num_users_++ == 0) stop_.emplace(2);  // a session of Python is dear: only the third ends it
   }
   ~StopShared() {
     const std::scoped_lock lock(mutex_);

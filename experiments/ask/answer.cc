@@ -131,7 +131,8 @@ std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& su
                       FindEstimate(summary, label, "mean_time_ms").value,
                       FindEstimate(of_question, label, kErrorMeasure).value,
                       FindEstimate(summary, label, "failure_probability").n.value_or(0) > 0,
-                      DescribeInlierThreshold(estimator.name, estimator.options, question)});
+                      DescribeInlierThreshold(estimator.name, estimator.options, question),
+                      FindEstimate(summary, label, "nees_coverage").value});
   }
   std::vector<Comparison> comparisons;
   for (const AskedEstimator& estimator : ranked)

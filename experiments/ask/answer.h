@@ -57,6 +57,7 @@ struct AskedEstimator {
   double median_error_deg = kNaN;  // median of max(rotation error, direction error); NaN: unknown
   bool states_p = false;           // the probability of failure of its answers
   InlierThreshold inlier_threshold;
+  double coverage = kNaN;  // of its 95 % region; NaN: unknown
 };
 
 // The difference between the two best estimators, from the same trials.

@@ -35,7 +35,8 @@ std::string JudgeStated(const Estimate& measured, double stated, double margin) 
   if (interval.upper < stated) return "too pessimistic";
   if (interval.lower > stated) return "too sure";
   const bool is_right = DecideEquivalence(interval, Around(stated, margin)) == Verdict::kHolds;
-  return is_right ? fmt::format("right to within {:g} %", 100.0 * margin) : "undecided";
+  return is_right ? fmt::format("failures are within {:g} percentage points of it", 100.0 * margin)
+                  : "undecided";
 }
 
 bool StatesBest(const Answer& a) { return a.stating == a.best.label; }
@@ -172,8 +173,13 @@ std::string DescribeCoverage(const Answer& a) {
   if (!a.has_direction) return "coverage is of rotation and direction, and the motion has no direction";
   const std::string sharpness = a.sharpness.IsKnown() ? "; " + DescribeSharpness(a.sharpness) : "";
   if (std::isnan(a.coverage.value)) return "coverage of " + a.best.label + " is not known" + sharpness;
-  return fmt::format("the 95 % region of {} contains the truth in {}: {}{}", a.best.label,
-                     FormatEstimate(a.coverage, kPercent), DescribeAskedVerdict(a), sharpness);
+  std::vector<std::string> others;
+  for (const AskedEstimator& other : a.alike)
+    if (!std::isnan(other.coverage))
+      others.push_back(fmt::format("that of {} in {:.0f} %", other.label, 100.0 * other.coverage));
+  return fmt::format("the 95 % region of {} contains the truth in {}: {}{}{}{}", a.best.label,
+                     FormatEstimate(a.coverage, kPercent), DescribeAskedVerdict(a), sharpness,
+                     others.empty() ? "" : "; ", fmt::join(others, ", "));
 }
 
 // What the simulated estimators are told rightly, and so the answer takes for granted.

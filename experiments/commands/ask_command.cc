@@ -40,6 +40,15 @@ struct AskArguments {
 
 std::string ResultPath(const AskArguments& arguments) { return arguments.out + "/run.sqlite"; }
 
+// Throws InputError if the folder holds a study that no earlier call has run.
+void RequireOwnStudy(const AskArguments& arguments) {
+  const std::string path = arguments.out + "/study.yaml";
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::exists(ResultPath(arguments), ignored))
+    throw InputError(
+        fmt::format("--out: {} is there already, without a run.sqlite; give another folder", path));
+}
+
 // Throws InputError if the simulator cannot make the question's problems, before anything is written.
 void RequireSimulable(const AskArguments& arguments) {
   const std::string path = arguments.out + "/study.yaml";
@@ -110,6 +119,7 @@ void RunAsk(AskArguments arguments) {
   ReadTexts(arguments.texts, &arguments.question);
   CheckOutliers(arguments.question);
   if (arguments.out.empty()) arguments.out = MakeFolderName(arguments.question);
+  RequireOwnStudy(arguments);
   RequireSimulable(arguments);
   MakeResultFolder(arguments.out);
   RunQuestion(arguments);
@@ -195,7 +205,8 @@ Examples:
       ->transform(PercentAsShare())
       ->capture_default_str();
   command
-      ->add_option("--within", arguments->within, "time that it may take (30s, 2m, 1h); at least 50 trials")
+      ->add_option("--within", arguments->within,
+                   "time that it may take, by that of its first trials (30s, 2m, 1h); at least 50 trials")
       ->check(ExplainDuration)
       ->capture_default_str();
   command->add_option("--trials", arguments->trials, "so many trials, whatever time they take")

@@ -147,6 +147,7 @@ void Export(const ExportArguments& arguments) {
                                  arguments.study, plan.NumTrials(), kMaxTrials));
   }
   const fs::path folder = arguments.out;
+  CheckIsNoInput((folder / "study.yaml").string(), {arguments.study});
   MakeResultFolder((folder / "matches").string());
   const std::vector<std::string> ids = ExportTrials(plan, arguments.threads, folder);
   RemoveOthers(folder, {ids.begin(), ids.end()}, !plan.lock.empty());

@@ -5,6 +5,7 @@
 
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
+#include "experiments/run/store/distinct_trials.h"
 #include "experiments/statistics/forecast_output.h"
 
 namespace rcme {
@@ -44,6 +45,7 @@ Examples:
   AddFormatOption(command, &arguments->format);
   command->add_option("-o,--out", arguments->out, "write here instead of standard output");
   command->callback([arguments] {
+    RequireDistinctTrials(arguments->runs);
     std::vector<ResultStore> runs;
     std::vector<std::string> studies;
     for (const std::string& path : arguments->runs) {

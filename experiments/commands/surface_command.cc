@@ -11,6 +11,7 @@
 #include "experiments/core/files/yaml_input.h"
 #include "experiments/core/table/read_csv_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/run/store/distinct_trials.h"
 #include "experiments/statistics/surface_data.h"
 #include "parameters/input_error.h"
 
@@ -48,6 +49,7 @@ CommandResult ReadSurface(const std::string& folder) {
 }
 
 void MakeSurface(const SurfaceArguments& arguments) {
+  RequireDistinctTrials(arguments.runs);
   SurfaceOptions options{arguments.estimator, FindQuantity(arguments.quantity), 0};
   if (arguments.num_proposed > 0)
     options.num_candidates =

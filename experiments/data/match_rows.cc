@@ -44,8 +44,6 @@ bool HasColumnsFirst(const std::vector<std::string>& fields) {
 }
 
 Correspondence ReadMatch(const std::vector<std::string>& fields, const GzipLines& lines) {
-  if (fields.size() < kCoordinateColumns.size())
-    lines.Fail(fmt::format("{} columns; x1,y1,x2,y2 are needed", fields.size()));
   std::array<double, 4> x{};
   for (size_t i = 0; i < x.size(); ++i) {
     if (ParseReal(fields[i], &x[i]) && std::abs(x[i]) <= kMaxCoordinatePx) continue;
@@ -89,11 +87,24 @@ void MatchRows::Add(std::string_view line, const GzipLines& lines) {
   } else if (file_->matches.size() == kMaxMatchesPerFile) {
     lines.Fail(fmt::format("too many matches; at most {} are allowed", kMaxMatchesPerFile));
   } else {
+    RequireNumColumns(fields.size(), lines);
     file_->matches.push_back(ReadMatch(fields, lines));
     line_numbers_.push_back(lines.line_number());
     if (sigma_column_ > 0) file_->sigma_px.push_back(ReadSigma(fields, lines));
     if (score_column_ > 0) scores_.push_back(score_column_ < fields.size() ? fields[score_column_] : "");
   }
+}
+
+// A row with more columns than stated would be read by the wrong ones, or is two rows. The last columns may be
+// missing.
+void MatchRows::RequireNumColumns(size_t num_columns, const GzipLines& lines) const {
+  if (num_columns < kCoordinateColumns.size())
+    lines.Fail(fmt::format("{} columns; x1,y1,x2,y2 are needed", num_columns));
+  if (num_columns <= num_columns_) return;
+  lines.Fail(has_names_ ? fmt::format("{} columns, but {} column names", num_columns, num_columns_)
+                        : fmt::format("{} columns without names; give x1,y1,x2,y2 alone, or a line of column "
+                                      "names that begins with them",
+                                      num_columns));
 }
 
 std::string MatchRows::Place(size_t match) const {
@@ -121,8 +132,11 @@ void MatchRows::SetNames(const std::vector<std::string>& fields, std::string_vie
                     "further known columns: {}, {}",
                     Quoted(line), fmt::join(kCoordinateColumns, ","), kSigmaColumn, kScoreColumn));
   }
-  if (std::ranges::count(fields, kSigmaColumn) > 1)
-    lines.Fail(fmt::format("column {} stands twice", kSigmaColumn));
+  for (const std::string_view name : {kCoordinateColumns[0], kCoordinateColumns[1], kCoordinateColumns[2],
+                                      kCoordinateColumns[3], kSigmaColumn})
+    if (std::ranges::count(fields, name) > 1) lines.Fail(fmt::format("column {} stands twice", name));
+  has_names_ = true;
+  num_columns_ = fields.size();
   sigma_column_ = FindColumn(fields, kSigmaColumn);
   score_column_ = FindColumn(fields, kScoreColumn);
   num_score_columns_ = std::ranges::count(fields, kScoreColumn);

@@ -36,11 +36,14 @@ class MatchRows {
 
  private:
   void SetNames(const std::vector<std::string>& fields, std::string_view line, const GzipLines& lines);
+  void RequireNumColumns(size_t num_columns, const GzipLines& lines) const;
   double ReadSigma(const std::vector<std::string>& fields, const GzipLines& lines) const;
 
   MatchFile* file_;
-  std::vector<int> line_numbers_;               // of the matches
-  std::vector<std::string> scores_;             // of the matches, as text: only numbers if they are used
+  std::vector<int> line_numbers_;    // of the matches
+  std::vector<std::string> scores_;  // of the matches, as text: only numbers if they are used
+  bool has_names_ = false;
+  size_t num_columns_ = kCoordinateColumns.size();
   size_t sigma_column_ = 0, score_column_ = 0;  // 0, the place of x1: no such column
   std::ptrdiff_t num_score_columns_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "experiments/core/text/message.h"
@@ -25,6 +26,11 @@ bool IsMissingAnswer(MotionStatus status) {
 // "; rcme replay run.sqlite --condition 0 --trial 3 shows why".
 std::string FormatReplay(const StudyPlan& plan, const std::string& run_file,
                          const std::pair<std::uint32_t, std::uint32_t>& trial) {
+  // A function of Python is not there for the command.
+  if (std::ranges::any_of(plan.study.estimators,
+                          [](const EstimatorSpec& spec) { return spec.name == "python"; }))
+    return fmt::format("; rcme.replay({}, {}, {}, estimators) shows why", nlohmann::json(run_file).dump(),
+                       trial.first, trial.second);
   const bool has_command = std::ranges::any_of(
       plan.study.estimators, [](const EstimatorSpec& spec) { return !FindCommand(spec).empty(); });
   return fmt::format("; {} replay {} --condition {} --trial {}{} shows why", CommandName(),

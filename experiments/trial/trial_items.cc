@@ -10,7 +10,9 @@ namespace rcme {
 
 WorkPlan PlanTrialItems(const StudyPlan& plan, const std::string& work, std::uint32_t trials_of_item,
                         const std::string& identity) {
-  WorkPlan items{work, "block", identity + plan.identity, {}};
+  // Blocks of as many groups and items may hold other numbers of trials.
+  const std::string trials = fmt::format("trials of a condition: {}\n", plan.study.trials);
+  WorkPlan items{work, "block", identity + trials + plan.identity, {}};
   for (const Condition& condition : plan.conditions) {
     const auto num_trials = static_cast<size_t>(condition.num_trials);
     items.groups.push_back(

@@ -12,7 +12,8 @@
 
 namespace rcme {
 
-// `identity`: lines for whatever else the results depend on; they precede the identity of the plan.
+// `identity`: lines for whatever else the results depend on; they and the number of trials precede the
+// identity of the plan.
 WorkPlan PlanTrialItems(const StudyPlan& plan, const std::string& work, std::uint32_t trials_of_item,
                         const std::string& identity = "");
 

@@ -43,6 +43,10 @@ TEST_F(Integrity, GivesTheSameBytesForThreadsAndShards) {
   EXPECT_EQ(both.exit_code, 3) << both.err;
   EXPECT_EQ(ReadBytes(merged + "/integrity.json"), json);
   EXPECT_TRUE(IsRefused(RunIntegrity({"--risk", "0.3", "--merge", first, second}), {first}));
+  // As many items as 150 trials have.
+  EXPECT_TRUE(IsRefused(RunRcme({"integrity", study_, "--estimator", "standard", "--trials", "160", "--risk",
+                                 "0.4", "--merge", first, second}),
+                        {first, "trials of a condition: 150", "160"}));
 }
 
 // The covariance of `standard` knows nothing of wrong matches.

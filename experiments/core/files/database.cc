@@ -9,6 +9,7 @@ namespace rcme {
 namespace {
 
 constexpr int kBusyTimeoutMs = 1000;
+constexpr int kMaxValueBytes = 64 << 20;  // of a text or blob, so that a small file cannot fill the memory
 
 std::string TypeName(const SQLite::Column& column) {
   if (column.isNull()) return "NULL";
@@ -50,6 +51,7 @@ SQLite::Database OpenDatabase(const std::string& path, int flags, FileLocks lock
   sqlite3_db_config(database.getHandle(), SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(database.getHandle(), SQLITE_DBCONFIG_ENABLE_TRIGGER, 0, nullptr);
   sqlite3_db_config(database.getHandle(), SQLITE_DBCONFIG_ENABLE_VIEW, 0, nullptr);
+  sqlite3_limit(database.getHandle(), SQLITE_LIMIT_LENGTH, kMaxValueBytes);
   database.exec("PRAGMA cell_size_check = ON");
   return database;
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include "parameters/input_error.h"
 
@@ -17,9 +16,7 @@ GzipLines::GzipLines(const std::string& path, const FileKind& kind)
     : GzipLines(path, RegularFile(path, kind).Release()) {}
 
 GzipLines::GzipLines(std::string name, int descriptor)
-    : path_(std::move(name)), file_(gzdopen(descriptor, "rb"), gzclose_r) {
-  if (!file_) throw InputError(fmt::format("{}: cannot be read", path_));
-}
+    : path_(std::move(name)), bytes_(std::make_unique<GzipBytes>(descriptor)) {}
 
 GzipLines GzipLines::OfStandardInput() { return GzipLines("standard input", dup(STDIN_FILENO)); }
 
@@ -27,7 +24,7 @@ bool GzipLines::Next(std::string_view* line) {
   line_.clear();
   ++line_number_;
   int c = 0;
-  while ((c = gzgetc(file_.get())) >= 0 && c != '\n') {
+  while ((c = bytes_->Next()) >= 0 && c != '\n') {
     if (line_.size() == kMaxLineBytes)
       Fail(fmt::format("the line is too long; at most {} bytes are allowed", kMaxLineBytes));
     line_ += static_cast<char>(c);
@@ -46,12 +43,9 @@ void GzipLines::Fail(const std::string& what) const {
   throw InputError(fmt::format("{}:{}: {}", path_, line_number_, what));
 }
 
-// zlib reports an error at the end of a truncated file or inside a damaged one.
 void GzipLines::CheckEnd() const {
-  int error = Z_OK;
-  const char* reason = gzerror(file_.get(), &error);
-  if (error == Z_OK || error == Z_STREAM_END) return;
-  throw InputError(fmt::format("{}: damaged or truncated gzip file ({})", path_, reason));
+  if (bytes_->damage().empty()) return;
+  throw InputError(fmt::format("{}: damaged or truncated gzip file ({})", path_, bytes_->damage()));
 }
 
 }  // namespace rcme

@@ -4,9 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "experiments/core/files/gzip_bytes.h"
 #include "experiments/core/files/regular_file.h"
-
-struct gzFile_s;
 
 namespace rcme {
 
@@ -35,7 +34,7 @@ class GzipLines {
   void CheckEnd() const;
 
   std::string path_;
-  std::unique_ptr<gzFile_s, int (*)(gzFile_s*)> file_;
+  std::unique_ptr<GzipBytes> bytes_;
   std::string line_;
   int line_number_ = 0;
   size_t num_bytes_ = 0;

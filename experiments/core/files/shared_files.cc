@@ -83,6 +83,11 @@ std::string FindFile(const std::string& name, SharedFolder folder, const FileKin
   if (std::ranges::count(names, bare) > 0)
     return (fs::path(FindSharedFolder(folder)) / (bare + kEnding)).string();
   const std::string suggestion = DidYouMean(fs::path(bare).filename().string(), names);
+  if (names.empty() && !IsFolder(Share()))
+    throw InputError(
+        fmt::format("{}: no such {}; the folder of installed ones, {}, is missing: build or install "
+                    "the program again",
+                    name, kind.name, Share()));
   if (suggestion.empty()) return name;
   throw InputError(
       fmt::format("{}: no such {}{}; installed: {}", name, kind.name, suggestion, FormatListCommand(folder)));

@@ -11,22 +11,31 @@ std::atomic<Clock::time_point> time_limit = Clock::time_point::max();
 
 void Note(int signal) { stop_signal = signal; }
 
-void Handle(int signal, struct sigaction* before) {
-  sigaction(signal, nullptr, before);
-  if (before->sa_handler == SIG_IGN) return;
+// The next one has the default action.
+void HandleOnce(int signal, void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = Note;
+  action.sa_handler = handler;
   action.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
   sigaction(signal, &action, nullptr);
 }
 
+void NoteAndOnceMore(int signal) {
+  Note(signal);
+  HandleOnce(signal, Note);
+}
+
+void Handle(int signal, int num_requests, struct sigaction* before) {
+  sigaction(signal, nullptr, before);
+  if (before->sa_handler != SIG_IGN) HandleOnce(signal, num_requests > 1 ? NoteAndOnceMore : Note);
+}
+
 }  // namespace
 
-StopOnSignals::StopOnSignals() {
+StopOnSignals::StopOnSignals(int num_requests) {
   stop_signal = 0;
   time_limit = Clock::time_point::max();
-  Handle(SIGINT, &interrupt_before_);
-  Handle(SIGTERM, &terminate_before_);
+  Handle(SIGINT, num_requests, &interrupt_before_);
+  Handle(SIGTERM, num_requests, &terminate_before_);
   struct sigaction ignore {};
   ignore.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &ignore, &pipe_before_);

@@ -1,6 +1,6 @@
 // Treats Ctrl-C (SIGINT), SIGTERM and the end of a time limit as a request to stop: the program finishes and
 // keeps the items in progress, then ends. A signal also interrupts a wait for an external estimator
-// (parameters/stop_signal.h). The same signal a second time ends the program at once.
+// (parameters/stop_signal.h). The same signal once more ends the program at once.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,8 @@ namespace rcme {
 // At most one object may exist at a time.
 class StopOnSignals {
  public:
-  StopOnSignals();
+  // `num_requests`: of each signal, before the next one ends the program; 1 or 2.
+  explicit StopOnSignals(int num_requests = 1);
   ~StopOnSignals();
   StopOnSignals(const StopOnSignals&) = delete;
   StopOnSignals& operator=(const StopOnSignals&) = delete;

@@ -241,6 +241,12 @@ std::string RunnerUpWords(const MotionEstimate& estimate, const TrialData& data,
   return words;
 }
 
+// Whether an estimator outside of the program raised an error or gave nothing that can be read.
+bool IsWithoutAnswer(MotionStatus status) {
+  return status == MotionStatus::kLibraryError || status == MotionStatus::kNoAnswer ||
+         status == MotionStatus::kTimedOut || status == MotionStatus::kUnreadableAnswer;
+}
+
 const char* Meaning(WhyVerdict verdict) {
   switch (verdict) {
     case WhyVerdict::kRight:
@@ -251,6 +257,8 @@ const char* Meaning(WhyVerdict verdict) {
       return "the model cannot tell";
     case WhyVerdict::kTestsRefuse:
       return "its tests refuse the true motion as well";
+    case WhyVerdict::kNoAnswer:
+      return "it gave no answer";
     case WhyVerdict::kTruthUnknown:
       break;
   }
@@ -292,6 +300,8 @@ const char* Name(WhyVerdict verdict) {
       return "model_cannot_tell";
     case WhyVerdict::kTestsRefuse:
       return "tests_refuse";
+    case WhyVerdict::kNoAnswer:
+      return "no_answer";
     case WhyVerdict::kTruthUnknown:
       break;
   }
@@ -303,6 +313,8 @@ Why ExplainOutcome(const EstimatorSpec& spec, const TrialData& data, const Motio
   Why why;
   if (IsInvalid(record)) {
     why = {WhyVerdict::kSearchFailed, "the answer is not valid: " + estimate.message, {}};
+  } else if (IsWithoutAnswer(estimate.status)) {
+    why = {WhyVerdict::kNoAnswer, estimate.message, {}};
   } else if (HasSucceeded(record, bounds)) {
     why = {WhyVerdict::kRight, {}, {}};
   } else if (data.truth.cam2_from_cam1_true && !data.truth.is_in_doubt) {

@@ -21,9 +21,10 @@ enum class WhyVerdict {
   kSearchFailed,
   kModelCannotTell,  // it does not score clearly better, or the matches have no optimum within the bounds
   kTestsRefuse,      // the tests would also have refused the true motion
+  kNoAnswer,         // code outside of the program raised an error, or what it gave cannot be read
   kTruthUnknown,
 };
-// Returns "right", "search_failed", "model_cannot_tell", "tests_refuse" or "truth_unknown".
+// Returns "right", "search_failed", "model_cannot_tell", "tests_refuse", "no_answer" or "truth_unknown".
 const char* Name(WhyVerdict verdict);
 
 struct Why {

@@ -403,7 +403,7 @@ TEST_F(AnswerOfRun, TwoOfThreeAreTied) {
       {"2 of 3 succeed in 200 of 200; ours leads: the errors of standard are greater by 0.5 deg ",
        "Accept if ours states no P: nothing to accept by",
        "Alternative standard, whose success these trials cannot tell from that of ours, states P: accept if "
-       "standard answers, whatever its P: 100.0 % of the trials, 0 of 200 failed; standard states 1.00 % on average, 0.00 % [0.00, 2.37] (n 200) fail: right to within 5 % ",
+       "standard answers, whatever its P: 100.0 % of the trials, 0 of 200 failed; standard states 1.00 % on average, 0.00 % [0.00, 2.37] (n 200) fail: failures are within 5 percentage points of it ",
        "200; to tell a 1 % difference in success takes about 780; to show a failure rate below 0.1 % about "
        "4800 without",
        "Success: an error of at most 3 deg of rotation and 15 deg of direction.",

@@ -1,6 +1,7 @@
 #include "experiments/data/match_file.h"
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -437,7 +438,9 @@ TEST_F(MatchFileTest, ALensIsUndone) {
     rows += fmt::format("{},{},{},{}\n", x1_px.x(), x1_px.y(), x2_px.x(), x2_px.y());
   }
   const MatchFile file = Read("# sigma_px: 0.4\n" + header + rows);
-  EXPECT_TRUE(file.had_lens);
+  ASSERT_TRUE(file.undistortion.has_value());
+  EXPECT_EQ(file.undistortion->lens2.model, LensModel::kFisheye);
+  EXPECT_EQ(file.num_rows, 3U);
   EXPECT_EQ(file.camera1.fy, 610.0);
   EXPECT_EQ(file.camera2.height, 600);
   const MotionProblem problem = MakeMotionProblem(file, {});
@@ -461,7 +464,7 @@ TEST_F(MatchFileTest, ALensIsUndone) {
   // Written, it is a file of pinhole cameras.
   const std::string copy = folder_.Path("copy.csv");
   WriteMatchFile(file, copy);
-  EXPECT_FALSE(ReadMatchFile(copy).had_lens);
+  EXPECT_FALSE(ReadMatchFile(copy).undistortion);
   EXPECT_EQ(ReadMatchFile(copy).matches[1].x2_px, file.matches[1].x2_px);
   EXPECT_EQ(ReadMatchFile(copy).sigma_px, file.sigma_px);
   EXPECT_EQ(ReadMatchFile(copy).assumed_sigma_px, problem.sigma_px);
@@ -471,7 +474,7 @@ TEST_F(MatchFileTest, PinholesByNameAreThoseOfK) {
   const MatchFile file = Read(
       "# camera1: PINHOLE 640 480 600 610 320 240\n# size2: 800 600\n# K2_fx_fy_cx_cy: 700 710 400 300\n"
       "14.5,496.25,192.5,795.125\n");
-  EXPECT_FALSE(file.had_lens);
+  EXPECT_FALSE(file.undistortion);
   EXPECT_TRUE(file.sigma_px.empty());
   EXPECT_EQ(file.matches[0].x1_px, Eigen::Vector2d(14.5, 496.25));
   EXPECT_EQ(file.camera1.cx, 320.0);
@@ -497,14 +500,46 @@ TEST_F(MatchFileTest, BadLenses) {
                       {":2: size1: ", "camera1 says it already"}));
   EXPECT_TRUE(Refuses(with("PINHOLE 640 480 600 600 319.5 239.5\n# K1_fx_fy_cx_cy: 600 600 319.5 239.5"),
                       {":2: K1_fx_fy_cx_cy: ", "camera1 says it already"}));
-  // r (1 - r^2) is .385 at most, 231 px: the first row is 398 px from the centre.
-  EXPECT_TRUE(Refuses(with("SIMPLE_RADIAL 640 480 600 319.5 239.5 -1"),
-                      {":3: no ray of camera 1 reaches (1, 2) px", "leave the match out"}));
   const std::string named = folder_.Write("named.csv", with("PINHOLE 640 480 600 600 319.5 239.5"));
   const GivenCameras given =
       CamerasOfOption{{Lens{{600, 600, 319.5, 239.5}}, Lens{{600, 600, 319.5, 239.5}}}, "--camera"};
   EXPECT_TRUE(
       ThrowsInputError([&] { ReadMatchFile(named, given); }, {":1: camera1: ", "leave out --camera"}));
+}
+
+// r (1 - r^2) is .385 at most, 231 px: the first row is 398 px from the centre. Its score and sigma go with
+// it.
+TEST_F(MatchFileTest, AMatchWithoutARayIsLeftOut) {
+  const MatchFile file = Read(
+      "# camera1: SIMPLE_RADIAL 640 480 600 319.5 239.5 -1\n# camera2: PINHOLE 640 480 600 600 319.5 239.5\n"
+      "# better_score: higher\nx1,y1,x2,y2,sigma_px,score\n1,2,3,4,7,0.1\n320,240,1,2,1,0.2\n330,240,1,2,1,0.3\n");
+  EXPECT_EQ(file.matches.size(), 2U);
+  EXPECT_EQ(file.num_rows, 3U);
+  EXPECT_EQ(file.rows, (std::vector<size_t>{1, 2}));
+  EXPECT_EQ(file.scores, (std::vector<double>{0.2, 0.3}));
+  EXPECT_NEAR(file.sigma_px[0], 1.0, 0.1);
+  ASSERT_FALSE(file.doubts.empty());
+  EXPECT_THAT(file.doubts.back().place, testing::EndsWith(":5"));
+  EXPECT_THAT(file.doubts.back().what, testing::HasSubstr("left out"));
+}
+
+// Two gzip files one after the other are one. A damaged beginning of the second loses no match in silence.
+TEST_F(MatchFileTest, GzipFilesOfSeveralMembers) {
+  const std::string first = Gzip(MatchHeader() + MatchRows(10)), second = Gzip(MatchRows(10));
+  EXPECT_EQ(Read(first + second).matches.size(), 20U);
+  EXPECT_EQ(Read(first).matches.size(), 10U);
+  EXPECT_TRUE(Refuses(first + '\0' + second.substr(1), {"damaged or truncated gzip file"}));
+  EXPECT_TRUE(Refuses(first + second.substr(0, 5), {"damaged or truncated gzip file"}));
+  EXPECT_TRUE(Refuses(first + "1,2,3,4\n", {"damaged or truncated gzip file"}));
+}
+
+// A row of other columns than stated would be read by the wrong ones.
+TEST_F(MatchFileTest, RowsOfOtherColumnsThanStated) {
+  const std::string header = MatchHeader();
+  EXPECT_TRUE(Refuses(header + "1,10,20,30,40\n", {"5 columns without names", "x1,y1,x2,y2"}));
+  EXPECT_TRUE(Refuses(header + "x1,y1,x2,y2\n1,2,3,4\n10,20,30,40,50\n", {"5 columns, but 4 column names"}));
+  EXPECT_TRUE(Refuses(header + "x1,y1,x2,y2,x1\n1,2,3,4,5\n", {"column x1 stands twice"}));
+  EXPECT_TRUE(Refuses(header + "1,2,3\n", {"3 columns; x1,y1,x2,y2 are needed"}));
 }
 
 TEST_F(MatchFileTest, WriteRoundTrip) {

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <memory>
 #include <thread>
 
@@ -70,6 +71,18 @@ TEST_F(StopRequest, IsForgottenByTheNextAndTheHandlersAreGivenBack) {
     EXPECT_FALSE(IsStopRequested()) << "what was ignored stays so";
   }
   std::signal(SIGTERM, SIG_DFL);
+}
+
+TEST_F(StopRequest, TheSignalAfterTheLastRequestEndsTheProgram) {
+  for (const int num_requests : {1, 2}) {
+    const auto raise_times = [&](int times) {
+      const StopOnSignals stop(num_requests);
+      for (int i = 0; i < times; ++i) std::raise(SIGINT);
+      std::_Exit(IsStopRequested() ? 7 : 0);
+    };
+    EXPECT_EXIT(raise_times(num_requests), testing::ExitedWithCode(7), "");
+    EXPECT_EXIT(raise_times(num_requests + 1), testing::KilledBySignal(SIGINT), "");
+  }
 }
 
 TEST_F(StopRequest, ComesByItselfAfterATimeAndAsksToTryAgain) {

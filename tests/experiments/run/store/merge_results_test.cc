@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "experiments/run/run_study.h"
+#include "experiments/run/store/distinct_trials.h"
 #include "experiments/run/store/new_trials.h"
 #include "experiments/statistics/summarize.h"
 #include "experiments/statistics/summary_output.h"
@@ -50,6 +51,16 @@ class MergeTest : public ShardFiles {
     return result;
   }
 };
+
+// Files taken together must not count a trial twice: shards do not, a shard beside the whole does.
+TEST_F(MergeTest, FilesThatHoldATrialBothAreTold) {
+  const Paths parts = RunAll(3);
+  EXPECT_NO_THROW(RequireDistinctTrials(parts));
+  const std::string whole = Merge(parts);
+  for (const Paths& paths :
+       {Paths{whole, whole}, Paths{parts[0], whole}, Paths{parts[0], parts[1], parts[0]}})
+    EXPECT_TRUE(ThrowsInputError([&] { RequireDistinctTrials(paths); }, {paths.back(), "count twice"}));
+}
 
 TEST_F(MergeTest, AnyNumberOrderAndGroupingGivesTheBytesOfOneRun) {
   const std::string whole = Bytes(Run({1, 1}));
