@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -36,11 +36,15 @@ def words(value: Any) -> str:
 
 def numbers(name: str, value: Any, expected: str) -> np.ndarray:
     """An array of real numbers, of any shape."""
+    if np.ma.is_masked(value):
+        raise ValueError(f"{name}: some of its numbers are masked; leave these rows out")
     try:
         if value is None:  # which NumPy takes for NaN
             raise TypeError
         array = np.asarray(value)
         if array.dtype.kind not in "fiub" and not (array.dtype.kind == "O" and array.size > 0):
+            raise TypeError
+        if array.dtype.kind == "O" and any(isinstance(each, (str, bytes)) for each in array.flat):
             raise TypeError
         return np.array(array, dtype=np.float64, order="C")
     except (TypeError, ValueError, OverflowError):
@@ -131,9 +135,25 @@ def yes_or_no(name: str, value: Any) -> bool:
 def plain(name: str, value: Any) -> str:
     """Text for tables: one line, at most 200 bytes."""
     is_plain = isinstance(value, str) and value.isprintable() and 0 < len(value.encode("utf-8", "replace")) <= 200
-    if not is_plain:
-        raise ValueError(f"{name}: {words(value)} is not allowed; expected a text of one line, at most 200 bytes")
+    if not is_plain or value != value.strip():
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected a text of one line, at most 200 bytes, without blanks "
+                         "at its ends")
     return value
+
+
+def label(name: str, value: Any) -> str:
+    """Text that lists of labels, separated by commas, can hold."""
+    if "," in plain(name, value):
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected a text without a comma")
+    return value
+
+
+def iterable(name: str, value: Any, expected: str) -> Iterator[Any]:
+    """Its elements; what it raises while they are made is its own."""
+    try:
+        return iter(value)
+    except TypeError:
+        raise ValueError(f"{name}: {words(value)} is not allowed; expected {expected}") from None
 
 
 def one_of(name: str, value: Any, allowed: Sequence[str]) -> str:
@@ -207,9 +227,28 @@ def camera(name: str, value: Any) -> _rcme.Camera:
     if not is_pinhole:
         raise ValueError(f"{name}: {array.tolist()} is not allowed; expected K = [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], "
                          "without skew")
-    # No size is known: one with the principal point in its centre.
-    width, height = (max(1, min(1_000_000, round(2 * c + 1))) for c in (K[0, 2], K[1, 2]))
+    width, height = (_size_about(c) for c in (K[0, 2], K[1, 2]))
     return _camera_of_model(name, "PINHOLE", np.array([K[0, 0], K[1, 1], K[0, 2], K[1, 2]]), width, height)
+
+
+def _size_about(centre: float) -> int:
+    """The width or height of an image of unknown size whose principal point is in its centre."""
+    return max(1, min(1_000_000, round(2 * centre + 1)))
+
+
+def within_image(points: np.ndarray, camera: Any) -> tuple[np.ndarray, Any]:
+    """Points and camera as given, but for K with points outside of the image that it stands for, such as pixels that count from
+    the principal point: then both with the origin in the corner of an image that holds all points about its centre."""
+    if isinstance(camera, Mapping) or len(points) == 0:
+        return points, camera
+    K = np.array(camera, dtype=np.float64)
+    centre = K[:2, 2] / K[2, 2]
+    size = np.array([_size_about(c) for c in centre])
+    if (points >= -0.5).all() and (points <= size - 0.5).all():
+        return points, camera
+    moved = np.clip(np.abs(points - centre).max(axis=0), 0.0, 499_999.0)
+    K[:2, 2] += K[2, 2] * (moved - centre)
+    return points + (moved - centre), K
 
 
 def _camera_of_dict(name: str, value: Mapping[str, Any]) -> _rcme.Camera:
@@ -233,8 +272,3 @@ def _camera_of_model(name: str, model: str, params: np.ndarray, width: int, heig
     return _rcme.Camera(model, params.tolist(), width, height)
 
 
-def reached(name: str, array: np.ndarray, camera: _rcme.Camera) -> None:
-    """That a ray of the camera reaches every pixel."""
-    row = camera.find_unreached(array)
-    if row is not None:
-        raise ValueError(f"{name}: row {row} is {array[row].tolist()}, where its camera's lens sends no ray; leave the match out")

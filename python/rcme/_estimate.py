@@ -53,13 +53,14 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     camera1, camera2 : dict {model, width, height, params}, or array (3, 3)
         A camera model of COLMAP with its params, sizes in px: PINHOLE (fx, fy, cx, cy), SIMPLE_PINHOLE (f, cx, cy), OPENCV (fx,
         fy, cx, cy, k1, k2, p1, p2), OPENCV_FISHEYE (fx, fy, cx, cy, k1, k2, k3, k4), SIMPLE_RADIAL, RADIAL, FULL_OPENCV,
-        SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE; or K of a pinhole, whose image is taken to have its principal point in its centre.
-        Behind a lens, matches are undistorted and weighed by how much of their noise that magnifies.
+        SIMPLE_RADIAL_FISHEYE, RADIAL_FISHEYE; or K of a pinhole, whose image is taken to have its principal point in its centre
+        and to hold all points. Behind a lens, matches are undistorted and weighed by how much of their noise that magnifies; one
+        with a point for which the lens has no ray within 84.3 deg of its axis is left out, and no inlier.
     options : dict
         estimator (its name; default rcme_calibrated) or estimator_file (a path); allow_process (bool; default False), whether
         the command of an estimator file may run (docs/threat_model.md); sigma_px, the standard deviation of the
         noise of a coordinate in each image (default 0.5); noise_scale, N positive numbers: how many times as great each match's
-        noise is (only `rcme.estimators()` that say so use it; default: all alike); integrity_risk of the protection levels
+        noise is (OpenCV's and OpenGV's estimators ignore it; default: all alike); integrity_risk of the protection levels
         (1e-12 to 0.999; default 1e-3); seed of the random samples (default 1); and any option of the
         estimator: `rcme.estimators()` lists them.
     bounds : iterable of (rotation, direction)
@@ -110,6 +111,8 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
                                 chosen["integrity_risk"], known, functions)
     except ValueError as error:
         raise ValueError(_in_words(error, chosen["options"])) from None
+    for function, _ in functions.values():
+        function.raise_interrupt()
     return _pose_and_info(answer, len(x1))
 
 
@@ -137,10 +140,7 @@ def estimate_relative_poses(pairs: Iterable[tuple[Any, ...]], options: Optional[
     ValueError
         As there; the message begins with the pair's number: "pairs[3].x1".
     """
-    try:
-        given = list(pairs)
-    except TypeError:
-        raise ValueError(f"pairs: {_check.words(pairs)} is not allowed; expected tuples (x1, x2, camera1, camera2)") from None
+    given = list(_check.iterable("pairs", pairs, "tuples (x1, x2, camera1, camera2)"))
     if len(given) > MAX_PAIRS:
         raise ValueError(f"pairs: there are {len(given)}; expected at most {MAX_PAIRS}")
     problems = [_numbered_pair(place, pair) for place, pair in enumerate(given)]
@@ -233,10 +233,11 @@ def _pair(place: str, x1: Any, x2: Any, camera1: Any, camera2: Any) -> tuple[Any
     x1, x2 = _check.points(f"{place}x1", x1), _check.points(f"{place}x2", x2)
     if len(x1) != len(x2):
         raise ValueError(f"{place}x2: its shape is {x2.shape}; expected that of x1, {x1.shape}: row i of both is one match")
-    cameras = _check.camera(f"{place}camera1", camera1), _check.camera(f"{place}camera2", camera2)
-    _check.reached(f"{place}x1", x1, cameras[0])
-    _check.reached(f"{place}x2", x2, cameras[1])
-    return x1, x2, *cameras
+    for name, camera in ((f"{place}camera1", camera1), (f"{place}camera2", camera2)):
+        _check.camera(name, camera)
+    x1, camera1 = _check.within_image(x1, camera1)
+    x2, camera2 = _check.within_image(x2, camera2)
+    return x1, x2, _check.camera(f"{place}camera1", camera1), _check.camera(f"{place}camera2", camera2)
 
 
 def _numbered_pair(place: int, pair: Any) -> tuple[Any, ...]:
@@ -249,10 +250,8 @@ def _numbered_pair(place: int, pair: Any) -> tuple[Any, ...]:
 
 def _bounds(bounds: Any) -> list[tuple[float, float]]:
     """Pairs of angles, checked one by one."""
-    try:
-        pairs = [tuple(pair) for pair in bounds]
-    except TypeError:
-        raise ValueError(f"bounds: {_check.words(bounds)} is not allowed; expected pairs of angles, [(1, 5), (3, 15)]") from None
+    expected = "pairs of angles, [(1, 5), (3, 15)]"
+    pairs = [tuple(_check.iterable("bounds", pair, expected)) for pair in _check.iterable("bounds", bounds, expected)]
     for place, pair in enumerate(pairs):
         if len(pair) != 2:
             raise ValueError(f"bounds[{place}]: {_check.words(pair)} is not allowed; expected two angles (rotation, direction)")

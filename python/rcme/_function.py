@@ -35,6 +35,7 @@ class FunctionEstimator:
         self.num_calls = 0
         self.counts = {"library_error": 0, "unreadable_answer": 0}
         self.first: dict[str, str] = {}
+        self.interrupt: BaseException | None = None  # of Ctrl-C, or of a signal handler that ends the program
 
     def __call__(self, x1: np.ndarray, x2: np.ndarray, camera1: dict[str, Any], camera2: dict[str, Any], sigma_px: float,
                  noise_scale: np.ndarray | None, seed: int) -> dict[str, Any]:
@@ -46,11 +47,18 @@ class FunctionEstimator:
         try:
             result = self.function(x1, x2, camera1, camera2, options)
         except BaseException as error:  # noqa: BLE001 (also SystemExit: the run is not the function's to end)
+            if isinstance(error, KeyboardInterrupt):
+                self.interrupt = error
             return self._note("library_error", _in_words(error) + _place_of(error, self.function))
         try:
             return fields_of(result, num_matches)
         except BaseException as error:  # noqa: BLE001 (an object of the user's own may raise anything)
             return self._note("unreadable_answer", _in_words(error))
+
+    def raise_interrupt(self) -> None:
+        """Of a call of its own, where nobody else watches for Ctrl-C."""
+        if self.interrupt is not None:
+            raise self.interrupt
 
     def warn(self, label: str) -> None:
         """A warning of each kind of thing that went wrong, with the words of the first."""
@@ -92,12 +100,15 @@ def code_of(function: Callable[..., Any]) -> str:
     """A hash of the function's source: a result file is not continued by a function that has changed. What the function
     calls, and values that it holds, are not seen."""
     inner = getattr(function, "func", function)
-    for candidate in (inner, type(inner)):
+    name = getattr(inner, "__qualname__", type(inner).__qualname__)
+    compiled = getattr(inner, "__code__", None)  # where there is no source, and of lambdas, which may share a line
+    text = f"{name} {compiled.co_code!r} {compiled.co_consts!r} {compiled.co_names!r}" if compiled else name
+    for candidate in (inner, type(inner)) if not compiled or "<lambda>" not in name else ():
         try:
             text = inspect.getsource(candidate)
             break
         except (TypeError, OSError):
-            text = getattr(inner, "__qualname__", type(inner).__qualname__)
+            pass
     return hashlib.sha256(text.encode("utf-8", "replace")).hexdigest()[:16]
 
 
@@ -108,7 +119,7 @@ def fields_of(result: Any, num_matches: int) -> dict[str, Any]:
     status = info.get("status", "no_candidate" if pose is None else "ok")
     if not isinstance(status, str):
         raise Unreadable(f"info['status'] is a {type(status).__name__}; expected a text")
-    fields: dict[str, Any] = {"status": status, "message": str(info.get("message", ""))[:MAX_MESSAGE]}
+    fields: dict[str, Any] = {"status": status, "message": _encodable(str(info.get("message", "")))[:MAX_MESSAGE]}
     if pose is not None:
         fields["R"], fields["t"] = _motion(pose)
     elif status == "ok":
@@ -132,7 +143,11 @@ def _in_words(error: BaseException) -> str:
     except Exception:  # noqa: BLE001
         text = "(its message cannot be shown)"
     name = "" if isinstance(error, Unreadable) else type(error).__name__ + ": "
-    return (name + text.encode("utf-8", "replace").decode())[:MAX_MESSAGE]
+    return _encodable(name + text)[:MAX_MESSAGE]
+
+
+def _encodable(text: str) -> str:
+    return text.encode("utf-8", "replace").decode()
 
 
 def _place_of(error: BaseException, function: Callable[..., Any]) -> str:

@@ -35,15 +35,22 @@ def write_pairs(folder: Union[str, "os.PathLike[str]"], pairs: Iterable[Mapping[
     ValueError : a pair that is wrong, a folder that holds something.
     """
     path = pathlib.Path(_check.path("folder", folder, "a folder"))
-    path.mkdir(parents=True, exist_ok=True)
-    if any(path.iterdir()):
+    elements = _check.iterable("pairs", pairs, "dicts as of `simulate`")
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        holds_something = any(path.iterdir())
+    except OSError as error:
+        raise ValueError(f"folder: {path} cannot be made: {error.strerror}; give a new folder") from None
+    if holds_something:
         raise ValueError(f"folder: {path} holds something; give a new folder")
-    for number, pair in enumerate(pairs):
+    for number, pair in enumerate(elements):
         _rcme.write_file(str(path / f"{number:06d}.csv"), _match_file(f"pairs[{number}]", pair))
     return str(path)
 
 
 def _match_file(name: str, pair: Mapping[str, Any]) -> str:
+    if not isinstance(pair, Mapping):
+        raise ValueError(f"{name}: {_check.words(pair)} is not allowed; expected a dict with x1, x2, camera1 and camera2")
     missing = [key for key in ("x1", "x2", "camera1", "camera2") if key not in pair]
     if missing:
         raise ValueError(f"{name}: {missing[0]} is missing; expected x1, x2, camera1 and camera2")
@@ -53,14 +60,16 @@ def _match_file(name: str, pair: Mapping[str, Any]) -> str:
     lines = [f"# scene: {_check.plain(f'{name}: scene', pair.get('scene', 'python'))}"]
     for number in (1, 2):
         lines += _camera_lines(f"{name}: camera{number}", number, pair[f"camera{number}"])
-    truth = pair.get("truth") or {}
+    truth = {} if pair.get("truth") is None else pair["truth"]
+    if not isinstance(truth, Mapping):
+        raise ValueError(f"{name}: truth: {_check.words(truth)} is not allowed; expected a dict of R and t")
     if truth.get("R") is not None and truth.get("t") is not None:
         R = _check.rotation(f"{name}: truth: R", _check.shaped(f"{name}: truth: R", truth["R"], (3, 3), "a rotation"))
         t = _check.direction(f"{name}: truth: t", _check.shaped(f"{name}: truth: t", truth["t"], (3,), "a translation"))
         lines += [f"# R_rowmajor: {_row(R.ravel(), ' ')}", f"# t_unit: {_row(t, ' ')}"]
     sigma = pair.get("sigma_px")
     if sigma is not None:
-        lines.append(f"# sigma_px: {_check.number(f'{name}: sigma_px', sigma, 1e-6, 1e6)!r}")
+        lines.append(f"# sigma_px: {_check.number(f'{name}: sigma_px', sigma, 1e-9, 1000.0)!r}")
     scales = _check.scales(f"{name}: noise_scale", pair.get("noise_scale"), len(x1))
     lines.append("x1,y1,x2,y2" + (",sigma_px" if scales else ""))
     lines += [_row([*first, *second, *([scales[i]] if scales else [])], ",") for i, (first, second) in enumerate(zip(x1, x2))]

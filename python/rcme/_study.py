@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import itertools
 import json
 import os
+import shutil
 import tempfile
 import threading
 from collections.abc import Callable, Iterator, Mapping
@@ -22,7 +24,9 @@ Estimator = Union[Callable[..., Any], Mapping[str, Any], str, "os.PathLike[str]"
 
 _one_at_a_time = threading.Lock()
 _run_numbers = itertools.count()
-_own_folder: Optional[tempfile.TemporaryDirectory[str]] = None  # of runs without `out`; gone with the interpreter
+_own_folder: Optional[str] = None  # of runs without `out`; gone with the interpreter
+_folder_owner = 0  # the process that made it
+_making_folder = threading.Lock()
 
 
 def conditions(study: Study, *, overrides: Optional[Mapping[str, Any]] = None) -> pandas.DataFrame:
@@ -129,7 +133,7 @@ def replay(run: str, condition: int, trial: int, estimators: Optional[Mapping[st
     Returns
     -------
     DataFrame with a row per estimator: estimator (its label), outcome, message (why it refused), status, the numbers of the
-    file's table trials, R (3, 3) and t (3, 1) of its answer, and same: whether the record in the file is equal but for the time
+    file's table trials, R (3, 3) and t (3) of its answer (of a refusal: identity and (1, 0, 0)), and same: whether the record in the file is equal but for the time
     (None: the trial is not in the file).
 
     Raises
@@ -226,7 +230,7 @@ def add_estimators(source: _rcme.StudySource,
     if not isinstance(estimators, Mapping):
         raise ValueError(f"estimators: {_check.words(estimators)} is not allowed; expected {expected}")
     for label, estimator in estimators.items():
-        label = _check.plain("estimators: a label", label)
+        label = _check.label("estimators: a label", label)
         name = f"estimators[{label!r}]"
         if isinstance(estimator, Mapping):
             _add_by_name(source, name, label, estimator)
@@ -263,10 +267,18 @@ def _add_by_name(source: _rcme.StudySource, name: str, label: str, estimator: Ma
 
 
 def _own_path() -> str:
-    global _own_folder
-    if _own_folder is None:
-        _own_folder = tempfile.TemporaryDirectory(prefix="rcme-runs-")
-    return os.path.join(_own_folder.name, f"run{next(_run_numbers)}.sqlite")
+    """Of a process that has been forked a folder of its own: the first that ends removes its folder."""
+    global _own_folder, _folder_owner
+    with _making_folder:
+        if _own_folder is None or _folder_owner != os.getpid() or not os.path.isdir(_own_folder):
+            _own_folder, _folder_owner = tempfile.mkdtemp(prefix="rcme-runs-"), os.getpid()
+            atexit.register(_remove_own, _own_folder, _folder_owner)
+        return os.path.join(_own_folder, f"run{next(_run_numbers)}.sqlite")
+
+
+def _remove_own(folder: str, owner: int) -> None:
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 def _text_of(study: Mapping[str, Any]) -> str:

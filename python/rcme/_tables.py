@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import json
 import re
@@ -15,6 +16,7 @@ from rcme._function import warn_of
 from rcme._study import Estimator, Study, add_estimators, alone, source_of
 
 _MARKED = re.compile("^'(?=[' ]*[=+\\-@\t\r\uff1d\uff0b\uff0d\uff20])")
+_NUMBER = re.compile(r"-?(0|[1-9][0-9]*)(\.[0-9]+)?(e[+-]?[0-9]+)?")
 AUDIT_COLUMNS = ["claim", "family", "reading", "claim_verdict", "conditions", "quantity", "kind", "nominal", "low", "high",
                  "value", "lower", "upper", "n", "verdict", "side"]
 
@@ -30,7 +32,7 @@ def summarize(run: str, *, times: bool = False, pooled: bool = False) -> pandas.
 
     Returns
     -------
-    DataFrame with the columns study, condition, one per factor, estimator, quantity, kind (rate, score, mean, median,
+    DataFrame with the columns study, condition, one per factor, estimator, quantity, kind (rate, score, area, mean, median,
     share), value, lower, upper (95 %), standard_error (of means), n, interval (its kind), verdict and trials_to_decide.
     Rates and scores are in [0, 1]; `rcme list quantities` explains each quantity. Unknown numbers are NaN.
 
@@ -139,9 +141,20 @@ def audit(study: Optional[Study] = None, estimators: Optional[Mapping[str, Estim
     return pandas.DataFrame(_audit_rows(json.loads(text)), columns=AUDIT_COLUMNS)
 
 
-def _frame(csv: str) -> pandas.DataFrame:
-    frame = pandas.read_csv(io.StringIO(csv), dtype={"study": str, "estimator": str}, keep_default_na=False, na_values=[""])
+def _frame(text: str) -> pandas.DataFrame:
+    names = next(csv.reader(io.StringIO(text)))
+    factors = names[names.index("condition") + 1:min(names.index(name) for name in ("trial", "estimator") if name in names)]
+    frame = pandas.read_csv(io.StringIO(text), dtype=dict.fromkeys(["study", "estimator", "reference", *factors], str),
+                            keep_default_na=False, na_values=[""])
+    for factor in factors:
+        if frame[factor].dropna().map(_is_number).all():
+            frame[factor] = pandas.to_numeric(frame[factor])
     return frame.apply(lambda column: column.map(_text_of_cell) if column.dtype == object else column)
+
+
+def _is_number(level: str) -> bool:
+    """As numbers are usually written: "01" is a name."""
+    return bool(_NUMBER.fullmatch(level))
 
 
 def _text_of_cell(cell: Any) -> Any:

@@ -164,10 +164,20 @@ def _rows(table: Any, name: str, columns: Sequence[str], x: str, where: Optional
     for key, level in (where or {}).items():
         if key not in table.columns:
             raise ValueError(f"where: {_check.words(key)} is no column; expected one of: {', '.join(map(str, table.columns))}")
-        table = table[table[key].astype(str) == str(level)]
+        table = table[table[key].map(lambda cell: _is_level(cell, level))]
         if table.empty:
             raise ValueError(f"where: no row has {key} = {level}")
     return table
+
+
+def _is_level(cell: Any, level: Any) -> bool:
+    """Equal as text or as a number: 1, 1.0 and "1" are one level."""
+    if str(cell) == str(level):
+        return True
+    try:
+        return float(cell) == float(level)
+    except (TypeError, ValueError):
+        return False
 
 
 def _chosen(rows: pandas.DataFrame, column: str, value: str, name: str) -> pandas.DataFrame:

@@ -206,11 +206,50 @@ class Estimate(unittest.TestCase):
         np.testing.assert_array_equal(together.R[0], pose.R)
         wrong, _ = rcme.estimate_relative_pose(*images, *self.arguments[2:])
         self.assertGreater(np.linalg.norm(wrong.R - first.R), np.linalg.norm(pose.R - first.R))
-        folding = {"model": "SIMPLE_RADIAL", "params": [fx, cx, cy, -3.0], **size}
-        with self.assertRaisesRegex(ValueError, r"x2: row \d+ is \[.*sends no ray"):
-            rcme.estimate_relative_pose(*images, self.arguments[2], folding)
-        with self.assertRaisesRegex(ValueError, r"pairs\[0\]\.x1: row \d+ is"):
-            rcme.estimate_relative_poses([(*images, folding, lens)])
+        self.assertTrue(0.3 < info["sigma"] < 0.8)  # of the images as they are, not of their undistorted points
+
+    def test_a_match_that_has_no_ray_is_no_inlier(self):
+        fx, fy, cx, cy = self.trial["camera1"]["params"]
+        lens = {**self.trial["camera1"], "model": "OPENCV_FISHEYE", "params": [fx, fy, cx, cy, 0.0, 0.0, 0.0, 0.0]}
+        x1, x2, camera1, camera2 = self.arguments
+        row = int(np.flatnonzero(self.trial["truth"]["inliers"])[3])
+        far = x1.copy()
+        far[row] = [cx + 1.6 * fx, cy]  # 92 deg from the axis
+        for _, info in (rcme.estimate_relative_pose(x1, x2, lens, lens), rcme.estimate_relative_pose(far, x2, lens, lens)):
+            self.assertEqual((len(info["inliers"]), len(info["inlier_probabilities"])), (100, 100))
+        self.assertFalse(info["inliers"][row])
+        self.assertEqual(info["inlier_probabilities"][row], 0.0)
+        many = rcme.estimate_relative_poses([(far, x2, lens, lens)])
+        np.testing.assert_array_equal(many.inliers[0], info["inliers"])
+
+    def test_pixels_that_count_from_the_principal_point(self):
+        """K says the size of the image only where it holds the points."""
+        x1, x2, camera1, camera2 = self.arguments
+        fx, fy, cx, cy = camera1["params"]
+        centre = np.array([cx, cy])
+        K, centred = (np.array([[fx, 0, c[0]], [0, fy, c[1]], [0, 0, 1.0]]) for c in (centre, (0, 0)))
+        expected, of = rcme.estimate_relative_pose(x1, x2, K, K)
+        pose, info = rcme.estimate_relative_pose(x1 - centre, x2 - centre, centred, centred)
+        self.assertLess(np.linalg.norm(pose.R - expected.R), 1e-4)
+        self.assertLess(abs(np.log(info["p_failure"] / of["p_failure"])), 0.7)
+        self.assertLess(abs(np.log(np.trace(info["pose_cov"]) / np.trace(of["pose_cov"]))), 0.5)
+
+    def test_an_interrupt_within_a_function_is_one(self):
+        def interrupted(*_):
+            raise KeyboardInterrupt
+        with self.assertRaises(KeyboardInterrupt):
+            rcme.estimate_relative_pose(*self.arguments, {"estimator": "f"}, estimators={"f": interrupted})
+
+    def test_what_a_generator_raises_is_its_own(self):
+        def pairs():
+            yield tuple(self.arguments)
+            raise TypeError("of the generator")
+        with self.assertRaisesRegex(TypeError, "of the generator"):
+            rcme.estimate_relative_poses(pairs())
+        masked = np.ma.array(self.arguments[0], mask=False)
+        masked[:3] = np.ma.masked
+        with self.assertRaisesRegex(ValueError, "x1: some of its numbers are masked"):
+            rcme.estimate_relative_pose(masked, *self.arguments[1:])
 
     def test_every_estimator_with_its_options(self):
         known = rcme.estimators()

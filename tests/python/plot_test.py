@@ -29,6 +29,12 @@ class Plot(unittest.TestCase):
         band = self.ax.collections[0].get_paths()[0].vertices
         self.assertAlmostEqual(band[:, 1].max(), 100 * own.upper.max())
 
+    def test_a_level_is_one_however_it_is_written(self):
+        for level in (0.1, "0.1", "0.10", "1e-1"):
+            rcme.plot.rate(self.ax, self.summary, "condition", where={"outlier_ratio": level})
+        with self.assertRaisesRegex(ValueError, "no row has outlier_ratio = 0.2"):
+            rcme.plot.rate(self.ax, self.summary, "condition", where={"outlier_ratio": 0.2})
+
     def test_words_stand_side_by_side(self):
         frame = self.summary.assign(scene=self.summary.outlier_ratio.map({0.1: "room", 0.4: "street"}))
         rcme.plot.rate(self.ax, frame, "scene", "success")

@@ -12,6 +12,7 @@ import warnings
 import numpy as np
 import rcme
 from program import PROGRAM
+from rcme._function import code_of
 from small_study import STUDY, TUNED_STUDY
 
 
@@ -162,6 +163,16 @@ class Run(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "another study|difference"):
                 rcme.run(STUDY, {"mine": raise_error}, trials=2, out=out)
 
+    def test_functions_without_a_source_differ_by_what_they_do(self):
+        def made(body):
+            names = {}
+            exec(f"def f(*_): {body}", names)
+            return names["f"]
+        pairs = [(made("return None"), made("raise RuntimeError")), (lambda *_: None, lambda *_: 1)]
+        for first, second in pairs:
+            self.assertNotEqual(code_of(first), code_of(second))
+        self.assertEqual(code_of(made("return None")), code_of(made("return None")))
+
     def test_a_run_within_a_run_is_an_error_not_a_wait(self):
         words = []
 
@@ -233,9 +244,40 @@ class Tables(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "holds something"):
                 rcme.write_pairs(written, pairs)
         for key, value, message in (("x2", np.zeros((3, 2)), "x2 3"), ("camera1", np.eye(3), "camera1"),
-                                    ("truth", {"R": 2 * np.eye(3), "t": [1, 0, 0]}, "truth: R"), ("sigma_px", -1.0, "sigma_px")):
+                                    ("truth", {"R": 2 * np.eye(3), "t": [1, 0, 0]}, "truth: R"), ("truth", [1], "truth"),
+                                    ("sigma_px", -1.0, "sigma_px"), ("sigma_px", 1e6, "sigma_px"), ("scene", "mine ", "scene")):
             with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, rf"pairs\[0\].*{message}"):
                 rcme.write_pairs(folder, [{**pairs[0], key: value}])
+        with tempfile.NamedTemporaryFile() as file, self.assertRaisesRegex(ValueError, "folder: .*cannot be made"):
+            rcme.write_pairs(file.name, pairs)
+        with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, r"pairs\[0\]: 3 is not allowed"):
+            rcme.write_pairs(folder, [3])
+
+    def test_names_of_scenes_are_texts(self):
+        pairs = [{**rcme.simulate(STUDY, trial=i), "scene": name} for i, name in enumerate(("00", "01", "1"))]
+        with tempfile.TemporaryDirectory() as folder:
+            written = rcme.write_pairs(os.path.join(folder, "pairs"), pairs)
+            study = {**STUDY, "trials": 1, "factors": {}, "data": {"scene": "match_files", "folder": written}}
+            run = rcme.run(study)
+            for frame in (rcme.conditions(study), rcme.summarize(run), rcme.trials(run)):
+                self.assertEqual(list(dict.fromkeys(frame.pair_scene)), ["00", "01", "1"])
+
+    def test_a_label_that_a_list_could_not_hold_is_refused_before_the_run(self):
+        with self.assertRaisesRegex(ValueError, "without a comma"):
+            rcme.run(STUDY, {"a, b": {"name": "standard"}})
+
+    def test_a_process_that_was_forked_leaves_the_runs_of_the_other(self):
+        code = f"""
+import os, rcme, sys
+study = {STUDY!r}
+run = rcme.run(study, trials=1)
+if os.fork() == 0:
+    sys.exit(0)
+os.wait()
+print(os.path.exists(run), os.path.exists(rcme.run(study, trials=1)))
+"""
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        self.assertEqual(done.stdout.strip(), "True True", done.stderr)
 
     def test_summarize(self):
         frame = rcme.summarize(self.run_file, times=True)
