@@ -176,10 +176,10 @@ std::string DescribeCoverage(const Answer& a) {
   std::vector<std::string> others;
   for (const AskedEstimator& other : a.alike)
     if (!std::isnan(other.coverage))
-      others.push_back(fmt::format("that of {} in {:.0f} %", other.label, 100.0 * other.coverage));
+      others.push_back(fmt::format("{} {:.0f} %", other.label, 100.0 * other.coverage));
   return fmt::format("the 95 % region of {} contains the truth in {}: {}{}{}{}", a.best.label,
                      FormatEstimate(a.coverage, kPercent), DescribeAskedVerdict(a), sharpness,
-                     others.empty() ? "" : "; ", fmt::join(others, ", "));
+                     others.empty() ? "" : "; regions of the others: ", fmt::join(others, ", "));
 }
 
 // What the simulated estimators are told rightly, and so the answer takes for granted.
