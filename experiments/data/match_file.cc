@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -205,6 +206,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.camera1 = lens1.camera;
   file.camera2 = lens2.camera;
   file.doubts = FindHeaderDoubts(header, file, given);
+  std::ranges::move(rows.ListDoubts(), std::back_inserter(file.doubts));
   ReadScores(header, rows, &file);
   UndistortMatches(
       lens1, lens2, [&](size_t i) { return rows.Place(i); }, &file);

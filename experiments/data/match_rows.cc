@@ -44,6 +44,8 @@ bool HasColumnsFirst(const std::vector<std::string>& fields) {
 }
 
 Correspondence ReadMatch(const std::vector<std::string>& fields, const GzipLines& lines) {
+  if (fields.size() < kCoordinateColumns.size())
+    lines.Fail(fmt::format("{} columns; x1,y1,x2,y2 are needed", fields.size()));
   std::array<double, 4> x{};
   for (size_t i = 0; i < x.size(); ++i) {
     if (ParseReal(fields[i], &x[i]) && std::abs(x[i]) <= kMaxCoordinatePx) continue;
@@ -87,7 +89,7 @@ void MatchRows::Add(std::string_view line, const GzipLines& lines) {
   } else if (file_->matches.size() == kMaxMatchesPerFile) {
     lines.Fail(fmt::format("too many matches; at most {} are allowed", kMaxMatchesPerFile));
   } else {
-    RequireNumColumns(fields.size(), lines);
+    if (fields.size() > num_columns_ && !first_with_more_) first_with_more_ = file_->matches.size();
     file_->matches.push_back(ReadMatch(fields, lines));
     line_numbers_.push_back(lines.line_number());
     if (sigma_column_ > 0) file_->sigma_px.push_back(ReadSigma(fields, lines));
@@ -95,16 +97,13 @@ void MatchRows::Add(std::string_view line, const GzipLines& lines) {
   }
 }
 
-// A row with more columns than stated would be read by the wrong ones, or is two rows. The last columns may be
-// missing.
-void MatchRows::RequireNumColumns(size_t num_columns, const GzipLines& lines) const {
-  if (num_columns < kCoordinateColumns.size())
-    lines.Fail(fmt::format("{} columns; x1,y1,x2,y2 are needed", num_columns));
-  if (num_columns <= num_columns_) return;
-  lines.Fail(has_names_ ? fmt::format("{} columns, but {} column names", num_columns, num_columns_)
-                        : fmt::format("{} columns without names; give x1,y1,x2,y2 alone, or a line of column "
-                                      "names that begins with them",
-                                      num_columns));
+std::vector<CameraDoubt> MatchRows::ListDoubts() const {
+  if (!first_with_more_) return {};
+  return {{Place(*first_with_more_),
+           has_names_
+               ? "a row has more columns than there are names; is it two rows?"
+               : "columns without names: the first four are taken as x1,y1,x2,y2; a line of column names "
+                 "says otherwise"}};
 }
 
 std::string MatchRows::Place(size_t match) const {

@@ -30,13 +30,14 @@ class MatchRows {
   void Add(std::string_view line, const GzipLines& lines);
 
   std::string Place(size_t match) const;  // "file:12" of a match
+  // Rows with more columns than stated are read by their first ones.
+  std::vector<CameraDoubt> ListDoubts() const;
   // Returns the scores; nothing unless there is exactly one such column. Call it only if the header has
   // better_score.
   std::optional<std::vector<double>> Scores() const;
 
  private:
   void SetNames(const std::vector<std::string>& fields, std::string_view line, const GzipLines& lines);
-  void RequireNumColumns(size_t num_columns, const GzipLines& lines) const;
   double ReadSigma(const std::vector<std::string>& fields, const GzipLines& lines) const;
 
   MatchFile* file_;
@@ -44,6 +45,7 @@ class MatchRows {
   std::vector<std::string> scores_;  // of the matches, as text: only numbers if they are used
   bool has_names_ = false;
   size_t num_columns_ = kCoordinateColumns.size();
+  std::optional<size_t> first_with_more_;       // match
   size_t sigma_column_ = 0, score_column_ = 0;  // 0, the place of x1: no such column
   std::ptrdiff_t num_score_columns_ = 0;
 };

@@ -237,14 +237,16 @@ def _size_about(centre: float) -> int:
 
 
 def within_image(points: np.ndarray, camera: Any) -> tuple[np.ndarray, Any]:
-    """Points and camera as given, but for K with points outside of the image that it stands for, such as pixels that count from
-    the principal point: then both with the origin in the corner of an image that holds all points about its centre."""
+    """Points and camera as given, but for K where more than a tenth of the points are outside of the image that it stands for,
+    such as pixels that count from the principal point: then both with the origin in the corner of an image that holds all points
+    about its centre."""
     if isinstance(camera, Mapping) or len(points) == 0:
         return points, camera
     K = np.array(camera, dtype=np.float64)
     centre = K[:2, 2] / K[2, 2]
     size = np.array([_size_about(c) for c in centre])
-    if (points >= -0.5).all() and (points <= size - 0.5).all():
+    is_outside = ((points < -0.5) | (points > size - 0.5)).any(axis=1)
+    if is_outside.mean() <= 0.1:
         return points, camera
     moved = np.clip(np.abs(points - centre).max(axis=0), 0.0, 499_999.0)
     K[:2, 2] += K[2, 2] * (moved - centre)

@@ -326,8 +326,11 @@ class MatchLines {
 };
 
 // All that a reader gives, but for the numbers of lines in its doubts.
+// Further columns give a doubt, and nothing else.
 std::string Described(const MatchFile& file) {
-  std::string text = fmt::format("{}|{}|{}\n", file.scene, file.matches.size(), file.doubts.size());
+  const auto num_doubts = std::ranges::count_if(
+      file.doubts, [](const CameraDoubt& doubt) { return doubt.what.find("columns") == std::string::npos; });
+  std::string text = fmt::format("{}|{}|{}\n", file.scene, file.matches.size(), num_doubts);
   for (const Camera& camera : {file.camera1, file.camera2}) {
     text += fmt::format("{} {} {} {} {} {}\n", camera.fx, camera.fy, camera.cx, camera.cy, camera.width,
                         camera.height);
