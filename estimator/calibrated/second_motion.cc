@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "estimator/calibrated/candidates.h"
 #include "estimator/calibrated/neighbour_matches.h"
 #include "estimator/calibrated/part_search.h"
 

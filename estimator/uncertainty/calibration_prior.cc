@@ -1,5 +1,6 @@
 #include "estimator/uncertainty/calibration_prior.h"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 
 namespace rcme {
