@@ -37,7 +37,8 @@ IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer
                                 const Explanation& explanation);
 
 // What stated errors of the calibration add to the usual ones: the root of the excess of each variance, or 0.
-// The check knows the usual errors: a third of the trials that it was fitted to have them.
+// The check knows the usual errors: of the 9,000 draws that it was fitted to, 3,000 are of a population that
+// has them (studies/any_condition.yaml).
 CalibrationPrior ExceedUsualErrors(CalibrationPrior stated);
 
 }  // namespace rcme

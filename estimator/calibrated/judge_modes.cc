@@ -20,9 +20,9 @@ double FindCheckFactor(const ModelCheck& check, const CalibratedOptions& options
   return is_checked ? CovarianceFactor(check) : 1.0;
 }
 
-// How much of the probability within the bounds is left if the intrinsics are uncertain, at least 1e-6, and
-// beyond what the check knows. `curvature`: InverseOfObserved. `reach`: the covariance of the answer if the
-// intrinsics are exact.
+// How much of the probability within the bounds is left by stated errors of the intrinsics, at least 1e-6:
+// with the check, by their excess over the usual ones, which it counts. `curvature`: InverseOfObserved.
+// `reach`: the covariance of the answer if the intrinsics are exact.
 double ComputeLeftByIntrinsics(const JudgedModes& judged, const Mode& mode, const Matrix5d& curvature,
                                const Matrix5d& reach, RandomStream& rng) {
   const CalibratedOptions& options = judged.options;

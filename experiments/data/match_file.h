@@ -67,7 +67,7 @@ struct MatchFile {
   std::vector<double> sigma_px;  // per match; empty: the file has no such column
   // Of images with lens distortion: matches are undistorted, camera1 and camera2 are pinholes.
   std::optional<Undistortion> undistortion = {};
-  std::vector<size_t> rows = {};  // of the matches among all in the file; empty: the file has no other
+  std::vector<size_t> rows = {};  // of the matches among all in the file; empty: all of them
   size_t num_rows = 0;            // in the file, with those that are left out
   double baseline = std::numeric_limits<double>::quiet_NaN();         // NaN: not stated
   std::optional<double> assumed_sigma_px = {};                        // the header sigma_px

@@ -325,8 +325,7 @@ class MatchLines {
   RandomStream& rng_;
 };
 
-// All that a reader gives, but for the numbers of lines in its doubts.
-// Further columns give a doubt, and nothing else.
+// All that a reader gives, but for the numbers of lines in its doubts and the doubt about further columns.
 std::string Described(const MatchFile& file) {
   const auto num_doubts = std::ranges::count_if(
       file.doubts, [](const CameraDoubt& doubt) { return doubt.what.find("columns") == std::string::npos; });

@@ -184,8 +184,7 @@ class Estimate(unittest.TestCase):
             np.testing.assert_array_equal(pose.R, first.R)
 
     def test_lenses_are_undone(self):
-        """Matches through OpenCV's fisheye model, written out: those of the pinhole come back, and the pixels that have no ray
-        are errors."""
+        """Matches through OpenCV's fisheye model, written out: those of the pinhole come back."""
         fx, fy, cx, cy = self.trial["camera1"]["params"]
         size = {key: self.trial["camera1"][key] for key in ("width", "height")}
 
