@@ -17,7 +17,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace rcme::HWY_NAMESPACE {
 
-// The result of visit(matches) for a vector of matches: the inliers (eq::find-inlier) and their spreads.
+// The result of visit(matches) for a vector of matches: the inliers (eq::find-inlier) and their spreads. A visitor takes
+// kSideBySide vectors.
 struct Visited {
   Mask is_inlier;
   Vec spread;
@@ -28,15 +29,21 @@ struct Visited {
 template <bool has_spread, typename Visit>
 HWY_INLINE unsigned ScanBlock(const MatchBlock& block, int num_matches, const Visit& visit, double** spread) {
   unsigned bits = 0;
-  for (int lane = 0; lane < kBlockSize; lane += kLanes) {
-    const Visited visited = visit(LoadMatches(block, lane));
-    const Mask is_inlier = num_matches < kBlockSize
-                               ? hn::And(visited.is_inlier, AreMatches(lane, num_matches))
-                               : visited.is_inlier;
-    if constexpr (has_spread) {
-      *spread += StoreSelected(visited.spread, is_inlier, *spread);
+  for (int first = 0; first < kBlockSize; first += kSideBySide * kLanes) {
+    Matches matches[kSideBySide];
+    Visited visited[kSideBySide];
+    for (int v = 0; v < kSideBySide; ++v) matches[v] = LoadMatches(block, first + v * kLanes);
+    visit(matches, visited);
+    for (int v = 0; v < kSideBySide; ++v) {
+      const int lane = first + v * kLanes;
+      const Mask is_inlier = num_matches < kBlockSize
+                                 ? hn::And(visited[v].is_inlier, AreMatches(lane, num_matches))
+                                 : visited[v].is_inlier;
+      if constexpr (has_spread) {
+        *spread += StoreSelected(visited[v].spread, is_inlier, *spread);
+      }
+      bits |= ReadMaskBits(is_inlier) << lane;
     }
-    bits |= ReadMaskBits(is_inlier) << lane;
   }
   return bits;
 }
@@ -63,9 +70,11 @@ HWY_INLINE void Scan(const MatchBlock* blocks, int num_matches, InlierScan* scan
 void ScanExact(const MatchBlock* blocks, int num_matches, const double* F, double threshold,
                InlierScan* scan) {
   const Vec limit = Set(threshold);
-  Scan<false>(blocks, num_matches, scan, [&](const Matches& matches) {
-    const Constraint c = EvaluateConstraint(Broadcast{F}, matches);
-    return Visited{c.g * c.g <= limit * Dot4(c.gradient, c.gradient), limit};
+  Scan<false>(blocks, num_matches, scan, [&](const Matches* matches, Visited* visited) {
+    for (int v = 0; v < kSideBySide; ++v) {
+      const Constraint c = EvaluateConstraint(Broadcast{F}, matches[v]);
+      visited[v] = {c.g * c.g <= limit * Dot4(c.gradient, c.gradient), limit};
+    }
   });
 }
 
@@ -78,19 +87,24 @@ struct OneModel {
 void ScanPrinted(const MatchBlock* blocks, int num_matches, const WhitenedModel& model, double threshold,
                  InlierScan* scan) {
   const Vec limit = Set(threshold);
-  Scan<true>(blocks, num_matches, scan, [&](const Matches& matches) {
-    const PrintedDistance distance = EvaluatePrinted(OneModel{model}, matches);
-    return Visited{IsWithin(distance, limit), distance.determinant};
+  Scan<true>(blocks, num_matches, scan, [&](const Matches* matches, Visited* visited) {
+    for (int v = 0; v < kSideBySide; ++v) {
+      const PrintedDistance distance = EvaluatePrinted(OneModel{model}, matches[v]);
+      visited[v] = {IsWithin(distance, limit), distance.determinant};
+    }
   });
 }
 
 void ScanUncertain(const MatchBlock* blocks, int num_matches, const double* F, const double* coefficients,
                    double threshold, InlierScan* scan) {
   const Vec limit = Set(threshold);
-  Scan<true>(blocks, num_matches, scan, [&](const Matches& matches) {
-    const RankAwareTerms terms = EvaluateRankAware(F, coefficients, matches);
-    const Vec total = terms.n2 + terms.variance;
-    return Visited{terms.g2 <= limit * total, total / terms.n2};
+  Scan<true>(blocks, num_matches, scan, [&](const Matches* matches, Visited* visited) {
+    RankAwareTerms terms[kSideBySide];
+    EvaluateRankAware<kSideBySide>(F, coefficients, matches, terms);
+    for (int v = 0; v < kSideBySide; ++v) {
+      const Vec total = terms[v].n2 + terms[v].variance;
+      visited[v] = {terms[v].g2 <= limit * total, total / terms[v].n2};
+    }
   });
 }
 
