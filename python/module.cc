@@ -4,8 +4,10 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "estimator/estimator_registry.h"
 #include "experiments/core/files/file_output.h"
@@ -35,6 +37,15 @@ py::list Estimators() {
   return all;
 }
 
+// A message about an option of the program ("--of: ...") as one about the argument of the same name.
+std::string NameArgument(const std::string& message) {
+  if (!message.starts_with("--")) return message;
+  const size_t end = std::min(message.find_first_of(": "), message.size());
+  std::string name = message.substr(2, end - 2);
+  std::ranges::replace(name, '-', '_');
+  return (name == "set" ? "overrides" : name) + message.substr(end);
+}
+
 }  // namespace
 
 PYBIND11_MODULE(_rcme, module) {
@@ -48,7 +59,7 @@ PYBIND11_MODULE(_rcme, module) {
     try {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const InputError& error) {
-      PyErr_SetString(PyExc_ValueError, error.what());
+      PyErr_SetString(PyExc_ValueError, NameArgument(error.what()).c_str());
     } catch (const std::filesystem::filesystem_error& error) {
       PyErr_SetString(PyExc_ValueError, error.what());
     }

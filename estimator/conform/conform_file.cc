@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kConformFormat = "rcme conform 2";
+constexpr const char* kConformFormat = "rcme conform 3";
 
 // JSON has only finite numbers.
 Json FactorAsJson(double factor) { return std::isfinite(factor) ? Json(factor) : Json("all motions"); }
@@ -233,6 +233,14 @@ void ReadFamiliar(const Json& json, ConformRule* rule) {
   reader.RequireNoOther();
 }
 
+// Of the whole file but its checksum.
+std::string Checksum(Json json) {
+  json.erase("checksum");
+  Fnv1a hash;
+  hash.Add(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return fmt::format("{:016x}", hash.value());
+}
+
 ConformRule RuleFrom(const Json& json) {
   ObjectReader reader(json, "the file");
   if (const std::string format = reader.Text("format"); format != kConformFormat)
@@ -245,12 +253,14 @@ ConformRule RuleFrom(const Json& json) {
   ReadFailure(reader.At("failure"), &rule);
   ReadAcceptRule(reader.At("accept_rule"), &rule);
   ReadFamiliar(reader.At("familiar"), &rule);
+  const std::string checksum = reader.Text("checksum");
   reader.RequireNoOther();
   const size_t width = rule.familiar_features.size();
   if (width > 0 && rule.familiar.size() / width > static_cast<size_t>(rule.origin.num_groups))
     reader.Fail(fmt::format("has {} familiar answers, more than 'groups', which are {}",
                             rule.familiar.size() / width, rule.origin.num_groups));
   ConformJudge{rule};  // throws for numbers that are no rule
+  if (checksum != Checksum(json)) reader.Fail("is damaged, or was changed by hand: its checksum is another one");
   return rule;
 }
 
@@ -310,7 +320,7 @@ std::string ConformFileText(const ConformRule& rule, const std::vector<std::stri
   for (const auto& [option, value] : rule.options) options[option] = value;
   for (const double factor : rule.factors) factors.push_back(FactorAsJson(factor));
   const ConformOrigin& origin = rule.origin;
-  const Json json = {
+  Json json = {
       {"format", kConformFormat},
       {"guarantees", guarantees},
       {"estimator", {{"name", rule.estimator}, {"options", std::move(options)}}},
@@ -338,6 +348,7 @@ std::string ConformFileText(const ConformRule& rule, const std::vector<std::stri
         {"risk", rule.risk},
         {"greatest_log_odds", rule.greatest_log_odds ? Json(*rule.greatest_log_odds) : Json()}}},
       {"familiar", FamiliarAsJson(rule)}};
+  json["checksum"] = Checksum(json);
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

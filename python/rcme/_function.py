@@ -6,6 +6,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import inspect
+import math
 import os
 import traceback
 import warnings
@@ -134,6 +135,8 @@ def fields_of(result: Any, num_matches: int) -> dict[str, Any]:
     for key in ("p_failure", "sigma"):
         if info.get(key) is not None:
             fields[key] = float(_array(f"info[{key!r}]", info[key], ()))
+            if not math.isfinite(fields[key]):  # NaN would count as not stated
+                raise Unreadable(f"info[{key!r}] is {fields[key]}; expected a finite number, or None where it is not known")
     return fields
 
 

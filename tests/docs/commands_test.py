@@ -1,7 +1,7 @@
 """Every command of every page runs as it stands there, in the order of the page, but for fewer trials; RCME names the program.
 Blocks called `text` are compared with what the command before them prints, line by line and number by number.
 
-    RCME=build/release/bin/rcme python3 tests/docs/commands_test.py [PAGE]"""
+    RCME=build/release/bin/rcme python3 tests/docs/commands_test.py [PAGE ...]"""
 
 import difflib
 import os
@@ -193,8 +193,9 @@ def add_test(page):
     setattr(Commands, name, lambda self: self.run_page(page))
 
 
-for each in PAGES if len(sys.argv) < 2 or sys.argv[1].startswith("-") else [sys.argv.pop(1)]:
+asked = [word for word in sys.argv[1:] if not word.startswith("-")]
+for each in asked or PAGES:
     add_test(each)
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)
+    unittest.main(argv=[word for word in sys.argv if word not in asked], verbosity=2)

@@ -38,7 +38,7 @@ TEST_F(Conform, WritesAFileAndSaysWhatItPromises) {
   const std::string text = Make();
   EXPECT_THAT(text, HasSubstr("conformed"));
   EXPECT_THAT(text, HasSubstr("contains the truth with probability at least 95 %"));
-  EXPECT_THAT(ReadBytes(file_), HasSubstr("\"format\": \"rcme conform 2\""));
+  EXPECT_THAT(ReadBytes(file_), HasSubstr("\"format\": \"rcme conform 3\""));
   EXPECT_EQ(folder_.NumEntries(), 2);  // the study and the file: no checkpoint is left
   ExpectFormatsAgree({"conform", study_, "--estimator", "standard", "--trials", "100", "--out", file_}, 0,
                      "regions");

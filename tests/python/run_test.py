@@ -64,6 +64,8 @@ ANSWERS = {
     "covariance": (((np.eye(3), np.ones(3)), {"pose_cov": -np.eye(6)}), "invalid_covariance"),
     "covariance_nan": (((np.eye(3), np.ones(3)), {"pose_cov": np.full((6, 6), np.nan)}), "invalid_covariance"),
     "probability": (((np.eye(3), np.ones(3)), {"p_failure": 1.5}), "invalid_motion"),
+    "probability_nan": (((np.eye(3), np.ones(3)), {"p_failure": np.nan}), "unreadable_answer"),
+    "infinite_sigma": (((np.eye(3), np.ones(3)), {"sigma": np.inf}), "unreadable_answer"),
     "status": ((None, {"status": "fine"}), "unreadable_answer"),
     "ok_without": ((None, {"status": "ok"}), "unreadable_answer"),
     "of_the_judge": ((None, {"status": "invalid_motion"}), "unreadable_answer"),
@@ -100,6 +102,13 @@ class Run(unittest.TestCase):
                 run = rcme.run(STUDY, {"mine": estimate_again}, threads=threads, out=os.path.join(folder, "run.sqlite"))
                 tables.append(rcme.summarize(run))
         self.assertTrue(tables[0].equals(tables[1]))
+
+    def test_errors_name_the_argument_not_the_option_of_the_program(self):
+        run = rcme.run(STUDY, trials=2)
+        for name, call in {"of": lambda: rcme.compare(run, of="colour"), "by": lambda: rcme.reliability(run, by="colour"),
+                           "overrides": lambda: rcme.run(STUDY, overrides={"colour": 1})}.items():
+            with self.assertRaisesRegex(ValueError, f"^{name}: "):
+                call()
 
     def test_nothing_that_comes_back_ends_a_run(self):
         functions = {name: (lambda answer: lambda *arguments: answer)(answer) for name, (answer, _) in ANSWERS.items()}
