@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "estimator/conform/conform_file.h"
 #include "tests/end_to_end/bad_input.h"
 #include "tests/test_support/match_text.h"
 #include "tests/test_support/result_formats.h"
@@ -179,13 +180,11 @@ TEST_F(Conform, SaysWhereAPopulationHasNoAnswers) {
 // A file of somebody else may name a command.
 TEST_F(Conform, RunsNoCommandThatNobodyAllowed) {
   Make();
-  std::string bytes = ReadBytes(file_);
-  const size_t name = bytes.find("\"name\": \"standard\""), end = bytes.find("},\n \"calibration\"");
-  ASSERT_NE(end, std::string::npos);
   const std::string marker = folder_.Path("it_ran");
-  bytes.replace(name, bytes.rfind('}', end - 1) - name,
-                "\"name\": \"process\", \"options\": {\"command\": \"touch " + marker + "\"");
-  const std::string theirs = folder_.Write("theirs.json", bytes);
+  ConformRule rule = ReadConformFile(file_).rule;
+  rule.estimator = "process";
+  rule.options = {{"command", "touch " + marker}};
+  const std::string theirs = folder_.Write("theirs.json", ConformFileText(rule, {}));
   const std::string matches = folder_.Write("m.csv", MatchHeader() + MatchRows(60));
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"estimate", matches, "--conform", theirs},

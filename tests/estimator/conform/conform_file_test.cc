@@ -167,15 +167,21 @@ TEST_F(ConformEstimator, RefusesAFileThatHasChanged) {
   const std::string path = folder_.Write("x.json", ExampleText());
   Settings options = ConformOptions(path);
   EXPECT_NO_THROW(Make(options));
-  folder_.Write("x.json", Replaced("\"level\": 0.95", "\"level\": 0.9"));
+  ConformRule other = ExampleRule();
+  other.level = 0.9;
+  folder_.Write("x.json", ConformFileText(other, {}));
   EXPECT_TRUE(ThrowsInputError([&] { Make(options); }, {"has changed since"}));
 }
 
 TEST_F(ConformEstimator, RefusesItsOwnKindAndUnknownOnes) {
-  const std::string of_itself = folder_.Write("a.json", Replaced("\"standard\"", "\"conform\"")),
-                    unknown = folder_.Write("b.json", Replaced("\"standard\"", "\"nobody\""));
-  EXPECT_TRUE(ThrowsInputError([&] { Make({{"file", of_itself}}); }, {"of `conform` itself"}));
-  EXPECT_TRUE(ThrowsInputError([&] { Make({{"file", unknown}}); }, {"unknown estimator 'nobody'"}));
+  ConformRule rule = ExampleRule();
+  const auto expect = [&](const std::string& estimator, const std::string& words) {
+    rule.estimator = estimator;
+    const std::string path = folder_.Write(estimator + ".json", ConformFileText(rule, {}));
+    EXPECT_TRUE(ThrowsInputError([&] { Make({{"file", path}}); }, {words}));
+  };
+  expect("conform", "of `conform` itself");
+  expect("nobody", "unknown estimator 'nobody'");
 }
 
 TEST_F(ConformEstimator, WithoutAFileAnswersNothing) {
