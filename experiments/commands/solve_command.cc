@@ -97,6 +97,10 @@ that the rate does not fall with the setting; it holds for any such curve. The o
 supposes a logistic curve near the crossing; it is several times narrower, and wrong for
 steps and plateaus. Trials of one level are the same for all estimators.
 
+A refusal is no failure. An estimator that refuses the hardest problems fails less often
+there than before, so that the rate of failure falls again and what is supposed does not
+hold; ask for --quantity failure_or_refusal then.
+
 If the command is stopped or killed, run it again with --out: finished work is kept in
 OUT/unfinished.part until the end.
 

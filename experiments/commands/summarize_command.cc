@@ -193,7 +193,8 @@ Examples:
     const auto summarize = [&] {
       if (!arguments->by.empty()) return SummarizeBy(ReadRun(store), arguments->with_times, arguments->by);
       if (arguments->fifths_of.empty()) return Summarize(store, arguments->with_times, pooling);
-      return Summarize(ReadRun(store), arguments->with_times, GroupByFifth(store, arguments->fifths_of));
+      return SummarizeFifths(ReadRun(store), arguments->with_times,
+                             GroupByFifth(store, arguments->fifths_of));
     };
     Summary summary = summarize();
     summary.preregistration = DecidePreregistered(store, arguments->run);

@@ -56,10 +56,10 @@ std::string CrossingsAsTable(const Study& study, const CrossingQuestion& questio
   const std::int64_t num_trials = question.num_trials * std::ssize(answer.crossings);
   std::int64_t num_simulated = 0;
   for (const RateCrossing& crossing : answer.crossings) num_simulated += crossing.num_trials();
-  return FormatParagraph(
-             fmt::format("Study {}: {} of {} within [{:.6g}, {:.6g}] at which the rate of {} crosses {:.6g}",
-                         study.name, question.is_falling ? "the least value" : "the greatest value",
-                         question.setting, question.from, question.to, question.event.name, question.rate)) +
+  return FormatParagraph(fmt::format(
+             "Study {}: the value of {} within [{:.6g}, {:.6g}] at which the rate of {} {} {:.6g}",
+             study.name, question.setting, question.from, question.to, question.event.name,
+             question.is_falling ? "falls below" : "rises above", question.rate)) +
          "\n" + RenderText(MakeTable(columns, answer.crossings)) + "\n" +
          FormatParagraph(fmt::format(
              "Intervals are of 95 % each. The first supposes only that the rate does not {} with {}; the "

@@ -10,6 +10,7 @@
 #include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/study/estimator_spec.h"
+#include "experiments/study/population.h"
 #include "stats/constants.h"
 #include "stats/moments.h"
 #include "stats/multiple_testing.h"
@@ -294,7 +295,8 @@ Comparison Compare(const ReadableRun& readable, const std::string& reference, co
                         pairs.num_trials(),
                         run.NumTrials(),
                         {},
-                        IsTargetOpen(run)};
+                        IsTargetOpen(run),
+                        is_pooled && !is_of_population && IsSampleOfPopulation(run.identity)};
   if (pairs.is_weighted()) {
     comparison.caution = "trials are weighted (tilted_to), so this comparison has no counts of them";
     return comparison;

@@ -56,8 +56,9 @@ struct Comparison {
   std::vector<Compared> compared;
   std::vector<ComparisonRow> rows;  // by condition, estimator, event; empty for one estimator
   std::int64_t num_trials_done = 0, num_trials_planned = 0;
-  std::string caution;          // why there are no rows; empty if there is no reason
-  bool is_target_open = false;  // `rcme run --until` has not ended
+  std::string caution;             // why there are no rows; empty if there is no reason
+  bool is_target_open = false;     // `rcme run --until` has not ended
+  bool is_of_these_draws = false;  // pooled draws of a population without intervals of it
 };
 
 // Compares in one pass over the raw trials, in memory that does not grow with them. `reference` is a label

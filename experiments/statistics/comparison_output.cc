@@ -6,6 +6,7 @@
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/statistics/population_summary.h"
 #include "experiments/study/run_description.h"
 
 namespace rcme {
@@ -195,6 +196,7 @@ std::string ComparisonAsTable(const Comparison& comparison) {
         "Scenes are repeated: n counts them; differences are of the means over a scene's\n"
         "trials, of errors in its first.\n";
   }
+  if (comparison.is_of_these_draws) text += kOfTheseDraws;
   text += fmt::format(
       "Holm p: adjusted for all {} tests of this comparison (what is compared,\n"
       "estimators, conditions); *: below 0.05.\n",

@@ -59,14 +59,16 @@ Answer ReadAnswer(const TrialRecord& record, const FailureBounds& bounds) {
   return answer;
 }
 
-// Returns the answers by estimator, in order of condition and trial; empty if trials are weighted.
+// Returns the answers by estimator, in order of condition and trial. Throws InputError if trials are
+// weighted.
 std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDescription& run,
                                            const Groups& groups) {
   std::vector<std::vector<Answer>> answers(run.estimators.size());
   const TrialClusters clusters(run);
-  bool is_weighted = false;
   store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
-    is_weighted = is_weighted || problem.weight != 1.0;
+    if (problem.weight != 1.0)
+      throw InputError(run.study +
+                       ": its trials are weighted (tilted_to); shares of its answers are no rates");
     const std::int64_t scene = problem.trial / static_cast<std::uint32_t>(run.repeats_per_scene);
     for (size_t e = 0; e < records.size(); ++e) {
       if (!IsScored(records[e])) continue;
@@ -77,7 +79,6 @@ std::vector<std::vector<Answer>> AnswersIn(const ResultStore& store, const RunDe
       answers[e].back().is_in_even_half = scene % 2 == 0;
     }
   });
-  if (is_weighted) answers.assign(run.estimators.size(), {});
   return answers;
 }
 

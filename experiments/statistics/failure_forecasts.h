@@ -48,9 +48,9 @@ struct FailureForecasts {
 };
 
 // Returns the forecasts of every estimator in every group, in the order of the run. A group is a level of
-// the factor `by`; without a factor all trials are one group. Weighted trials give no forecasts, because
-// counts of them are meaningless. Uses about 50 bytes per trial and estimator. Throws InputError if the run
-// does not have the factor.
+// the factor `by`; without a factor all trials are one group. Uses about 50 bytes per trial and
+// estimator. Throws InputError if the run does not have the factor, or if its trials are weighted: shares of
+// them are no rates.
 std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, const std::string& by = {});
 
 // Adds the forecasts of another run, to the same estimator and group or as new ones. Clusters of different

@@ -17,6 +17,11 @@ namespace rcme {
 // do not have them either.
 bool HasPopulationIntervals(const RunDescription& run);
 
+// Said of pooled draws without them.
+inline constexpr const char* kOfTheseDraws =
+    "All intervals are of these draws, not of their population: that needs one trial for\n"
+    "each scene and a number of trials fixed beforehand.\n";
+
 // `draws`: a cell of counts for each group of GroupByDraw.
 Summary SummarizePopulation(const RunDescription& run, std::span<const SummaryCell> draws, bool with_times);
 

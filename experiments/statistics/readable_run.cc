@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "experiments/core/files/first_difference.h"
 #include "experiments/study/command_files.h"
@@ -121,9 +122,14 @@ ReadableRun SelectLevel(const ReadableRun& run, const std::string& factor, const
   std::vector<bool> is_kept;  // by condition
   for (const DescribedCondition& condition : run.description.conditions)
     is_kept.push_back(condition.levels.at(index) == level);
-  return {run.description, [whole = run.for_each_trial, is_kept](const VisitTrial& visit) {
+  return SelectTrials(run, [is_kept](const ProblemRecord& problem) { return is_kept[problem.condition]; });
+}
+
+ReadableRun SelectTrials(const ReadableRun& run, std::function<bool(const ProblemRecord&)> is_kept) {
+  return {run.description,
+          [whole = run.for_each_trial, is_kept = std::move(is_kept)](const VisitTrial& visit) {
             whole([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
-              if (is_kept[problem.condition]) visit(problem, records);
+              if (is_kept(problem)) visit(problem, records);
             });
           }};
 }

@@ -24,6 +24,8 @@ ReadableRun ReadRun(const ResultStore& store);
 
 // The same run with only the trials of the conditions with this level of a factor of the run.
 ReadableRun SelectLevel(const ReadableRun& run, const std::string& factor, const std::string& level);
+// The same run with only the trials of these problems.
+ReadableRun SelectTrials(const ReadableRun& run, std::function<bool(const ProblemRecord&)> is_kept);
 
 // Joins some estimators of two stores, which must outlive the result, in the trials that both hold: first
 // those of `first`, then those of `second`. A label that occurs in both gets "_old" and "_new". Throws

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -130,8 +131,11 @@ void WriteFiles(const std::string& run, const std::string& against, const std::s
   json["reference"] = comparison.reference;
   json["caution"] = comparison.caution;
   json["is_of_population"] = is_of_population;
-  const std::vector<ForecastMeasures> forecasts =
-      HasFailureProbabilities(summary) ? MeasureFailureForecasts(store) : std::vector<ForecastMeasures>();
+  const bool is_weighted = std::ranges::any_of(
+      summary.rows, [](const SummaryRow& row) { return row.interval_kind == IntervalKind::kWeighted; });
+  const std::vector<ForecastMeasures> forecasts = HasFailureProbabilities(summary) && !is_weighted
+                                                      ? MeasureFailureForecasts(store)
+                                                      : std::vector<ForecastMeasures>();
   json["findings"] = ListFindings(summary, comparison, forecasts);
   if (const auto preregistration = DecidePreregistered(store, run))
     json["preregistration"] = PreregistrationAsJson(*preregistration);

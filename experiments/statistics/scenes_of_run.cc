@@ -14,14 +14,15 @@ std::optional<double> SceneMean::Take() {
 }
 
 bool HasCommonScenes(const RunDescription& run) {
-  return run.study_yaml.find("common_scenes: true") != std::string::npos;
+  return run.study_yaml.find("\ncommon_scenes: true") !=
+         std::string::npos;  // a key of ToYaml, no description
 }
 
 void CheckMayBePooled(const RunDescription& run) {
   if (run.conditions.size() < 2 || !HasCommonScenes(run) || IsSampleOfPopulation(run.identity)) return;
   throw InputError(
-      "pooled: the conditions share their scenes (common_scenes: true), so their trials are not independent and "
-      "a pooled interval would be too short; leave pooling out");
+      "the conditions share their scenes (common_scenes: true), so their trials are not independent and an interval "
+      "over all of them would be too short; leave --pooled and --fifths-of out");
 }
 
 void ForEachTrialByScene(

@@ -12,6 +12,7 @@
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/summary_cell.h"
 #include "experiments/statistics/summary_quantities.h"
+#include "experiments/study/population.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
 
@@ -73,7 +74,24 @@ Summary SummarizePooled(const ReadableRun& run, bool with_times) {
     if (std::ranges::none_of(draws, IsWeighted))
       return SummarizePopulation(run.description, draws, with_times);
   }
-  return Summarize(run, with_times, OneGroup());
+  Summary summary = Summarize(run, with_times, OneGroup());
+  summary.is_of_these_draws = IsSampleOfPopulation(run.description.identity);
+  return summary;
+}
+
+// Appends the rows of a part of the run, which becomes a condition with these levels.
+void AppendPart(Summary part, const std::vector<std::string>& factors, std::vector<std::string> levels,
+                Summary* all) {
+  for (SummaryRow& row : part.rows) row.condition = static_cast<std::uint32_t>(all->levels.size());
+  if (all->levels.empty()) {
+    *all = std::move(part);
+    all->factor_names = factors;
+    all->levels = {std::move(levels)};
+    return;
+  }
+  all->num_trials_done += part.num_trials_done;
+  all->rows.insert(all->rows.end(), part.rows.begin(), part.rows.end());
+  all->levels.push_back(std::move(levels));
 }
 
 }  // namespace
@@ -139,18 +157,20 @@ Summary SummarizeBy(const ReadableRun& run, bool with_times, const std::string& 
     if (std::ranges::count(levels, level) == 0) levels.push_back(level);
   }
   Summary all;
-  for (const std::string& level : levels) {
-    Summary part = Summarize(SelectLevel(run, factor, level), with_times, Pooling::kPooled);
-    for (SummaryRow& row : part.rows) row.condition = static_cast<std::uint32_t>(all.levels.size());
-    if (all.levels.empty()) {
-      all = std::move(part);
-      all.factor_names = {factor};
-      all.levels = {{level}};
-    } else {
-      all.num_trials_done += part.num_trials_done;
-      all.rows.insert(all.rows.end(), part.rows.begin(), part.rows.end());
-      all.levels.push_back({level});
-    }
+  for (const std::string& level : levels)
+    AppendPart(Summarize(SelectLevel(run, factor, level), with_times, Pooling::kPooled), {factor}, {level},
+               &all);
+  return all;
+}
+
+Summary SummarizeFifths(const ReadableRun& run, bool with_times, const TrialGroups& fifths) {
+  CheckMayBePooled(run.description);
+  if (!IsSampleOfPopulation(run.description.identity)) return Summarize(run, with_times, fifths);
+  Summary all;
+  for (size_t i = 0; i < fifths.levels.size(); ++i) {
+    const ReadableRun fifth =
+        SelectTrials(run, [&](const ProblemRecord& problem) { return fifths.group_of(problem) == i; });
+    AppendPart(SummarizePooled(fifth, with_times), fifths.factor_names, fifths.levels[i], &all);
   }
   return all;
 }

@@ -103,7 +103,9 @@ struct Summary {
   int repeats_per_scene = 1;
   std::string truth_quality;      // truth_quality.h
   bool is_of_population = false;  // intervals are for the population (population_summary.h)
-  std::string population;         // DescribePopulation of study/population.h
+  bool is_of_these_draws =
+      false;               // pooled draws of a population without such intervals (HasPopulationIntervals)
+  std::string population;  // DescribePopulation of study/population.h
   // If pooled: conditions all of whose trials the simulator could not make, and conditions that have trials.
   std::int64_t num_conditions_not_simulated = 0, num_conditions_with_trials = 0;
   std::int64_t num_retried = 0;  // trials that were run again (RunDescription::retried_trials)
@@ -141,6 +143,9 @@ Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling = Poo
 Summary Summarize(const ResultStore& store, bool with_times, Pooling pooling = Pooling::kPerCondition);
 // Pooled, once for each level of a factor of the run. Throws InputError for another name.
 Summary SummarizeBy(const ReadableRun& run, bool with_times, const std::string& factor);
+// The same for each of the groups of GroupByFifth, which hold trials of several conditions. Throws InputError
+// where conditions share their scenes.
+Summary SummarizeFifths(const ReadableRun& run, bool with_times, const TrialGroups& fifths);
 // The same with other groups of trials.
 Summary Summarize(const ReadableRun& run, bool with_times, const TrialGroups& groups);
 

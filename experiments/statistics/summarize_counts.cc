@@ -3,6 +3,7 @@
 #include "experiments/run/store/parts.h"
 #include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scenes_of_run.h"
+#include "experiments/study/population.h"
 
 namespace rcme {
 
@@ -35,7 +36,9 @@ Summary SummarizePooledCounts(const RunCounts& counts, bool with_times) {
   }
   SummaryCell all(run.estimators.size());
   for (const ConditionCounts& condition : counts.conditions) all.Merge(condition.cell);
-  return SummarizeCells(run, OneGroup(), {&all}, with_times);
+  Summary summary = SummarizeCells(run, OneGroup(), {&all}, with_times);
+  summary.is_of_these_draws = IsSampleOfPopulation(run.identity);
+  return summary;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/preregistration_output.h"
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/study/run_description.h"
@@ -253,6 +254,7 @@ std::string DescribeIntervals(const Summary& summary) {
                 "95 % intervals; of an even n the lower of the two middle numbers.\n"
                 "auc and maa: {}.\n",
                 IntervalKindsIn(summary), DescribeIntervalKind(IntervalKind::kBetting));
+  if (summary.is_of_these_draws) text += kOfTheseDraws;
   if (HasErrorRanking(summary) && !summary.is_of_population)
     text += "ause: Student's 95 % intervals, each scene a cluster.\n";
   if (summary.repeats_per_scene > 1) {

@@ -79,7 +79,7 @@ TEST_F(SolveProgram, SettingsThatAreWholeNumbersAreAskedAsSuch) {
   const ProgramResult result = Call(
       {"--over", "num_matches", "--from", "10", "--to", "40", "--falling", "--at", "0.3", "--trials", "100"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_NE(result.out.find("the least value of num_matches"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("falls below 0.3"), std::string::npos) << result.out;
 }
 
 TEST_F(SolveProgram, SaysWhatIsWrong) {

@@ -240,7 +240,7 @@ TEST(Gate, TrialsThatShareASceneCountOnce) {
   };
   const GateRow apart = TakeGateLook(MakeRun(make, 100), FailureTest(), 100).rows.front();
   const GateRow common =
-      TakeGateLook(MakeRun(make, 100, "common_scenes: true\n"), FailureTest(), 100).rows.front();
+      TakeGateLook(MakeRun(make, 100, "name: s\ncommon_scenes: true\n"), FailureTest(), 100).rows.front();
   EXPECT_EQ(apart.n, 100 * kConditions);
   EXPECT_EQ(common.n, 100);
   EXPECT_EQ(apart.difference, common.difference);

@@ -15,6 +15,7 @@
 #include "stats/constants.h"
 #include "stats/random.h"
 #include "tests/test_support/add_records.h"
+#include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/small_study.h"
 #include "tests/test_support/temp_folder.h"
 
@@ -62,6 +63,17 @@ class FailureForecastsTest : public testing::Test {
   int num_files_ = 0;
   Study study_ = SmallStudy();
 };
+
+TEST_F(FailureForecastsTest, WeightedTrialsAreRefused) {
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("weighted"), MakePlan(study_));
+    ProblemRecord problem;
+    problem.weight = 0.5;
+    store.Add({problem}, {StatedMotion(0, 0.25, 50, true)});
+  }
+  const ResultStore weighted = ResultStore::OpenForReading(folder_.Path("weighted"));
+  EXPECT_TRUE(ThrowsInputError([&] { CollectFailureForecasts(weighted); }, {"weighted"}));
+}
 
 TEST_F(FailureForecastsTest, StatedOnesAreOfScoredAnswers) {
   std::vector<TrialRecord> records = {StatedMotion(0, 0.25, 50, true), StatedMotion(1, 0.0, 50, false),

@@ -11,6 +11,7 @@
 #include "experiments/statistics/compare.h"
 #include "experiments/statistics/count_study.h"
 #include "experiments/statistics/forecast_measures.h"
+#include "experiments/statistics/scenes_of_run.h"
 #include "experiments/statistics/summarize_counts.h"
 #include "experiments/statistics/summary_output.h"
 #include "experiments/study/study_file.h"
@@ -100,6 +101,66 @@ TEST_F(PopulationSummary, ByAFactorEachLevelHasItsOwnTrials) {
   EXPECT_DOUBLE_EQ(row->interval.lower, expected.interval.lower);
   EXPECT_DOUBLE_EQ(row->interval.upper, expected.interval.upper);
   EXPECT_THROW(SummarizeBy(ReadRun(store), false, "sigma"), InputError);
+}
+
+// Two groups in the place of fifths: the first two trials of each condition, and the others.
+TEST_F(PopulationSummary, GroupsOfTrialsHaveTheIntervalOverDraws) {
+  const ResultStore store = Open();
+  const TrialGroups groups{{"fifth", "x"}, {{"1", "low"}, {"2", "high"}}, [](const ProblemRecord& problem) {
+                             return size_t{problem.trial < 2 ? 0U : 1U};
+                           }};
+  const Summary fifths = SummarizeFifths(ReadRun(store), false, groups);
+  EXPECT_EQ(fifths.levels, groups.levels);
+  EXPECT_EQ(fifths.num_trials_done, 24 * 5);
+  std::vector<ConditionCount> high(12);
+  store.ForEachTrial([&](const ProblemRecord& problem, const std::vector<TrialRecord>& records) {
+    if (problem.trial < 2) return;
+    high[problem.condition / 2].num_trials += 1;
+    high[problem.condition / 2].num_events += HasFailed(records[0], store.Description().failure);
+  });
+  const PopulationRate expected = MeasurePopulationRate(high, ConditionWeights::kByTrials);
+  const auto row = std::ranges::find_if(fifths.rows, [](const SummaryRow& r) {
+    return r.condition == 1 && r.estimator == "standard" && r.quantity == "failure";
+  });
+  ASSERT_NE(row, fifths.rows.end());
+  EXPECT_EQ(row->n, 72);
+  EXPECT_DOUBLE_EQ(row->interval.lower, expected.interval.lower);
+  EXPECT_DOUBLE_EQ(row->interval.upper, expected.interval.upper);
+}
+
+TEST_F(PopulationSummary, SaysWhereIntervalsAreOfTheDrawsAlone) {
+  const StudyPlan plan =
+      MakePlan(ParseStudy("name: drawn\nseed: 3\ntrials: 4\nrepeats_per_scene: 2\n"
+                          "conditions: {number: 2, ranges: {scene: plane, num_matches: [30, 60]}}\n"
+                          "estimators: [{name: standard}, {name: msac}]\n",
+                          "repeated.yaml"));
+  {
+    ResultStore store = ResultStore::OpenForRun(folder_.Path("repeated.sqlite"), plan);
+    for (const Condition& condition : plan.conditions) {
+      TrialRecord first = Motion(0, 0.1, 0.1, 4.0), second = first;
+      first.condition = second.condition = condition.index;
+      second.estimator = 1;
+      AddRecords(store, {first, second});
+    }
+  }
+  const ResultStore store = ResultStore::OpenForReading(folder_.Path("repeated.sqlite"));
+  const Summary pooled = Summarize(store, false, Pooling::kPooled);
+  EXPECT_FALSE(pooled.is_of_population);
+  EXPECT_TRUE(pooled.is_of_these_draws);
+  EXPECT_NE(SummaryAsTable(pooled).find(kOfTheseDraws), std::string::npos);
+  EXPECT_TRUE(Compare(store, "standard", {.pooling = Pooling::kPooled}).is_of_these_draws);
+  const Summary of_population = Summarize(Open(), false, Pooling::kPooled);
+  EXPECT_EQ(SummaryAsTable(of_population).find(kOfTheseDraws), std::string::npos);
+}
+
+TEST(HasCommonScenes, IsTheKeyNotTheDescription) {
+  const auto has = [](const std::string& more) {
+    return HasCommonScenes(Describe(MakePlan(
+        ParseStudy("name: s\ntrials: 1\n" + more + "data: {scene: plane}\nestimators: [{name: standard}]\n",
+                   "s.yaml"))));
+  };
+  EXPECT_TRUE(has("common_scenes: true\n"));
+  EXPECT_FALSE(has("description: \"that would be\\ncommon_scenes: true\"\n"));
 }
 
 // Of draws, not of conditions, whose two levels of the factor are alike.
