@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "experiments/data/match_file.h"
 #include "experiments/trial/severity_columns.h"
 #include "parameters/input_error.h"
 #include "python/bindings.h"
@@ -48,6 +49,26 @@ py::dict MakeTruthDict(const TrialData& data) {
   return dict;
 }
 
+// As estimate_relative_pose takes it; None without measurements.
+py::object MakePriorDict(const std::optional<MotionPrior>& prior) {
+  if (!prior) return py::none();
+  py::dict dict;
+  if (prior->rotation) {
+    dict["rotation"] = MakeArray(prior->rotation->R);
+    dict["rotation_cov"] = MakeArray(prior->rotation->cov);
+  }
+  if (prior->gravity) {
+    dict["gravity1"] = MakeArray(prior->gravity->in_cam1);
+    dict["gravity2"] = MakeArray(prior->gravity->in_cam2);
+    dict["gravity_sd_deg"] = kDegPerRad * prior->gravity->sd1_rad;
+  }
+  if (prior->direction) {
+    dict["direction"] = MakeArray(prior->direction->t);
+    dict["direction_sd_deg"] = kDegPerRad * prior->direction->sd_rad;
+  }
+  return dict;
+}
+
 py::dict Simulate(const StudySource& source, std::int64_t condition_index, std::int64_t trial) {
   const StudyPlan plan = MakeSourcePlan(source, PlanEstimators::kNotMade);
   if (condition_index >= static_cast<std::int64_t>(plan.conditions.size())) {
@@ -60,13 +81,13 @@ py::dict Simulate(const StudySource& source, std::int64_t condition_index, std::
   const MotionProblem& problem = data.problem;
   py::dict severity;
   for (const SeverityColumn& column : kSeverityColumns) severity[column.name] = data.severity.*column.field;
-  return py::dict("x1"_a = MakePoints(problem.matches, &Correspondence::x1_px),
-                  "x2"_a = MakePoints(problem.matches, &Correspondence::x2_px),
-                  "camera1"_a = MakeDict(problem.camera1), "camera2"_a = MakeDict(problem.camera2),
-                  "sigma_px"_a = problem.sigma_px, "noise_scale"_a = ScalesOrNone(problem),
-                  "truth"_a = MakeTruthDict(data), "severity"_a = severity,
-                  "levels"_a = MakeLevelsDict(plan, condition), "origin"_a = data.origin,
-                  "weight"_a = data.weight, "condition"_a = condition.index, "trial"_a = trial);
+  return py::dict(
+      "x1"_a = MakePoints(problem.matches, &Correspondence::x1_px),
+      "x2"_a = MakePoints(problem.matches, &Correspondence::x2_px), "camera1"_a = MakeDict(problem.camera1),
+      "camera2"_a = MakeDict(problem.camera2), "sigma_px"_a = problem.sigma_px,
+      "noise_scale"_a = ScalesOrNone(problem), "prior"_a = MakePriorDict(problem.prior),
+      "truth"_a = MakeTruthDict(data), "severity"_a = severity, "levels"_a = MakeLevelsDict(plan, condition),
+      "origin"_a = data.origin, "weight"_a = data.weight, "condition"_a = condition.index, "trial"_a = trial);
 }
 
 }  // namespace
@@ -74,6 +95,7 @@ py::dict Simulate(const StudySource& source, std::int64_t condition_index, std::
 void BindSimulation(py::module_& module) {
   module.def("conditions", &Conditions);
   module.def("simulate", &Simulate);
+  module.def("format_prior", &FormatPrior);
 }
 
 }  // namespace rcme

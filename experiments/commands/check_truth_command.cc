@@ -24,6 +24,7 @@ struct CheckTruthArguments {
 };
 
 void RunCheckTruth(const CheckTruthArguments& arguments) {
+  CheckIsNoInput(arguments.out, arguments.folders);
   const StopOnSignals stop;
   const TruthCheckOptions options{ParseFailureBounds(arguments.bounds), arguments.sigma_px,
                                   static_cast<std::uint64_t>(arguments.seed), arguments.threads};

@@ -18,6 +18,7 @@
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/match_file.h"
+#include "experiments/study/study_file.h"
 #include "experiments/trial/simulate_draw.h"
 #include "parameters/input_error.h"
 #include "peers/answer_json.h"
@@ -151,7 +152,8 @@ void Export(const ExportArguments& arguments) {
   MakeResultFolder((folder / "matches").string());
   const std::vector<std::string> ids = ExportTrials(plan, arguments.threads, folder);
   RemoveOthers(folder, {ids.begin(), ids.end()}, !plan.lock.empty());
-  WriteFileWhole((folder / "study.yaml").string(), plan.study_yaml);
+  WriteFileWhole((folder / "study.yaml").string(),
+                 plan.lock.empty() ? ToYaml(WithAbsolutePaths(plan.study)) : plan.study_yaml);
   if (!plan.lock.empty()) WriteFileWhole((folder / "study.lock").string(), plan.lock);
   PrintMessage(
       "done: {} problems in {}{}; next: answer them, then rcme import ANSWERS --study {} --label mine --out "

@@ -126,6 +126,7 @@ void RunTwin(const TwinArguments& arguments) {
       throw InputError(
           fmt::format("--scene: there is no scene '{}'; give one of: {}", arguments.scene, names));
   }
+  CheckIsNoInput(arguments.out, {arguments.pairs});
   const std::filesystem::path out(arguments.out);
   const bool is_one_study = out.extension() == ".yaml";
   if (is_one_study && scenes.size() > 1)

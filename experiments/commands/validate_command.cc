@@ -125,6 +125,7 @@ std::string NameEstimator(const ValidateArguments& arguments) {
 }
 
 void RunValidate(const ValidateArguments& arguments) {
+  CheckIsNoInput(arguments.out, arguments.pairs);
   const StopOnSignals stop;
   StartTimeLimit(arguments.max_time);
   const PlantedFaults planted = ParsePlantedFaults(arguments.planted);

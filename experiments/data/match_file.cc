@@ -70,30 +70,6 @@ std::optional<MotionPrior> ReadPrior(const MatchHeader& header) {
   return prior;
 }
 
-// Formats a prior as header lines. A covariance is written as the standard deviations on its diagonal; the
-// two standard deviations of gravity are written as their root mean square.
-std::string FormatPrior(const MotionPrior& prior) {
-  const auto numbers = [](const Eigen::MatrixXd& values) {
-    return fmt::format("{}", fmt::join(values.data(), values.data() + values.size(), " "));
-  };
-  std::string text;
-  if (const std::optional<RotationPrior>& rotation = prior.rotation) {
-    text += fmt::format("# prior_rotation_rowmajor: {}\n", numbers(rotation->R.transpose()));
-    text += fmt::format("# prior_rotation_sd_deg: {}\n",
-                        numbers(kDegPerRad * rotation->cov.diagonal().cwiseSqrt()));
-  }
-  if (const std::optional<GravityPrior>& gravity = prior.gravity) {
-    text += fmt::format("# gravity1: {}\n# gravity2: {}\n# gravity_sd_deg: {}\n", numbers(gravity->in_cam1),
-                        numbers(gravity->in_cam2),
-                        kDegPerRad * std::hypot(gravity->sd1_rad, gravity->sd2_rad) / std::numbers::sqrt2);
-  }
-  if (const std::optional<DirectionPrior>& direction = prior.direction) {
-    text += fmt::format("# prior_direction: {}\n# prior_direction_sd_deg: {}\n", numbers(direction->t),
-                        kDegPerRad * direction->sd_rad);
-  }
-  return text;
-}
-
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr size_t kMaxSceneBytes = 200;
 
@@ -224,6 +200,28 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
 }
 
 }  // namespace
+
+std::string FormatPrior(const MotionPrior& prior) {
+  const auto numbers = [](const Eigen::MatrixXd& values) {
+    return fmt::format("{}", fmt::join(values.data(), values.data() + values.size(), " "));
+  };
+  std::string text;
+  if (const std::optional<RotationPrior>& rotation = prior.rotation) {
+    text += fmt::format("# prior_rotation_rowmajor: {}\n", numbers(rotation->R.transpose()));
+    text += fmt::format("# prior_rotation_sd_deg: {}\n",
+                        numbers(kDegPerRad * rotation->cov.diagonal().cwiseSqrt()));
+  }
+  if (const std::optional<GravityPrior>& gravity = prior.gravity) {
+    text += fmt::format("# gravity1: {}\n# gravity2: {}\n# gravity_sd_deg: {}\n", numbers(gravity->in_cam1),
+                        numbers(gravity->in_cam2),
+                        kDegPerRad * std::hypot(gravity->sd1_rad, gravity->sd2_rad) / std::numbers::sqrt2);
+  }
+  if (const std::optional<DirectionPrior>& direction = prior.direction) {
+    text += fmt::format("# prior_direction: {}\n# prior_direction_sd_deg: {}\n", numbers(direction->t),
+                        kDegPerRad * direction->sd_rad);
+  }
+  return text;
+}
 
 MatchFile ReadMatchFile(const std::string& path, const GivenCameras& given) {
   return ReadMatches(path, GzipLines(path, {"match file", "a match file"}), given);

@@ -120,4 +120,8 @@ MotionProblem MakeMotionProblem(MatchFile file, std::optional<double> sigma_px);
 // partial file.
 void WriteMatchFile(const MatchFile& file, const std::string& path);
 
+// Formats a prior as header lines. A covariance is written as the standard deviations on its diagonal; the
+// two standard deviations of gravity are written as their root mean square.
+std::string FormatPrior(const MotionPrior& prior);
+
 }  // namespace rcme

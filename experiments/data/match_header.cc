@@ -82,9 +82,11 @@ std::string MatchHeader::Place(const std::string& key) const {
 std::vector<double> MatchHeader::Numbers(const std::string& key, size_t count) const {
   if (!Has(key)) {
     const bool is_of_camera = key.starts_with("size") || key.starts_with("K");
-    throw InputError(
-        fmt::format("{}: header key '# {}: ...' is missing{}", path_, key,
-                    is_of_camera ? " (without a header, give the intrinsics by `rcme estimate --K`)" : ""));
+    throw InputError(fmt::format("{}: header key '# {}: ...' is missing{}", path_, key,
+                                 !is_of_camera ? ""
+                                 : Has("K1") || Has("K") || Has("size1") || Has("size")
+                                     ? " (the header has a part of the cameras; add it)"
+                                     : " (without a header, give the intrinsics by `rcme estimate --K`)"));
   }
   std::vector<double> numbers;
   for (const std::string& word : SplitAtBlanks(entries_.at(key).text)) {

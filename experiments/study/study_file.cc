@@ -380,6 +380,11 @@ void Override(Study* study, const std::string& key, const std::string& value) {
   if (!has_any) ThrowUnknownOverride(*study, key);
 }
 
+Study WithAbsolutePaths(Study study) {
+  SeePathsFrom(std::filesystem::current_path(), &study);
+  return study;
+}
+
 std::string ToYaml(const Study& study) {
   YAML::Emitter out;
   out.SetSeqFormat(YAML::Flow);

@@ -54,4 +54,8 @@ void Override(Study* study, const std::string& key, const std::string& value);
 // texts agree, apart from trials and descriptions.
 std::string ToYaml(const Study& study);
 
+// The same study with paths of its data that hold in every folder; without it they are relative to the
+// working directory.
+Study WithAbsolutePaths(Study study);
+
 }  // namespace rcme

@@ -103,7 +103,7 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     x1, x2, *cameras = _pair("", x1, x2, camera1, camera2)
     chosen = _options(options, len(x1))
     pairs = _bounds(bounds)
-    known = _prior(prior)
+    known = motion_prior(prior)
     functions = _functions(estimators)
     try:
         answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["noise_scale"], chosen["estimator"],
@@ -259,7 +259,7 @@ def _bounds(bounds: Any) -> list[tuple[float, float]]:
             for place, pair in enumerate(pairs)]
 
 
-def _prior(prior: Any) -> Optional[_rcme.MotionPrior]:
+def motion_prior(prior: Any) -> Optional[_rcme.MotionPrior]:
     """The measurements, checked; None where there are none."""
     if prior is None:
         return None

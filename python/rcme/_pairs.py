@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Union
 
 from rcme import _check, _rcme
+from rcme._estimate import motion_prior
 
 
 def write_pairs(folder: Union[str, "os.PathLike[str]"], pairs: Iterable[Mapping[str, Any]]) -> str:
@@ -22,7 +23,8 @@ def write_pairs(folder: Union[str, "os.PathLike[str]"], pairs: Iterable[Mapping[
     pairs : dicts with the keys that `simulate` returns
         - x1, x2 (N, 2; px) and camera1, camera2 (dicts {model, width, height, params} with a model of COLMAP)
         - optional: truth, a dict of R (3, 3) and t (3), X2 = R X1 + t; sigma_px, the noise level that estimators assume; noise_scale
-          (N), how noisy each match is beside the others; scene, a name: pairs of one scene are one condition of the study.
+          (N), how noisy each match is beside the others; prior, as `estimate_relative_pose` takes it (of rotation_cov the diagonal);
+          scene, a name: pairs of one scene are one condition of the study.
           Other keys are ignored.
 
     Returns
@@ -70,6 +72,12 @@ def _match_file(name: str, pair: Mapping[str, Any]) -> str:
     sigma = pair.get("sigma_px")
     if sigma is not None:
         lines.append(f"# sigma_px: {_check.number(f'{name}: sigma_px', sigma, 1e-9, 1000.0)!r}")
+    try:
+        prior = motion_prior(pair.get("prior"))
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+    if prior is not None:
+        lines += _rcme.format_prior(prior).splitlines()
     scales = _check.scales(f"{name}: noise_scale", pair.get("noise_scale"), len(x1))
     lines.append("x1,y1,x2,y2" + (",sigma_px" if scales else ""))
     lines += [_row([*first, *second, *([scales[i]] if scales else [])], ",") for i, (first, second) in enumerate(zip(x1, x2))]

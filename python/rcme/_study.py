@@ -54,7 +54,8 @@ def simulate(study: Study, condition: int = 0, trial: int = 0, *, overrides: Opt
     Returns
     -------
     dict with x1, x2 (N, 2; px), camera1, camera2 (dicts as `estimate_relative_pose` takes them), sigma_px (what estimators
-    assume), noise_scale (N, how noisy each match is said to be beside the others; None: nothing is said), levels (of the
+    assume), noise_scale (N, how noisy each match is said to be beside the others; None: nothing is said), prior (as
+    `estimate_relative_pose` takes it; None: no sensor measures the motion), levels (of the
     factors, as text), severity (how hard the problem is, by name), origin, weight, condition, trial,
     and truth: R (3, 3), t (3; None where nobody knows it), inliers (bool, N; None for real pairs) and undetectable (bool, N:
     wrong matches on their true epipolar line; None where there are none known).

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "parameters/input_error.h"
 #include "simulator/noise/noise_laws.h"
 #include "stats/portable_math.h"
 #include "stats/student_scales.h"
@@ -65,6 +68,9 @@ class CorrelatedNoise : public NoiseModel {
     Mosaic in_image1(length_px_, rng), in_image2(length_px_, rng);
     const double shared_px = sigma_px_ * std::sqrt(correlation_),
                  own_px = sigma_px_ * std::sqrt(1.0 - correlation_);
+    if (student_dof_ > 0.0 && student_dof_ < 0.1)  // the greatest step would be infinite
+      throw InputError(
+          fmt::format("noise_student_dof: {} is not allowed; give 0, or 0.1 to 1000", student_dof_));
     const StudentScales scales(student_dof_);
     for (Correspondence& match : matches) {
       const double scale = scales.Draw(rng);

@@ -97,6 +97,13 @@ TEST_F(BadOutput, OutputOntoAnInput) {
   const std::string tuned = folder_.Write(
       "tuned.yaml", SmallStudyYaml() + "tune: {estimator: ours, calibrate: 100, options: {mu: [5]}}\n");
   EXPECT_TRUE(IsRefused(RunRcme({"tune", tuned, "--out", tuned}), {"--out", "is the input itself"}));
+  // A table beside match files would be read as one of them.
+  const std::string pairs = folder_.Path("pairs");
+  std::filesystem::create_directory(pairs);
+  folder_.Write("pairs/one.csv", MatchHeader() + MatchRows(60));
+  for (const char* command : {"check-truth", "validate", "twin"})
+    EXPECT_TRUE(IsRefused(RunRcme({command, pairs, "--out", pairs}), {"--out", "is the input itself"}))
+        << command;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "tests/end_to_end/bad_input.h"
+#include "tests/test_support/match_text.h"
 #include "tests/test_support/refusal_of_first.h"
 
 namespace rcme {
@@ -42,6 +43,21 @@ TEST_F(Export, NamesTheConditionAndLeavesNoFileOfAnEarlierExport) {
   ASSERT_EQ(RunExport("1").exit_code, 0);
   EXPECT_EQ(Scenes(), (std::multiset<std::string>{"# scene: mine", "# scene: outlier_ratio 0",
                                                   "# scene: outlier_ratio 0.3"}));
+}
+
+// The exported study names the folder of its pairs, which is not beside it, so that `rcme import` finds it.
+TEST_F(Export, OfPairsInAFolderIsImportedFromAnyFolder) {
+  std::filesystem::create_directory(folder_.Path("pairs"));
+  folder_.Write("pairs/one.csv", MatchHeader() + MatchRows(60));
+  const std::string study = folder_.Write(
+      "of_pairs.yaml",
+      "name: p\ntrials: 1\ndata: {scene: match_files, folder: pairs}\nestimators: [{name: standard}]\n");
+  ASSERT_EQ(RunRcme({"export", study, "--out", exported_}).exit_code, 0);
+  EXPECT_THAT(ReadBytes(exported_ + "/study.yaml"), HasSubstr("folder: " + folder_.Path("pairs")));
+  const std::string answers = folder_.Write("answers.jsonl", "");
+  const ProgramResult imported = RunRcme({"import", answers, "--study", exported_ + "/study.yaml", "--label",
+                                          "mine", "--out", folder_.Path("imported.sqlite")});
+  EXPECT_THAT(imported.err, testing::Not(HasSubstr("is not a folder")));
 }
 
 TEST_F(Export, AnyNumberOfThreadsGivesTheSameBytes) {

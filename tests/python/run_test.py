@@ -238,6 +238,24 @@ class Tables(unittest.TestCase):
             self.assertIn("mine: a function of Python", said)
             self.assertEqual(said.count("the record in the file:   the same"), 2)
 
+    def test_measurements_of_sensors_are_given_and_written(self):
+        sensors = {"prior_rotation_sd_deg": 0.5, "prior_gravity_sd_deg": 2, "prior_direction_sd_deg": 5}
+        study = {**STUDY, "factors": {}, "data": {**STUDY["data"], **sensors}}
+        pair = rcme.simulate(study)
+        prior = pair["prior"]
+        np.testing.assert_allclose(prior["rotation_cov"], np.radians(0.5) ** 2 * np.eye(3), atol=1e-12)
+        self.assertAlmostEqual(prior["gravity_sd_deg"], 2)
+        self.assertAlmostEqual(prior["direction_sd_deg"], 5)
+        angle = np.degrees(np.arccos((np.trace(prior["rotation"].T @ pair["truth"]["R"]) - 1) / 2))
+        self.assertLess(angle, 3)  # six standard deviations
+        _, info = rcme.estimate_relative_pose(pair["x1"], pair["x2"], pair["camera1"], pair["camera2"], prior=prior)
+        self.assertEqual(info["prior"], "used")
+        with tempfile.TemporaryDirectory() as folder:
+            written = rcme.write_pairs(os.path.join(folder, "pairs"), [pair])
+            read = rcme.simulate({**STUDY, "trials": 1, "factors": {}, "data": {"scene": "match_files", "folder": written}})["prior"]
+        for key, value in prior.items():
+            np.testing.assert_allclose(read[key], value, rtol=1e-9, atol=1e-12, err_msg=key)
+
     def test_pairs_from_python_are_those_of_the_study(self):
         study = {**STUDY, "factors": {"outlier_ratio": [0.4]}}
         pairs = [{**rcme.simulate(study, trial=i), "scene": "mine"} for i in range(20)]
@@ -252,7 +270,8 @@ class Tables(unittest.TestCase):
             self.assertEqual(len(rcme.trials(rcme.run(of_files))), 2 * len(pairs))
             with self.assertRaisesRegex(ValueError, "holds something"):
                 rcme.write_pairs(written, pairs)
-        for key, value, message in (("x2", np.zeros((3, 2)), "x2 3"), ("camera1", np.eye(3), "camera1"),
+        self.assertIsNone(pairs[0]["prior"])
+        for key, value, message in (("prior", {"rotation": np.eye(3)}, "prior: rotation_sd_deg"), ("x2", np.zeros((3, 2)), "x2 3"), ("camera1", np.eye(3), "camera1"),
                                     ("truth", {"R": 2 * np.eye(3), "t": [1, 0, 0]}, "truth: R"), ("truth", [1], "truth"),
                                     ("sigma_px", -1.0, "sigma_px"), ("sigma_px", 1e6, "sigma_px"), ("scene", "mine ", "scene")):
             with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, rf"pairs\[0\].*{message}"):

@@ -81,7 +81,7 @@ void CheckIsNoInput(const std::string& path, const std::vector<std::string>& inp
   std::error_code ignored;  // a file may not exist
   for (const std::string& input : inputs) {
     if (std::filesystem::equivalent(path, input, ignored)) {
-      throw InputError(fmt::format("--out: '{}' is the input itself; give another file", path));
+      throw InputError(fmt::format("--out: '{}' is the input itself; give another place", path));
     }
   }
 }

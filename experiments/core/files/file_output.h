@@ -38,7 +38,7 @@ class FileInPieces {
 // nothing.
 void CheckCanBeWritten(const std::string& path);
 
-// Throws InputError if `path` is one of the input files.
+// Throws InputError if `path` is one of the input files or folders.
 void CheckIsNoInput(const std::string& path, const std::vector<std::string>& inputs);
 
 // Writes `text` by WriteFileWhole, or to standard output if `path` is empty.

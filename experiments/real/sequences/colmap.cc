@@ -114,6 +114,7 @@ class ColmapPairs : public ListedPairs {
     SQLite::Statement rows(database_, "SELECT image_id, name, camera_id FROM images");
     while (rows.executeStep()) {
       const std::int64_t id = WholeIn(rows.getColumn(0), path_ + ": images");
+      if (rows.getColumn(1).isNull()) throw InputError(Place("image", id) + ": has no name");
       const ColmapImage image{rows.getColumn(1).getString(), WholeIn(rows.getColumn(2), Place("image", id))};
       if (image.name.find_first_of("\n\r") != std::string::npos ||
           FindNotPlain(image.name) != std::string::npos)
@@ -135,6 +136,9 @@ class ColmapPairs : public ListedPairs {
           throw InputError(
               fmt::format("{}: its image {} is not in the database", Place("pair", pair), image));
       }
+      if (pair / kMaxImages == pair % kMaxImages)
+        throw InputError(
+            fmt::format("{}: is of image {} and itself", Place("pair", pair), pair % kMaxImages));
       pair_ids_.push_back(pair);
     }
     if (pair_ids_.empty())

@@ -41,7 +41,8 @@ void AddView(const std::string& name, const std::array<double, 7>& pose, std::in
   if (lens == lenses.end())
     throw InputError(fmt::format("{}: the camera {} of {} is not among the reconstruction's {}", place,
                                  camera, Quoted(name), lenses.size()));
-  (*views)[name] = {MakeCameraPose(pose, place), lens->second};
+  if (!views->emplace(name, ColmapView{MakeCameraPose(pose, place), lens->second}).second)
+    throw InputError(fmt::format("{}: {} has two poses", place, Quoted(name)));
 }
 
 std::int64_t ReadWholeNumber(const TableFile& table, size_t field) {

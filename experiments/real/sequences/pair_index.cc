@@ -7,8 +7,11 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
 
 #include "experiments/core/files/file_output.h"
+#include "experiments/core/files/owner_lock.h"
 #include "experiments/core/files/regular_file.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/field_text.h"
@@ -79,16 +82,26 @@ void CheckHoldsNoOtherPairs(const fs::path& folder) {
 PairJournal::PairJournal(const std::string& folder, const std::string& identity)
     : path_((fs::path(folder) / "pairs.journal").string()) {
   MakeResultFolder(folder);
+  const bool is_new = !fs::exists(path_);
+  if (is_new) CheckHoldsNoOtherPairs(folder);
+  std::optional<RegularFile> old;
+  if (!is_new)
+    old.emplace(path_, FileKind{"journal", "a journal"});  // refuses a pipe, whose opening would wait
+  file_ = std::fopen(path_.c_str(), "ab");
+  if (!file_) throw InputError(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
+  if (!LockOwn(path_, fileno(file_))) {
+    std::fclose(std::exchange(file_, nullptr));
+    throw InputError(fmt::format(
+        "--out: another process makes pairs in {}; wait until it ends, or give another folder", folder));
+  }
   size_t num_bytes = 0;
-  if (fs::exists(path_)) {
-    const std::string text = RegularFile(path_, {"journal", "a journal"}).Read(kMaxJournalBytes);
+  if (old) {
+    const std::string text = old->Read(kMaxJournalBytes);
     num_bytes = text.rfind('\n') + 1;  // npos + 1 is 0
     Read(text.substr(0, num_bytes), identity);
     fs::resize_file(path_, num_bytes);
+    if (num_bytes == 0) CheckHoldsNoOtherPairs(folder);
   }
-  if (num_bytes == 0) CheckHoldsNoOtherPairs(folder);
-  file_ = std::fopen(path_.c_str(), "ab");
-  if (!file_) throw InputError(fmt::format("{}: cannot be written: {}", path_, std::strerror(errno)));
   if (num_bytes == 0) AddLine(Json{{"kind", kJournalKind}, {"identity", identity}}.dump());
   num_before_ = static_cast<int>(rows_.size());
 }

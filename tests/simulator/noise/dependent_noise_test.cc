@@ -7,6 +7,7 @@
 #include "simulator/observe.h"
 #include "stats/distributions.h"
 #include "tests/simulator/noise/noise_sample.h"
+#include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/goodness_of_fit.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -78,6 +79,19 @@ TEST(CorrelatedNoise, MayHaveTailsOfTheWholeMatch) {
   }
   EXPECT_LT(std::abs(ZAgainst(square, 1.0)), kNoiseZ);
   EXPECT_GT(ZAgainst(product, 0.0), 5.0);
+}
+
+TEST(CorrelatedNoise, HasNoTailsThatAreInfinite) {
+  for (const char* dof : {"0.1", "0"})
+    EXPECT_TRUE(SampleNoise(*WithSettings(MakeCorrelatedNoise(), {{"noise_student_dof", dof}}), 1, 1)
+                    .front()
+                    .allFinite())
+        << dof;
+  EXPECT_TRUE(ThrowsInputError(
+      [] {
+        SampleNoise(*WithSettings(MakeCorrelatedNoise(), {{"noise_student_dof", "0.05"}}), 1, 1);
+      },
+      {"noise_student_dof", "0.1 to 1000"}));
 }
 
 // One match a trial; Anderson-Darling of each coordinate at 1e-4. A sigma that is a fifth off is seen.

@@ -251,6 +251,7 @@ TEST_F(Colmap, ABrokenReconstructionIsNamedByPath) {
                            {"'frames/0.png' is of 640 x 240 px in the reconstruction, of 320 x 240 in"}));
   EXPECT_TRUE(RefusesModel("cameras.txt", " 320 ", " 0 ", {"camera 4: an image of 0 x 240 px"}));
   EXPECT_TRUE(RefusesModel("images.txt", " 4 frames/0", "", {"images.txt:2: is not IMAGE_ID QW"}));
+  EXPECT_TRUE(RefusesModel("images.txt", "frames/2.png", "frames/0.png", {"'frames/0.png' has two poses"}));
   EXPECT_TRUE(
       RefusesModel("images.txt", "1 ", "1 2", {"images.txt:2: a pose is damaged: a quaternion of length"}));
 }
@@ -265,6 +266,9 @@ TEST_F(Colmap, ABrokenDatabaseIsNamedByPath) {
                           {"text.db: cannot be read"}));
   EXPECT_TRUE(Refuses("DELETE FROM matches", {"broken.db: its table matches is empty"}));
   EXPECT_TRUE(Refuses("DELETE FROM images WHERE image_id = 2", {"its image 2 is not in the database"}));
+  EXPECT_TRUE(Refuses(
+      "UPDATE matches SET pair_id = 2147483647 * 2 + 2 WHERE pair_id = (SELECT min(pair_id) FROM matches)",
+      {"is of image 2 and itself"}));
   EXPECT_TRUE(Refuses("DELETE FROM cameras", {"image 1: its camera 1 is not in the database"}));
   EXPECT_TRUE(
       Refuses("DELETE FROM keypoints WHERE image_id = 3", {"keypoints of image 3: are not in the database"}));

@@ -96,10 +96,12 @@ TEST_F(MakePairs, WorkThatWasCutOffGoesOnAndGivesTheSameBytes) {
   for (int line = 0; line < 3; ++line) at = journal.find('\n', at) + 1;
   std::ofstream(cut + "/pairs.journal", std::ios::binary) << journal.substr(0, at + 20);
   fs::remove(cut + "/INDEX.csv");
-  const PairJournal opened(cut, "test");
-  EXPECT_EQ(opened.num_before(), 2);
-  for (const fs::path& file : MatchFilesIn(cut)) {
-    if (!opened.Find(ExtractPairId(file))) fs::remove(file);
+  {
+    const PairJournal opened(cut, "test");
+    EXPECT_EQ(opened.num_before(), 2);
+    for (const fs::path& file : MatchFilesIn(cut)) {
+      if (!opened.Find(ExtractPairId(file))) fs::remove(file);
+    }
   }
   EXPECT_EQ(MakePairsInto(cut, read, options).size(), num_rows);
   for (const char* name : {"/INDEX.csv", "/pairs.txt", "/pairs.journal"})

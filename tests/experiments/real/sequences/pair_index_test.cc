@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "experiments/real/sequences/key_frame_gate.h"
+#include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
 
 namespace rcme {
@@ -37,6 +38,17 @@ TEST(PairJournal, ForgetsKeptPairsWithoutTheirFile) {
   EXPECT_TRUE(std::isnan(again.Find("with")->baseline));
   EXPECT_EQ(again.Find("without"), nullptr);
   EXPECT_NE(again.Find("dropped"), nullptr);
+}
+
+TEST(PairJournal, IsOfOneProcessAtATime) {
+  const TempFolder folder;
+  const std::string out = folder.Path("out");
+  {
+    PairJournal journal(out, "same");
+    EXPECT_TRUE(ThrowsInputError([&] { PairJournal(out, "same"); }, {"another process makes pairs in", out}));
+    journal.Add(MakePairRow("dropped", "hall", "planar_scene"));
+  }
+  EXPECT_EQ(PairJournal(out, "same").num_before(), 1);
 }
 
 // An image is damaged in its own scene; another scene may have one of that name.
