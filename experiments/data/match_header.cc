@@ -82,10 +82,13 @@ std::string MatchHeader::Place(const std::string& key) const {
 std::vector<double> MatchHeader::Numbers(const std::string& key, size_t count) const {
   if (!Has(key)) {
     const bool is_of_camera = key.starts_with("size") || key.starts_with("K");
+    const bool has_a_part =
+        std::ranges::any_of(std::array{"size1", "size2", "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy"},
+                            [&](const char* other) { return Has(other); });
     throw InputError(fmt::format("{}: header key '# {}: ...' is missing{}", path_, key,
                                  !is_of_camera ? ""
-                                 : Has("K1") || Has("K") || Has("size1") || Has("size")
-                                     ? " (the header has a part of the cameras; add it)"
+                                 : has_a_part
+                                     ? "; add it, the header has others of the cameras"
                                      : " (without a header, give the intrinsics by `rcme estimate --K`)"));
   }
   std::vector<double> numbers;

@@ -14,8 +14,8 @@ std::optional<double> SceneMean::Take() {
 }
 
 bool HasCommonScenes(const RunDescription& run) {
-  return run.study_yaml.find("\ncommon_scenes: true") !=
-         std::string::npos;  // a key of ToYaml, no description
+  // As ToYaml writes the key; a description does not begin a line with it.
+  return run.study_yaml.find("\ncommon_scenes: true") != std::string::npos;
 }
 
 void CheckMayBePooled(const RunDescription& run) {

@@ -365,6 +365,7 @@ TEST_F(MatchFileTest, MissingHeaderKeys) {
   EXPECT_TRUE(Refuses(Edited("# t_unit", "# t"), {"t_unit", "is missing"}));
   EXPECT_TRUE(Refuses(Edited("# R_rowmajor", "# R"), {"R_rowmajor", "is missing"}));
   EXPECT_TRUE(Refuses("\n", {"size1", "is missing", "--K"}));
+  EXPECT_TRUE(Refuses(Edited("# size1", "# other"), {"size1", "is missing; add it"}));
   EXPECT_TRUE(Refuses("", {"is empty"}));
 }
 
