@@ -1,6 +1,14 @@
 #include "simulator/camera_defects.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "parameters/input_error.h"
 #include "simulator/exact_match.h"
+#include "stats/constants.h"
 
 namespace rcme {
 namespace {
@@ -20,20 +28,31 @@ Eigen::Vector2d ProjectDistorted(const SceneCamera& camera, double k1, const Eig
   return centre_px + (1.0 + k1 * ray.squaredNorm()) * (x_px - centre_px);
 }
 
+// The camera at a time: X(time) = R X1 + T.
+struct CameraAtTime {
+  CameraAtTime(const ViewPair& view, double time)
+      : R(RotationFromVector(time * VectorFromRotation(view.cam2_from_cam1_true.R))),
+        T(time * (view.baseline_m * view.cam2_from_cam1_true.t)) {}
+  Eigen::Matrix3d R;
+  Eigen::Vector3d T;
+};
+
+// When a row is read, after the middle row of its image.
+double TimeOfRow(const SceneCamera& camera, const CameraDefects& defects, double row_px) {
+  return defects.rolling_shutter * ((row_px + 0.5) / camera.height - 0.5);
+}
+
 // The pixel of a point in the image whose middle row is read at the time `middle`.
 Eigen::Vector2d ImagedPoint(const ViewPair& view, const SceneCamera& camera, double middle,
                             const CameraDefects& defects, const Eigen::Vector3d& point_in_cam1) {
-  const Eigen::Vector3d w = VectorFromRotation(view.cam2_from_cam1_true.R);
-  const Eigen::Vector3d T = view.baseline_m * view.cam2_from_cam1_true.t;
   const auto imaged_at = [&](double time) {
-    const Eigen::Vector3d point = RotationFromVector(time * w) * point_in_cam1 + time * T;
-    return ProjectDistorted(camera, defects.distortion_k1, point);
+    const CameraAtTime at(view, time);
+    return ProjectDistorted(camera, defects.distortion_k1, at.R * point_in_cam1 + at.T);
   };
   Eigen::Vector2d x_px = imaged_at(middle);
   if (defects.rolling_shutter == 0.0) return x_px;
   for (int round = 0; round < kRounds; ++round) {
-    const double row = (x_px.y() + 0.5) / camera.height - 0.5;
-    x_px = imaged_at(middle + defects.rolling_shutter * row);
+    x_px = imaged_at(middle + TimeOfRow(camera, defects, x_px.y()));
   }
   return x_px;
 }
@@ -52,6 +71,36 @@ Correspondence ImagedMatch(const ViewPair& view, const CameraDefects& defects,
   if (defects.IsNone()) return ExactMatch(view, point_in_cam1);
   return {ImagedPoint(view, view.camera1, 0.0, defects, point_in_cam1),
           ImagedPoint(view, view.camera2, 1.0, defects, point_in_cam1)};
+}
+
+Eigen::Vector3d PointOnSameRay(const ViewPair& view, const CameraDefects& defects,
+                               const Eigen::Vector3d& point_in_cam1, const Eigen::Vector2d& x1_px,
+                               double distance_m) {
+  const CameraAtTime at(view, TimeOfRow(view.camera1, defects, x1_px.y()));
+  const Eigen::Vector3d ray = (at.R * point_in_cam1 + at.T).normalized();
+  return at.R.transpose() * (distance_m * ray - at.T);
+}
+
+void CheckDistortion(const ViewPair& view, const CameraDefects& defects) {
+  if (defects.distortion_k1 >= 0.0) return;
+  for (const SceneCamera* camera : {&view.camera1, &view.camera2}) {
+    double farthest = 0.0;  // tangent of a corner's angle from the axis
+    for (const double x : {-0.5, camera->width - 0.5}) {
+      for (const double y : {-0.5, camera->height - 0.5}) {
+        const Eigen::Vector3d ray =
+            camera->Ray({x, y});  // not finite: the corner is outside of the circle of a fisheye lens
+        farthest = std::max(farthest,
+                            ray.allFinite() ? ray.head<2>().norm() : std::numeric_limits<double>::infinity());
+      }
+    }
+    // r (1 + k1 r^2) grows up to 1 + 3 k1 r^2 = 0.
+    const double least = -1.0 / (3.0 * farthest * farthest);
+    if (defects.distortion_k1 > least) continue;
+    throw InputError(fmt::format(
+        "distortion_k1: {:g} folds an image whose corners are {:.0f} deg from the axis; allowed above {:.4g}, or give a "
+        "longer focal length or a smaller image",
+        defects.distortion_k1, std::atan(farthest) * kDegPerRad, least));
+  }
 }
 
 }  // namespace rcme

@@ -26,4 +26,14 @@ std::vector<Parameter> Parameters(CameraDefects& defects);
 Correspondence ImagedMatch(const ViewPair& view, const CameraDefects& defects,
                            const Eigen::Vector3d& point_in_cam1);
 
+// Another point (camera 1's frame, m) whose image 1 is the same pixel, `distance_m` from where camera 1 was
+// when it read that pixel. x1_px: that pixel of the point, of ImagedMatch.
+Eigen::Vector3d PointOnSameRay(const ViewPair& view, const CameraDefects& defects,
+                               const Eigen::Vector3d& point_in_cam1, const Eigen::Vector2d& x1_px,
+                               double distance_m);
+
+// Throws InputError if the distortion folds an image of the view: points beyond a circle would be imaged
+// inside it.
+void CheckDistortion(const ViewPair& view, const CameraDefects& defects);
+
 }  // namespace rcme

@@ -21,6 +21,7 @@ std::vector<Correspondence> ExactMatches(const Scene& scene, std::span<const std
 
 Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierModel& outliers,
                     RandomStream& noise_rng, RandomStream& outlier_rng, const CameraDefects& defects) {
+  CheckDistortion(scene, defects);
   const size_t n = scene.points_in_cam1.size();
   std::vector<std::uint32_t> points(n);
   std::iota(points.begin(), points.end(), 0u);
@@ -39,7 +40,8 @@ Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierMo
   for (size_t k = 0; k < num_outliers; ++k) is_inlier[order[k]] = false;
   const std::span<const std::uint32_t> all(order);
   outliers.law->Replace(all.first(num_outliers),
-                        {scene, all.subspan(num_outliers), matches, is_undetectable, exact}, outlier_rng);
+                        {scene, defects, points, all.subspan(num_outliers), matches, is_undetectable, exact},
+                        outlier_rng);
   outlier_rng.Shuffle(std::span(order));
 
   Observation observation{std::vector<Correspondence>(n), {}, std::vector<bool>(n),

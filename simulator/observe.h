@@ -23,6 +23,7 @@ struct Observation {
 
 // Noise and outliers draw from separate streams, so the noise of a match does not depend on the outlier
 // ratio. Noise may move a point slightly outside the image, which a real detector would not; it is kept.
+// Throws InputError where the distortion folds an image and where the outlier law finds no place.
 Observation Observe(const Scene& scene, const NoiseModel& noise, const OutlierModel& outliers,
                     RandomStream& noise_rng, RandomStream& outlier_rng, const CameraDefects& defects = {});
 

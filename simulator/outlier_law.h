@@ -6,16 +6,18 @@
 
 #include "estimator/geometry/correspondence.h"
 #include "parameters/parameter.h"
-#include "simulator/exact_match.h"
+#include "simulator/camera_defects.h"
 #include "simulator/scene.h"
 #include "stats/random.h"
 
 namespace rcme {
 
-// The input and output of an outlier law. matches[i] is the noisy match of scene.points_in_cam1[i], or of
-// another point if the noise law detects points several times.
+// The input and output of an outlier law. matches[i] is the noisy match of the scene's point shown[i], which
+// is i unless the noise law detects points several times.
 struct MatchedScene {
   const Scene& scene;
+  const CameraDefects& defects;  // of both images, for wrong matches as for right ones
+  std::span<const std::uint32_t> shown;
   std::span<const std::uint32_t> inliers;  // points whose matches stay true, in random order
   std::span<Correspondence> matches;
   // Set this for wrong matches that satisfy the true epipolar constraint: no epipolar test can detect them.
@@ -46,6 +48,11 @@ inline constexpr int kMaxOutlierDraws = 10'000;
 inline Correspondence ComputeMatchNoise(const MatchedScene& matched, std::uint32_t point) {
   const Correspondence& exact = matched.exact[point];
   return {matched.matches[point].x1_px - exact.x1_px, matched.matches[point].x2_px - exact.x2_px};
+}
+
+// The scene point (camera 1's frame, m) that a match shows.
+inline const Eigen::Vector3d& ShownPoint(const MatchedScene& matched, std::uint32_t match) {
+  return matched.scene.points_in_cam1[matched.shown[match]];
 }
 
 // A parameter shared by several laws.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "parameters/input_error.h"
+#include "simulator/exact_match.h"
 #include "simulator/outliers/outlier_laws.h"
 
 namespace rcme {
@@ -20,13 +21,12 @@ struct VisibleRay {
   Eigen::Vector2d far_px, near_px;            // their images
 
   double Length() const { return (near_px - far_px).norm(); }
-  // The image of the ray's point that lies `from_far_px` along the line from the far to the near end. It is
-  // the weighted sum of the ends, each at depth 1 in camera 2, with weights that sum to 1. The sum is a point
-  // of the ray, since its coefficients of P and Q are positive.
-  Eigen::Vector2d Project(const Camera& camera2, double from_far_px) const {
+  // The ray's point whose image lies `from_far_px` along the line from the far to the near end, in camera 2
+  // up to a positive factor. It is the weighted sum of the ends, each at depth 1 in camera 2, with weights
+  // that sum to 1. The sum is a point of the ray, since its coefficients of P and Q are positive.
+  Eigen::Vector3d DirectionAt(double from_far_px) const {
     const double share = from_far_px / Length();
-    return camera2.Project((1.0 - share) / far_in_cam2.z() * far_in_cam2 +
-                           share / near_in_cam2.z() * near_in_cam2);
+    return (1.0 - share) / far_in_cam2.z() * far_in_cam2 + share / near_in_cam2.z() * near_in_cam2;
   }
 };
 
@@ -61,7 +61,7 @@ VisibleRay ClipToImage2(const ViewPair& view, const Eigen::Vector2d& x1_px) {
 // along the curve, except within min_shift_px of the true one; nullopt if no place is left. The curve is
 // approximated by a polygon whose sides count if both their ends do. The directions of its corners are (1 -
 // s) P + s Q, P and Q of unit length, s = 0, 1 / 256, ... 1, which are points of the ray as above.
-std::optional<Eigen::Vector2d> DrawOnCurve(const ViewPair& view, const Correspondence& exact,
+std::optional<Eigen::Vector3d> DrawOnCurve(const ViewPair& view, const Correspondence& exact,
                                            double min_shift_px, RandomStream& rng) {
   constexpr int kSides = 256;
   const SceneCamera& camera2 = view.camera2;
@@ -90,7 +90,23 @@ std::optional<Eigen::Vector2d> DrawOnCurve(const ViewPair& view, const Correspon
   const double side = static_cast<double>(end - up_to_px.begin() - 1);
   const double s = (side + (place_px - *(end - 1)) / (*end - *(end - 1))) / kSides;
   if (!is_place(s)) return std::nullopt;  // the side leaves the image between its ends
-  return camera2.Project(direction(s));
+  return direction(s);
+}
+
+// The image 2 of the point of the ray of x1_px that camera 2, without defects, sees in a direction of the
+// plane of ray and baseline. x1_px: image 1 of `point_in_cam1`, a point of the ray.
+Eigen::Vector2d ImageOnRay(const ViewPair& view, const CameraDefects& defects,
+                           const Eigen::Vector3d& point_in_cam1, const Eigen::Vector2d& x1_px,
+                           const Eigen::Vector3d& direction_in_cam2) {
+  if (defects.IsNone()) return view.camera2.Project(direction_in_cam2);
+  // distance R ray + T is along the direction: crossed with it, distance (R ray x d) = -(T x d).
+  const Eigen::Vector3d ray = point_in_cam1.normalized(),
+                        a = (view.cam2_from_cam1_true.R * ray).cross(direction_in_cam2),
+                        b = -view.baseline_m * view.cam2_from_cam1_true.t.cross(direction_in_cam2);
+  const double farthest_m =
+      1e6 * (point_in_cam1.norm() + view.baseline_m);  // in place of an infinite distance
+  const double distance_m = std::clamp(a.dot(b) / std::max(a.squaredNorm(), 1e-300), 0.0, farthest_m);
+  return ImagedMatch(view, defects, PointOnSameRay(view, defects, point_in_cam1, x1_px, distance_m)).x2_px;
 }
 
 // The point in image 2 is that of another point on the viewing ray of the exact x1. Image 2 shows a segment
@@ -115,23 +131,25 @@ class EpipolarOutliers : public OutlierLaw {
     const auto num_points = static_cast<std::uint32_t>(scene.points_in_cam1.size());
     for (const std::uint32_t point : points) {
       const Correspondence noise = ComputeMatchNoise(matched, point);
-      std::uint32_t on_ray_of = point;
-      std::optional<Eigen::Vector2d> x2_px = DrawOnRay(scene, point, rng);
-      for (int draw = 0; !x2_px; ++draw) {
+      std::uint32_t on_ray_of = matched.shown[point];
+      std::optional<Eigen::Vector3d> direction = DrawOnRay(scene, on_ray_of, rng);
+      for (int draw = 0; !direction; ++draw) {
         if (draw == kMaxOutlierDraws) ThrowNoPlace();
         on_ray_of = rng.IntegerBelow(num_points);
-        x2_px = DrawOnRay(scene, on_ray_of, rng);
+        direction = DrawOnRay(scene, on_ray_of, rng);
       }
-      const Eigen::Vector2d x1_px = scene.camera1.Project(scene.points_in_cam1[on_ray_of]);
+      const Eigen::Vector3d& on_ray = scene.points_in_cam1[on_ray_of];
+      const Eigen::Vector2d x1_px = ImagedMatch(scene, matched.defects, on_ray).x1_px;
       if (x1_px != matched.exact[point].x1_px) matched.matches[point].x1_px = x1_px + noise.x1_px;
-      matched.matches[point].x2_px = *x2_px + noise.x2_px;
+      matched.matches[point].x2_px =
+          ImageOnRay(scene, matched.defects, on_ray, x1_px, *direction) + noise.x2_px;
       matched.is_undetectable[point] = true;
     }
   }
 
  private:
-  // nullopt if the visible part of the ray leaves no place.
-  std::optional<Eigen::Vector2d> DrawOnRay(const Scene& scene, std::uint32_t point, RandomStream& rng) const {
+  // A place of the ray as a direction of camera 2; nullopt if the visible part of the ray leaves none.
+  std::optional<Eigen::Vector3d> DrawOnRay(const Scene& scene, std::uint32_t point, RandomStream& rng) const {
     const Correspondence exact = ExactMatch(scene, scene.points_in_cam1[point]);
     if (scene.camera2.HasLens()) return DrawOnCurve(scene, exact, min_shift_px_, rng);
     const VisibleRay ray = ClipToImage2(scene, exact.x1_px);
@@ -141,7 +159,7 @@ class EpipolarOutliers : public OutlierLaw {
     if (!(before_px + after_px > 0.0)) return std::nullopt;
     const double place_px = rng.Uniform(0.0, before_px + after_px);
     const double jump_px = place_px < before_px ? 0.0 : true_px + min_shift_px_ - before_px;
-    return ray.Project(scene.camera2, place_px + jump_px);
+    return ray.DirectionAt(place_px + jump_px);
   }
 
   [[noreturn]] void ThrowNoPlace() const {

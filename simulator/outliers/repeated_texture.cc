@@ -29,10 +29,10 @@ class RepeatedTexture : public OutlierLaw {
     const Scene& scene = matched.scene;
     const std::vector<Eigen::Vector3d> steps_m = Steps(scene);
     for (const std::uint32_t point : points) {
-      const Eigen::Vector3d& true_in_cam1 = scene.points_in_cam1[point];
+      const Eigen::Vector3d& true_in_cam1 = ShownPoint(matched, point);
       const Eigen::Vector3d shift_m = DrawShiftInView(true_in_cam1, steps_m, scene, rng);
       const Correspondence noise = ComputeMatchNoise(matched, point);
-      const Correspondence other = ExactMatch(scene, true_in_cam1 + shift_m);
+      const Correspondence other = ImagedMatch(scene, matched.defects, true_in_cam1 + shift_m);
       matched.matches[point].x2_px = other.x2_px + noise.x2_px;
       if (IsInEpipolarPlane(true_in_cam1, shift_m, scene)) matched.is_undetectable[point] = true;
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "simulator/exact_match.h"
+#include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -77,6 +78,37 @@ TEST(CameraDefects, RollingShutterTurnsWithTheMotion) {
     EXPECT_NEAR((x_px - expected).norm(), 0.0, 1e-6);
     EXPECT_GT((x_px - view.camera1.Project(RotationFromVector(middle * w) * point)).norm(), 0.5);
   }
+}
+
+// Points of one ray of camera 1 at any distance keep their pixel of image 1, at the row's time; the given
+// point is one of them.
+TEST(CameraDefects, PointsOnTheSameRayShareTheirPixel) {
+  ViewPair view = ViewWithTranslation({0.2, -0.1, 0.3});
+  view.cam2_from_cam1_true.R = RotationFromVector({0.02, -0.05, 0.1});
+  const Eigen::Vector3d point(0.4, -0.6, 2.0);
+  for (const CameraDefects& defects :
+       {CameraDefects{.rolling_shutter = 0.2}, {.distortion_k1 = 0.05, .rolling_shutter = -0.1}}) {
+    const Eigen::Vector2d x1_px = ImagedMatch(view, defects, point).x1_px;
+    double nearest_m = 1.0;
+    for (const double distance_m : {0.5, 1.0, 2.1, 2.1284, 3.0, 50.0}) {
+      const Eigen::Vector3d other = PointOnSameRay(view, defects, point, x1_px, distance_m);
+      EXPECT_NEAR((ImagedMatch(view, defects, other).x1_px - x1_px).norm(), 0.0, 1e-6);
+      nearest_m = std::min(nearest_m, (other - point).norm());
+    }
+    EXPECT_LT(nearest_m, 0.06);
+    EXPECT_GT((ImagedMatch(view, defects, 0.25 * point).x1_px - x1_px).norm(),
+              0.1);  // on the ray of the middle row
+  }
+}
+
+// r = sqrt(.64^2 + .6^2) = .8773 at the corners, half a pixel beyond the outermost centres: folded from -1 /
+// (3 r^2) = -.4331 on.
+TEST(CameraDefects, ADistortionThatFoldsAnImageIsRefused) {
+  const ViewPair view = ViewWithTranslation({0.2, 0.0, 0.0});
+  EXPECT_NO_THROW(CheckDistortion(view, {.distortion_k1 = 0.5}));
+  EXPECT_NO_THROW(CheckDistortion(view, {.distortion_k1 = -0.433}));
+  EXPECT_TRUE(ThrowsInputError([&] { CheckDistortion(view, {.distortion_k1 = -0.434}); },
+                               {"distortion_k1: -0.434", "41 deg", "-0.4331", "focal length"}));
 }
 
 }  // namespace

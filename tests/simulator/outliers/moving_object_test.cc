@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "simulator/outliers/outlier_laws.h"
 #include "stats/distributions.h"
@@ -167,15 +168,35 @@ TEST(MovingObject, TurnsAboutItsOwnCentre) {
   }
 }
 
-TEST(MovingObject, KeepsTheNoiseOfTheMatchItReplaces) {
+TEST(MovingObject, KeepsTheNoiseOfTheMatchItReplacesOrAShareOfIt) {
   const Scene scene = SceneForOutliers(50);
-  const auto law = MakeMovingObject();
-  const DrawnOutliers exact = MakeWrong(*law, scene, 30), noisy = MakeWrong(*law, scene, 30, 0.5);
-  for (size_t i = 0; i < 30; ++i) {
-    const Eigen::Vector2d noise1_px = noisy.noisy[i].x1_px - noisy.exact[i].x1_px;
-    const Eigen::Vector2d noise2_px = noisy.noisy[i].x2_px - noisy.exact[i].x2_px;
-    EXPECT_LT((noisy.matches[i].x1_px - exact.matches[i].x1_px - noise1_px).norm(), 1e-9);
-    EXPECT_LT((noisy.matches[i].x2_px - exact.matches[i].x2_px - noise2_px).norm(), 1e-9);
+  for (const double share : {1.0, 0.25, 0.0}) {
+    const auto law = WithSettings(MakeMovingObject(), {{"object_noise_share", std::to_string(share)}});
+    const DrawnOutliers exact = MakeWrong(*law, scene, 30), noisy = MakeWrong(*law, scene, 30, 0.5);
+    for (size_t i = 0; i < 30; ++i) {
+      const Eigen::Vector2d noise1_px = share * (noisy.noisy[i].x1_px - noisy.exact[i].x1_px);
+      const Eigen::Vector2d noise2_px = share * (noisy.noisy[i].x2_px - noisy.exact[i].x2_px);
+      EXPECT_LT((noisy.matches[i].x1_px - exact.matches[i].x1_px - noise1_px).norm(), 1e-9);
+      EXPECT_LT((noisy.matches[i].x2_px - exact.matches[i].x2_px - noise2_px).norm(), 1e-9);
+    }
+  }
+}
+
+// A ray of image 1 or 2 is bent as a right match's is: (1 + k1 r^2) times the ideal offset from the centre.
+TEST(MovingObject, HasTheDistortionOfTheCameras) {
+  const double k1 = 0.1;
+  const auto law = WithSettings(MakeMovingObject(), kLargeObject);
+  const Scene scene = SceneForOutliers(60, 1);
+  const DrawnOutliers ideal = MakeWrong(*law, scene, 40, 0.0, 1),
+                      bent = MakeWrong(*law, scene, 40, 0.0, 1, {.distortion_k1 = k1});
+  for (size_t i = 0; i < 40; ++i) {
+    for (const auto& [camera, x_px, bent_px] :
+         {std::tuple{scene.camera1, ideal.matches[i].x1_px, bent.matches[i].x1_px},
+          {scene.camera2, ideal.matches[i].x2_px, bent.matches[i].x2_px}}) {
+      const Eigen::Vector3d ray = camera.Ray(x_px);
+      const double factor = 1.0 + k1 * ray.head<2>().squaredNorm();
+      EXPECT_LT((bent_px - camera.Project({factor * ray.x(), factor * ray.y(), 1.0})).norm(), 1e-9);
+    }
   }
 }
 

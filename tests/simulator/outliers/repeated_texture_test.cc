@@ -48,6 +48,27 @@ TEST(RepeatedTexture, IsTheImageOfAnotherRepetition) {
   }
 }
 
+// With defects of the cameras, and where matches show points in another order: image 2 of a repetition of the
+// shown point.
+TEST(RepeatedTexture, IsTheImageOfARepetitionOfTheShownPointWithTheDefects) {
+  const CameraDefects defects{.distortion_k1 = 0.05, .rolling_shutter = 0.1};
+  Scene scene = SceneForOutliers(100, 2);
+  scene.repeat_steps_m = {{0.05, 0.0, 0.0}};
+  std::vector<std::uint32_t> shown(100);
+  for (std::uint32_t i = 0; i < 100; ++i) shown[i] = i / 2;
+  const DrawnOutliers wrong = MakeWrong(*MakeRepeatedTexture(), scene, 100, 0.0, 2, defects, shown);
+  for (size_t i = 0; i < 100; ++i) {
+    double nearest_px = std::numeric_limits<double>::infinity();
+    for (const int steps : {-2, -1, 1, 2}) {
+      const Eigen::Vector3d other = scene.points_in_cam1[shown[i]] + steps * scene.repeat_steps_m[0];
+      nearest_px =
+          std::min(nearest_px, (ImagedMatch(scene, defects, other).x2_px - wrong.matches[i].x2_px).norm());
+    }
+    EXPECT_LT(nearest_px, 1e-9);
+    EXPECT_EQ(wrong.matches[i].x1_px, wrong.exact[i].x1_px);
+  }
+}
+
 // Where every repetition is in view, all 24 of up to two steps either way are equally likely: chi-square with
 // 23 degrees of freedom at 1e-4; were two steps along an axis half as likely as one, it would be seen.
 TEST(RepeatedTexture, AllRepetitionsAreEquallyLikely) {

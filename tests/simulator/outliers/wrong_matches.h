@@ -41,14 +41,20 @@ struct DrawnOutliers {
   std::vector<bool> is_undetectable;
 };
 
+// Match i shows the scene's point `shown`[i]; empty: i.
 inline DrawnOutliers MakeWrong(const OutlierLaw& law, const Scene& scene, size_t num_wrong,
-                               double noise_px = 0.0, std::uint32_t trial = 0) {
+                               double noise_px = 0.0, std::uint32_t trial = 0,
+                               const CameraDefects& defects = {}, std::vector<std::uint32_t> shown = {}) {
   const size_t n = scene.points_in_cam1.size();
   RandomStream noise_rng({.seed = 1, .trial = trial, .purpose = 81});
   RandomStream rng({.seed = 1, .trial = trial, .purpose = 82});
+  if (shown.empty()) {
+    shown.resize(n);
+    std::iota(shown.begin(), shown.end(), 0u);
+  }
   DrawnOutliers wrong;
-  for (const Eigen::Vector3d& point : scene.points_in_cam1) {
-    wrong.exact.push_back(ExactMatch(scene, point));
+  for (const std::uint32_t point : shown) {
+    wrong.exact.push_back(ImagedMatch(scene, defects, scene.points_in_cam1[point]));
     wrong.noisy.push_back(wrong.exact.back());
     for (Eigen::Vector2d* x_px : {&wrong.noisy.back().x1_px, &wrong.noisy.back().x2_px}) {
       for (const int axis : {0, 1}) (*x_px)(axis) += noise_px * noise_rng.Normal();
@@ -59,8 +65,10 @@ inline DrawnOutliers MakeWrong(const OutlierLaw& law, const Scene& scene, size_t
   wrong.points.resize(n);
   std::iota(wrong.points.begin(), wrong.points.end(), 0u);
   const std::span<const std::uint32_t> all(wrong.points);
-  law.Replace(all.first(num_wrong),
-              {scene, all.subspan(num_wrong), wrong.matches, wrong.is_undetectable, wrong.exact}, rng);
+  law.Replace(
+      all.first(num_wrong),
+      {scene, defects, shown, all.subspan(num_wrong), wrong.matches, wrong.is_undetectable, wrong.exact},
+      rng);
   return wrong;
 }
 
