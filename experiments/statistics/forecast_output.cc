@@ -225,7 +225,7 @@ std::string ForecastsAsTable(const std::vector<ForecastMeasures>& measures, cons
       measures.end()) {
     text += FormatParagraph(
         "P from inlier_share: the estimator states none; its share of inliers, recalibrated by isotonic "
-        "regression on the other half of the scenes of this run, stands in.");
+        "regression on the other half of the scenes of this run, stands in; it is not judged by p.");
   }
   return text;
 }

@@ -98,6 +98,22 @@ TEST_F(FailureForecastsTest, StatedOnesAreOfScoredAnswers) {
   for (const size_t i : {2U, 3U, 4U}) EXPECT_FALSE(BrierOfStated(records[i], bounds)) << i;
 }
 
+// Probabilities fitted to the other half of the run are not judged by a p; stated ones are.
+TEST_F(FailureForecastsTest, FittedProbabilitiesHaveNoPValue) {
+  std::vector<TrialRecord> stated, fitted;
+  for (std::uint32_t trial = 0; trial < 40; ++trial) {
+    stated.push_back(StatedMotion(trial, 0.25, 50, trial % 4 == 0));
+    fitted.push_back(StatedMotion(trial, kNaN, 50, trial % 4 == 0));
+  }
+  const ForecastMeasures of_stated = MeasureFailureForecasts(Stored(stated)).at(0),
+                         of_fitted = MeasureFailureForecasts(Stored(fitted)).at(0);
+  EXPECT_EQ(of_fitted.source, ForecastSource::kInlierShare);
+  EXPECT_GT(of_fitted.n, 0);
+  EXPECT_TRUE(of_stated.check.p_value > 0.0 && of_stated.error_of_equal_width.p_value > 0.0);
+  EXPECT_TRUE(std::isnan(of_fitted.check.p_value) && std::isnan(of_fitted.error_of_equal_width.p_value));
+  EXPECT_TRUE(std::isnan(of_fitted.error_of_equal_mass.p_value));
+}
+
 // A pure rotation: whether the direction is within its bound has no answer, even where the rotation is off.
 TEST_F(FailureForecastsTest, AProbabilityOfAMotionWithoutDirectionIsNotJudged) {
   std::vector<TrialRecord> records = {StatedMotion(0, 0.9, 50, false), StatedMotion(1, 0.9, 50, true)};
