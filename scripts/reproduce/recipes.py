@@ -53,7 +53,8 @@ class Recipe:
     def missing(self, programs):
         """What the commands need and what is not there."""
         names = {shlex.split(command)[0] for command in self.commands + self.digest}
-        found = [name for name in sorted(names) if "/" not in name and not (programs / name).exists()]
+        found = [name if name == "rcme" else f"{name} (built by cmake --build build/release --target thorough)"
+                 for name in sorted(names) if "/" not in name and not (programs / name).exists()]
         found += [each for each in map(with_data, self.needs) if "/" in each and not (ROOT / each).exists()]
         wanted = [each.removeprefix("estimator ") for each in self.needs if each.startswith("estimator ")]
         there = estimators_of(programs / "rcme") if wanted and "rcme" not in found else wanted
