@@ -180,7 +180,8 @@ AxisFit Step(const DisplacementSet& set, const std::vector<Parts>& parts, const 
   if (set.of_rotation) {
     const auto J = set.of_rotation->jacobian.leftCols<3>();
     const auto& r = set.of_rotation->residual;
-    information.topLeftCorner<3, 3>() += J.transpose() * J / set.all_over_used;
+    const Eigen::Matrix3d squares_of_J = J.transpose() * J;
+    information.topLeftCorner<3, 3>() += squares_of_J / set.all_over_used;
     moment.head<3>() -= J.transpose() * r / set.all_over_used;
     prior_cost += 0.5 * (r + J * old.x.head<3>()).squaredNorm();
   }

@@ -97,7 +97,8 @@ Matrix5d ComputeSecondMoment(const WeightedAxis& axis, const RelativePose& centr
   const Vector5d away =
       LocalCoordinates(centre, {RotationFromVector(axis.fit.x.head<3>()) * centre.R, axis.fit.direction});
   Matrix5d moment = away * away.transpose();
-  moment.topLeftCorner<3, 3>() += (axis.fit.information.inverse() / all_over_used).topLeftCorner<3, 3>();
+  const Eigen::Matrix3d rotation_cov = axis.fit.information.inverse().topLeftCorner<3, 3>();
+  moment.topLeftCorner<3, 3>() += rotation_cov / all_over_used;
   // The cell's own extent: a uniform law over an interval has a twelfth of its squared length.
   const double width = axis.high - axis.low, length = axis.angle * 2.0 * std::numbers::pi / kAzimuths;
   const Eigen::Vector2d outward = away.tail<2>().normalized();

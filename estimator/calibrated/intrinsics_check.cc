@@ -103,7 +103,8 @@ IntrinsicsCheck Check(const MotionProblem& problem, const Mode& answer, const Ex
   const auto of_errors = sums.template block<kErrors, kErrors>(5, 5);
   const auto last = sums.template bottomRows<1>();
   const Eigen::Matrix<double, 5, kErrors> M =
-      (of_motion + kLeastInformation * Matrix5d::Identity()).llt().solve(across.transpose());
+      Eigen::LLT<Matrix5d>(Matrix5d(of_motion + kLeastInformation * Matrix5d::Identity()))
+          .solve(Eigen::Matrix<double, 5, kErrors>(across.transpose()));
   const Square information = of_errors - across * M;
   const Eigen::Matrix<double, kErrors, 1> score =
       M.transpose() * last.template head<5>().transpose() - last.template segment<kErrors>(5).transpose();

@@ -3,7 +3,6 @@
 #include <ceres/ceres.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <vector>
 
 #include "estimator/geometry/sampson.h"
@@ -96,6 +95,18 @@ Eigen::Vector3d InitialPoint(const MotionProblem& problem, const Correspondence&
   return {ray1.x(), ray1.y(), InverseDepth(pose, ray1, ray2)};
 }
 
+// The unit vector normal to three columns, up to its sign: the signed minors, as a cross product in four
+// dimensions.
+Eigen::Vector4d NormalToColumns(const Eigen::Matrix<double, 4, kPointSize, Eigen::RowMajor>& columns) {
+  Eigen::Vector4d normal;
+  for (int i = 0; i < 4; ++i) {
+    Eigen::Matrix3d minor;
+    for (int row = 0; row < 3; ++row) minor.row(row) = columns.row(row < i ? row : row + 1);
+    normal(i) = (i % 2 == 0 ? 1.0 : -1.0) * minor.determinant();
+  }
+  return normal.normalized();
+}
+
 // One match's share of the Fisher information of the motion with its point marginalised. Of the four
 // residuals three determine the point; the one normal to them informs about the motion.
 Matrix5d MarginalInformation(const ReprojectionCost& cost, const double* pose, const double* point) {
@@ -105,8 +116,8 @@ Matrix5d MarginalInformation(const ReprojectionCost& cost, const double* pose, c
   const double* parameters[] = {pose, point};
   double* jacobians[] = {d_pose.data(), d_point.data()};
   cost.Evaluate(parameters, residuals.data(), jacobians);
-  const Eigen::Matrix4d Q = Eigen::HouseholderQR<Eigen::Matrix<double, 4, 3>>(d_point).householderQ();
-  const Eigen::Matrix<double, 1, 5> row = Q.col(3).transpose() * d_pose * PlusJacobianAt(PoseFromBlock(pose));
+  const Eigen::Matrix<double, 1, 5> row =
+      NormalToColumns(d_point).transpose() * d_pose * PlusJacobianAt(PoseFromBlock(pose));
   return row.transpose() * row;
 }
 

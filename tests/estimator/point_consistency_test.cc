@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <array>
@@ -13,6 +12,7 @@
 #include "stats/distributions.h"
 #include "tests/estimator/uncertain_motion.h"
 #include "tests/test_support/coverage_count.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
@@ -72,9 +72,8 @@ Textbook TextbookDistance(const Eigen::Matrix3d& F, const std::array<Eigen::Matr
   const Eigen::FullPivLU<LongMatrix4> lu(result.cov);
   result.d2 = static_cast<double>(delta.dot(lu.solve(delta)));
   result.log_det = static_cast<double>(std::log(std::abs(lu.determinant())));
-  const Eigen::Matrix<long double, 4, 1> eigenvalues =
-      Eigen::SelfAdjointEigenSolver<LongMatrix4>(result.cov, Eigen::EigenvaluesOnly).eigenvalues();
-  result.condition = static_cast<double>(eigenvalues(3) / std::max(eigenvalues(0), 1e-300L));
+  const Eigen::VectorXd singular_values = SingularValues(result.cov.cast<double>());
+  result.condition = singular_values(0) / std::max(singular_values(3), 1e-300);
   return result;
 }
 

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/calib3d.hpp>
@@ -12,6 +11,7 @@
 
 #include "estimator/geometry/essential_matrix.h"
 #include "tests/peers/peer_entries.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/two_camera_scene.h"
 
 namespace rcme {
@@ -74,8 +74,8 @@ Eigen::Matrix3d NearestEssential(const cv::Mat& E) {
   for (int row = 0; row < 3; ++row) {
     for (int col = 0; col < 3; ++col) given(row, col) = E.at<double>(row, col);
   }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(given, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal() * svd.matrixV().transpose();
+  const FullSvd svd(given);
+  return svd.U.leftCols(2) * svd.V.leftCols(2).transpose();
 }
 
 // What the peer asks by default but for the local optimisation, written out.

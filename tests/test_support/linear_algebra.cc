@@ -30,6 +30,13 @@ double SquaredMahalanobis(const Eigen::VectorXd& error, const Eigen::MatrixXd& c
   return error.dot(solved);
 }
 
+FullSvd::FullSvd(const Eigen::MatrixXd& a) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  U = svd.matrixU();
+  V = svd.matrixV();
+  s = svd.singularValues();
+}
+
 Eigen::VectorXd SingularValues(const Eigen::MatrixXd& matrix) { return matrix.jacobiSvd().singularValues(); }
 
 Eigen::MatrixXd NullSpace(const Eigen::MatrixXd& a) {

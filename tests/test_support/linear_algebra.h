@@ -28,6 +28,13 @@ double SquaredMahalanobis(const Eigen::VectorXd& error, const Eigen::MatrixXd& c
 // Descending.
 Eigen::VectorXd SingularValues(const Eigen::MatrixXd& matrix);
 
+// a = U diag(s) V', U and V square.
+struct FullSvd {
+  explicit FullSvd(const Eigen::MatrixXd& a);
+  Eigen::MatrixXd U, V;
+  Eigen::VectorXd s;  // descending
+};
+
 // The unit vector x of the least |a x|.
 Eigen::VectorXd NullVector(const Eigen::MatrixXd& a);
 // Orthonormal columns: those of a (m x n), m < n, of rank m.

@@ -44,7 +44,7 @@ std::optional<Hypothesis<EightPoint>> FitEightPoints(const MotionProblem& proble
 
 double NeesOfF(const Vector9d& f, const Matrix9d& f_cov, const RelativePose& pose_true,
                int degrees_of_freedom) {
-  const Eigen::SelfAdjointEigenSolver<Matrix9d> eigen(f_cov);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen{Eigen::MatrixXd(f_cov)};
   if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()(9 - degrees_of_freedom) > 0.0))
     return kInfinity;
   const Vector9d error = ErrorOfF(f, pose_true);

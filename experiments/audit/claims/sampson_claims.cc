@@ -53,10 +53,10 @@ Outcome SampsonRankStatistic(Case& made) {
 // would already know the dependence on g. It uses B instead of the 4x4 matrix, whose three small eigenvalues
 // fall as g^2 below its rounding errors.
 double LogDeterminant(const ExactFit& fit, double sigma_px, const Correspondence& match) {
-  Eigen::Matrix<double, 9, 4> factor;  // B'
+  Eigen::MatrixXd factor(9, 4);  // B'
   factor.topRows<4>() = sigma_px * SampsonVectorPointJacobian(fit.model.F, match).transpose();
   factor.bottomRows<5>() = SampsonVectorPoseJacobian(fit.model.F, fit.model.dF_whitened, match).transpose();
-  const Eigen::HouseholderQR<Eigen::Matrix<double, 9, 4>> qr(factor);
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(factor);
   return 2.0 * qr.matrixQR().diagonal().array().abs().log().sum();
 }
 

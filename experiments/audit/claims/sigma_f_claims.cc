@@ -44,7 +44,8 @@ Outcome ExactInverseStatistic(Case& made) {
   const Vector9d f = Vectorize(EssentialFromPose(made.pose_true())).normalized();
   const Matrix9d information =
       SampleInformation(f, problem.camera1, problem.camera2, problem.matches, problem.sigma_px);
-  const Vector9d eigenvalues = Eigen::SelfAdjointEigenSolver<Matrix9d>(information).eigenvalues();
+  const Eigen::VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(information)).eigenvalues();
   return {eigenvalues(0) > 1e-12 * eigenvalues(8) ? 1.0 : 0.0};
 }
 

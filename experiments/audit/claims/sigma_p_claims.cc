@@ -36,9 +36,9 @@ Jacobian ThetaJacobian(const EssentialProjection&, const RelativePose& pose) { r
 Outcome PoseRankStatistic(Case& made) {
   const std::optional<Hypothesis<EightPoint>> hypothesis = FitEightPoints(made.problem());
   if (!hypothesis) return {0.0, 0.0};
-  const Eigen::Matrix<double, 7, 7> covariance =
+  const Eigen::MatrixXd covariance =  // 7 x 7
       CovarianceOfQuaternionAndTranslation(hypothesis->pose, hypothesis->pose_cov);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 7, 7>> eigen(covariance);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
   const auto rank = (eigen.eigenvalues().array() > 1e-13 * eigen.eigenvalues()(6)).count();
   return {rank == 5 ? 1.0 : 0.0, rank == 7 ? 1.0 : 0.0};
 }

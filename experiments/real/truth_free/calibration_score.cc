@@ -59,7 +59,7 @@ std::optional<CalibrationScore> ScoreCalibration(const MotionProblem& problem,
     normal += weight * row * row.transpose();
     moments += weight * residual.r * row;
   }
-  const Eigen::LLT<Matrix5d> of_motion(normal.bottomRightCorner<5, 5>());
+  const Eigen::LLT<Matrix5d> of_motion{Matrix5d(normal.bottomRightCorner<5, 5>())};
   if (of_motion.info() != Eigen::Success || !normal.allFinite()) return std::nullopt;
   const Eigen::Matrix<double, kNumCameraFaults, 5> B =
       of_motion.solve(normal.bottomLeftCorner<5, kNumCameraFaults>()).transpose();

@@ -12,6 +12,7 @@
 #include "stats/distributions.h"
 #include "tests/test_support/calibrated_mode.h"
 #include "tests/test_support/coverage_count.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/numeric_jacobian.h"
 
 namespace rcme {
@@ -102,10 +103,9 @@ TEST(PriorEvidence, IsThatOfAConvolution) {
   const Vector5d move = -both.hessian.llt().solve(terms.gradient);
   both.pose = Retract(truth, move);
   const double loss = 0.5 * move.dot(H * move);  // of the likelihood, which the contrast of two modes has
-  const Eigen::Matrix<double, 9, 9> spread =
-      Eigen::Matrix<double, 9, 9>::Identity() + r.jacobian * H.inverse() * r.jacobian.transpose();
-  const double expected = LogPeakOverUniform(motion) - 0.5 * r.residual.dot(spread.inverse() * r.residual) -
-                          0.5 * std::log(spread.determinant());
+  const Eigen::MatrixXd spread = Eigen::MatrixXd::Identity(9, 9) + Propagate(r.jacobian, H.inverse());
+  const double expected = LogPeakOverUniform(motion) - 0.5 * SquaredMahalanobis(r.residual, spread) -
+                          CholeskyFactor(spread).diagonal().array().log().sum();
   EXPECT_NEAR(ComputePriorEvidence(motion, both) - loss, expected + std::log(0.95), 0.01);
 }
 

@@ -4,11 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/SVD>
 #include <cmath>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/geometry/triangulation.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/random_problem.h"
 
 namespace rcme {
@@ -37,9 +37,7 @@ PlaneCase MakePlane(std::uint32_t trial, double thickness, double sigma_px = kTw
   return c;
 }
 
-double MiddleSingularValue(const Eigen::Matrix3d& H) {
-  return Eigen::JacobiSVD<Eigen::Matrix3d>(H).singularValues()(1);
-}
+double MiddleSingularValue(const Eigen::Matrix3d& H) { return SingularValues(H)(1); }
 
 // With R' + t' n'' = lambda H, lambda = +-1 / the middle singular value: t' n'' = lambda H - R' has rank one,
 // and its columns are multiples of t'.

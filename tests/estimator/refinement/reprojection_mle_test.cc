@@ -9,6 +9,7 @@
 #include "estimator/geometry/essential_matrix.h"
 #include "stats/distributions.h"
 #include "tests/test_support/coverage_count.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/random_problem.h"
 
@@ -62,15 +63,14 @@ DenseBundle AdjustDensely(const MotionProblem& problem, const RelativePose& star
     };
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(5 + 3 * n);
     const Eigen::MatrixXd J = NumericJacobian(residuals, zero, 1e-4);
-    normal = J.transpose() * J;
-    const Eigen::VectorXd step = -normal.ldlt().solve(J.transpose() * residuals(zero));
+    normal = Multiply(J.transpose(), J);
+    const Eigen::VectorXd step = -Multiply(Inverse(normal), Multiply(J.transpose(), residuals(zero)));
     bundle.pose = Retract(bundle.pose, step.head<5>());
     bundle.points += step.tail(3 * n);
   }
   const Eigen::MatrixXd coupling = normal.topRightCorner(5, 3 * n);
   const Eigen::MatrixXd point_block = normal.bottomRightCorner(3 * n, 3 * n);
-  const Matrix5d schur =
-      normal.topLeftCorner(5, 5) - coupling * point_block.ldlt().solve(coupling.transpose());
+  const Matrix5d schur = normal.topLeftCorner(5, 5) - Propagate(coupling, Inverse(point_block));
   bundle.pose_cov = schur.inverse();
   return bundle;
 }

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <limits>
 #include <opencv2/calib3d.hpp>
@@ -11,6 +10,7 @@
 
 #include "estimator/geometry/essential_matrix.h"
 #include "tests/test_support/coverage_count.h"
+#include "tests/test_support/linear_algebra.h"
 #include "tests/test_support/numeric_jacobian.h"
 #include "tests/test_support/random_problem.h"
 
@@ -99,7 +99,7 @@ Eigen::Matrix3d Refine(const Eigen::Matrix3d& E, const FiveRays& rays) {
   };
   Eigen::VectorXd e = Vectorize(E);
   for (int step = 0; step < 10; ++step) {
-    e -= NumericJacobian(constraints, e, 1e-2).colPivHouseholderQr().solve(constraints(e));
+    e -= Multiply(PseudoInverse(NumericJacobian(constraints, e, 1e-2)), constraints(e));
   }
   return Matricize(Vector9d(e));
 }

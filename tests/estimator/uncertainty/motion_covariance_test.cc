@@ -152,7 +152,7 @@ TEST(CovarianceOfQuaternionAndTranslation, HasRankFive) {
     const Matrix5d pose_cov = root * root.transpose() + Matrix5d::Identity();
     const Eigen::Matrix<double, 7, 7> cov = CovarianceOfQuaternionAndTranslation(pose, pose_cov);
     const Eigen::VectorXd eigenvalues =
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 7, 7>>(cov).eigenvalues();
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Eigen::MatrixXd(cov)).eigenvalues();
     EXPECT_LT(std::abs(eigenvalues(1)), 1e-14 * eigenvalues(6));
     EXPECT_GT(eigenvalues(2), 1e-4 * eigenvalues(6));
     // The null directions are q and t themselves, whose lengths are fixed.

@@ -1,12 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
-
 #include "simulator/noise/noise_laws.h"
 #include "stats/constants.h"
 #include "stats/distributions.h"
 #include "tests/simulator/noise/noise_sample.h"
 #include "tests/test_support/goodness_of_fit.h"
+#include "tests/test_support/linear_algebra.h"
 
 namespace rcme {
 namespace {
@@ -26,10 +25,10 @@ Eigen::Matrix4d Covariance(double axis_ratio, double axis_deg, double image_corr
 
 // The p-value of the four whitened coordinates of all matches against a standard normal.
 double WhitenedPValue(const std::vector<Eigen::Vector4d>& noise, const Eigen::Matrix4d& covariance) {
-  const Eigen::LLT<Eigen::Matrix4d> factor(covariance);
+  const Eigen::Matrix4d whitening = Inverse(CholeskyFactor(covariance));
   std::vector<double> whitened;
   for (const Eigen::Vector4d& e : noise) {
-    const Eigen::Vector4d z = factor.matrixL().solve(e);
+    const Eigen::Vector4d z = whitening * e;
     whitened.insert(whitened.end(), z.data(), z.data() + 4);
   }
   return TestKolmogorovSmirnov(whitened, NormalCdf).p_value;

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +7,7 @@
 #include "tests/simulator/outliers/wrong_matches.h"
 #include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/goodness_of_fit.h"
+#include "tests/test_support/linear_algebra.h"
 
 namespace rcme {
 namespace {
@@ -15,9 +15,9 @@ namespace {
 // Inverse depths in camera 1 of the point that both ends of an exact match show: ray1 turned + w t
 // proportional to ray2, and the depth in camera 2 over that in camera 1.
 Eigen::Vector2d InverseDepthAndRatio(const Scene& scene, const Correspondence& match) {
-  Eigen::Matrix<double, 3, 2> A;
+  Eigen::MatrixXd A(3, 2);
   A << -scene.baseline_m * scene.cam2_from_cam1_true.t, scene.camera2.Ray(match.x2_px);
-  return A.colPivHouseholderQr().solve(scene.cam2_from_cam1_true.R * scene.camera1.Ray(match.x1_px));
+  return Multiply(PseudoInverse(A), scene.cam2_from_cam1_true.R * scene.camera1.Ray(match.x1_px));
 }
 
 // Whether x1 is that of the match's own scene point, before noise.

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -42,12 +41,13 @@ OwnMotion FitMotion(const Scene& scene, const DrawnOutliers& wrong, size_t num_w
 
 // The two rotations that E admits; one of them turns by little.
 Eigen::Matrix3d SmallRotation(const Eigen::Matrix3d& E, const Eigen::Matrix3d& expected) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(E, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const FullSvd svd(E);
+  const Eigen::Matrix3d U = svd.U, V = svd.V;
   Eigen::Matrix3d W;
   W << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
   Eigen::Matrix3d best = Eigen::Matrix3d::Zero();
-  for (Eigen::Matrix3d R : {Eigen::Matrix3d(svd.matrixU() * W * svd.matrixV().transpose()),
-                            Eigen::Matrix3d(svd.matrixU() * W.transpose() * svd.matrixV().transpose())}) {
+  for (Eigen::Matrix3d R :
+       {Eigen::Matrix3d(U * W * V.transpose()), Eigen::Matrix3d(U * W.transpose() * V.transpose())}) {
     if (R.determinant() < 0.0) R = -R;
     if ((R - expected).norm() < (best - expected).norm()) best = R;
   }

@@ -122,11 +122,11 @@ TEST(AuditOutput, SaysEverythingOfAClaim) {
   const auto& target = evidence["targets"].at(0);
   EXPECT_EQ(target["quantity"], "coverage at alpha 0.05");
   EXPECT_EQ(target["nominal"], 0.95);
-  EXPECT_LT(target["interval"].at(0), target["measured"]);
+  EXPECT_LT(target["interval"].at(0).get<double>(), target["measured"].get<double>());
   EXPECT_EQ(target["n"], evidence["num_trials"]);
-  EXPECT_GT(target["power"]["holds_at_nominal"], 0.9);
-  EXPECT_LT(target["power"]["found_outside"].at(0), target["low"]);
-  EXPECT_GT(claim["holds_at_nominal"], 0.9);
+  EXPECT_GT(target["power"]["holds_at_nominal"].get<double>(), 0.9);
+  EXPECT_LT(target["power"]["found_outside"].at(0).get<double>(), target["low"].get<double>());
+  EXPECT_GT(claim["holds_at_nominal"].get<double>(), 0.9);
   EXPECT_NE(MakeAuditResult(audit).text.find("gauss.a1"), std::string::npos);
   EXPECT_NE(AuditAsMarkdown(audit).find("| gauss.a1 |"), std::string::npos);
 }
