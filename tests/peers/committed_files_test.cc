@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,10 +67,11 @@ TEST(ToYaml, RoundTripOfTheCommittedStudies) {
   }
 }
 
-// The studies at equal time have PoseLib's estimator in them: without it nothing but that is wrong with them.
-TEST(ToYaml, RoundTripOfTheCommittedStudiesAtEqualTime) {
-  const std::vector<std::string> studies = StudiesIn("/studies/equal_time");
+// These have PoseLib's estimator in them: without it nothing but that is wrong with them.
+TEST(ToYaml, RoundTripOfTheCommittedStudiesWithPoseLib) {
+  std::vector<std::string> studies = StudiesIn("/studies/equal_time");
   EXPECT_GE(studies.size(), 16u);
+  std::ranges::copy(StudiesIn("/studies/with_poselib"), std::back_inserter(studies));
   for (const std::string& path : studies) {
     if (IsKnown("poselib")) {
       ExpectRoundTrip(path);
