@@ -1,14 +1,16 @@
 # Read by ctest: the suites of the label "thorough" (CMakeLists.txt).
-set_tests_properties(end_to_end.Parts PROPERTIES LABELS thorough)
-set_tests_properties(end_to_end.SurfaceProgram PROPERTIES LABELS thorough)
-set_tests_properties(end_to_end.PaperTableProgram PROPERTIES LABELS thorough)
-set_tests_properties(peers.PeerContract PROPERTIES LABELS thorough)
-set_tests_properties(end_to_end.Report PROPERTIES LABELS thorough)
-set_tests_properties(end_to_end.Audit PROPERTIES LABELS thorough)
-set_tests_properties(peers.PeerCalls PROPERTIES LABELS thorough)
-set_tests_properties(experiments.EstimatorContract PROPERTIES LABELS thorough)
-set_tests_properties(experiments.TwinReport PROPERTIES LABELS thorough)
-set_tests_properties(fuzz.DamagedParts PROPERTIES LABELS thorough)
-set_tests_properties(fuzz.CorruptedResultFile PROPERTIES LABELS thorough)
-set_tests_properties(end_to_end.Show PROPERTIES LABELS thorough)
-set_tests_properties(end_to_end.Shards PROPERTIES LABELS thorough)
+set_tests_properties(
+  end_to_end.Parts
+  end_to_end.SurfaceProgram
+  end_to_end.PaperTableProgram
+  peers.PeerContract
+  end_to_end.Report
+  end_to_end.Audit
+  peers.PeerCalls
+  experiments.EstimatorContract
+  experiments.TwinReport
+  fuzz.DamagedParts
+  fuzz.CorruptedResultFile
+  end_to_end.Show
+  end_to_end.Shards
+  PROPERTIES LABELS thorough)

@@ -128,8 +128,7 @@ void MeasureCalibration(const FailureForecasts& of, std::uint64_t seed, Forecast
                                                            kNumCalibrationBins, kNumCalibrationSamples, rng);
   measures->error_of_equal_mass = MeasureCalibrationError(forecasts, Binning::kEqualMass, kNumCalibrationBins,
                                                           kNumCalibrationSamples, rng);
-  // Fitted to answers of the same run, they have that run's chance: more of them than 5 % reach a p of 5 %
-  // (45 % were measured).
+  // They are fitted to answers of the same run, so that the p value of right ones would not be uniform.
   if (of.source == ForecastSource::kInlierShare)
     measures->check.p_value = measures->error_of_equal_width.p_value = measures->error_of_equal_mass.p_value =
         kNaN;
