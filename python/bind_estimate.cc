@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -11,13 +12,17 @@
 #include <utility>
 #include <vector>
 
+#include "estimator/estimators/rcme_calibrated.h"
 #include "estimator/protection_level.h"
 #include "estimator/undistortion.h"
 #include "experiments/core/work/for_each_index.h"
+#include "experiments/data/camera_plausibility.h"
 #include "experiments/data/colmap_camera.h"
+#include "experiments/data/data_source.h"
 #include "experiments/real/answer/probabilities_for_bounds.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_file.h"
+#include "parameters/input_error.h"
 #include "peers/outside_answer.h"
 #include "python/bindings.h"
 #include "python/function_estimator.h"
@@ -32,6 +37,12 @@ namespace py = pybind11;
 using namespace py::literals;
 
 using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+// Writes the matrix, row-major, as element i of the array's first axis.
+void SetRow(const Eigen::MatrixXd& matrix, py::ssize_t i, Array* array) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::Map<RowMajor>(array->mutable_data(i), matrix.rows(), matrix.cols()) = matrix;
+}
 
 // A motion for Python: pose_cov is 6x6, of [w, dt] (peers/outside_answer.h).
 struct PythonMotion {
@@ -106,6 +117,24 @@ Lens MakeCamera(const std::string& model, const std::vector<double>& parameters,
   return MakeNamedLens(model, parameters, {width, height}, model);
 }
 
+std::vector<Correspondence> MakeMatches(const Array& x1, const Array& x2) {
+  std::vector<Correspondence> matches;
+  for (py::ssize_t i = 0; i < x1.shape(0); ++i)
+    matches.push_back({{x1.at(i, 0), x1.at(i, 1)}, {x2.at(i, 0), x2.at(i, 1)}});
+  return matches;
+}
+
+// What is suspicious about the cameras (experiments/data/camera_plausibility.h), each with its place.
+std::vector<std::string> ListCameraDoubts(const Array& x1, const Array& x2, const Lens& camera1,
+                                          const Lens& camera2, const std::array<std::string, 2>& places,
+                                          const std::array<bool, 2>& are_sizes_known) {
+  std::vector<std::string> doubts;
+  for (const CameraDoubt& doubt :
+       FindPairDoubts(camera1.camera, camera2.camera, MakeMatches(x1, x2), places, are_sizes_known))
+    doubts.push_back(doubt.place + ": " + doubt.what);
+  return doubts;
+}
+
 struct ChosenEstimator {
   EstimatorSpec spec;
   std::unique_ptr<MotionEstimator> estimator;
@@ -128,16 +157,14 @@ ChosenEstimator MakeChosen(const std::string& name, const std::string& file, con
 
 UndistortedProblem MakeProblem(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2,
                                double sigma_px, std::vector<double> noise_scale) {
-  MotionProblem problem{{}, {}, {}, sigma_px, std::move(noise_scale)};
-  for (py::ssize_t i = 0; i < x1.shape(0); ++i)
-    problem.matches.push_back({{x1.at(i, 0), x1.at(i, 1)}, {x2.at(i, 0), x2.at(i, 1)}});
+  MotionProblem problem{MakeMatches(x1, x2), {}, {}, sigma_px, std::move(noise_scale)};
   return UndistortProblem(camera1, camera2, std::move(problem));
 }
 
 // The answer to a pair of `num_matches` matches, in terms of these.
 EstimateForBounds Answer(const MotionEstimator& estimator, const UndistortedProblem& pair, size_t num_matches,
-                         const std::vector<FailureBounds>& bounds, std::uint64_t seed) {
-  EstimateForBounds found = AnswerProblem(estimator, pair.problem, bounds, seed);
+                         const PosteriorRequest& request, std::uint64_t seed) {
+  EstimateForBounds found = AnswerProblem(estimator, pair.problem, request, seed);
   RestoreDistorted(pair.problem, pair.kept, num_matches, &found.estimate);
   return found;
 }
@@ -172,23 +199,41 @@ std::vector<FailureBounds> MakeBounds(const AnglePairs& pairs) {
   return bounds;
 }
 
+// {R, t} of random motions of the posterior, n x 3 x 3 and n x 3; NaN: none of its motions. None if there is
+// no posterior.
+py::object DrawMotions(const std::optional<MotionPosterior>& posterior, int num_draws, std::uint64_t seed) {
+  if (!posterior) return py::none();
+  RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kMonteCarlo);
+  Array R({num_draws, 3, 3}), t({num_draws, 3});
+  const RelativePose none{Eigen::Matrix3d::Constant(kNaN), Eigen::Vector3d::Constant(kNaN)};
+  for (py::ssize_t i = 0; i < num_draws; ++i) {
+    const RelativePose motion = Draw(*posterior, rng).value_or(none);
+    SetRow(motion.R, i, &R);
+    SetRow(motion.t, i, &t);
+  }
+  return py::dict("R"_a = R, "t"_a = t);
+}
+
 py::dict EstimatePair(const Array& x1, const Array& x2, const Lens& camera1, const Lens& camera2,
                       double sigma_px, std::vector<double> noise_scale, const std::string& name,
                       const std::string& file, const Settings& options, std::uint64_t seed,
-                      bool allow_process, const AnglePairs& bounds, double integrity_risk,
+                      bool allow_process, const AnglePairs& bounds, int num_draws, double integrity_risk,
                       const std::optional<MotionPrior>& prior, const Functions& functions) {
   const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process, functions);
   UndistortedProblem pair = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
   pair.problem.prior = prior;
-  const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
+  if (num_draws > 0 && FindWeightInspection(*chosen.estimator) == nullptr)
+    throw InputError("draws: only rcme_calibrated states a distribution of the motion");
+  const PosteriorRequest request{MakeBounds(bounds), num_draws > 0};
   EstimateForBounds found;
   {
     const py::gil_scoped_release unlocked;
-    found = Answer(*chosen.estimator, pair, static_cast<size_t>(x1.shape(0)), failure_bounds, seed);
+    found = Answer(*chosen.estimator, pair, static_cast<size_t>(x1.shape(0)), request, seed);
   }
   py::dict dict = MakeDict(found.estimate);
   dict["protection_levels"] = LevelsAt(found.estimate, integrity_risk);
   dict["p_failure_for_bounds"] = MakeProbabilityList(found.probabilities);
+  dict["draws"] = DrawMotions(found.posterior, num_draws, seed);
   dict["estimator"] = chosen.spec.label;
   return dict;
 }
@@ -233,11 +278,6 @@ class AnswerArrays {
   }
 
  private:
-  static void SetRow(const Eigen::MatrixXd& matrix, py::ssize_t i, Array* array) {
-    using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Eigen::Map<RowMajor>(array->mutable_data(i), matrix.rows(), matrix.cols()) = matrix;
-  }
-
   Array R_, t_, pose_cov_, p_failure_, p_for_bounds_, sigma_, sigma_sd_;
   py::list status_, domain_, inliers_;
 };
@@ -248,14 +288,14 @@ using GivenPair = std::tuple<Array, Array, Lens, Lens, std::vector<double>>;
 std::vector<EstimateForBounds> AnswerOnThreads(const MotionEstimator& estimator,
                                                std::span<const GivenPair> pairs,
                                                const std::vector<UndistortedProblem>& undistorted,
-                                               const std::vector<FailureBounds>& bounds, std::uint64_t seed,
+                                               const PosteriorRequest& request, std::uint64_t seed,
                                                int threads) {
   std::vector<EstimateForBounds> found(pairs.size());
   RunStoppable([&] {
     ForEachIndex(std::ssize(pairs), threads, [&](std::int64_t i) {
       const auto place = static_cast<size_t>(i);
       const auto num_matches = static_cast<size_t>(std::get<0>(pairs[place]).shape(0));
-      found[place] = Answer(estimator, undistorted[place], num_matches, bounds, seed);
+      found[place] = Answer(estimator, undistorted[place], num_matches, request, seed);
     });
     if (IsStopRequested()) throw Stopped("stopped");
   });
@@ -266,7 +306,7 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
                       const std::string& file, const Settings& options, std::uint64_t seed,
                       bool allow_process, const AnglePairs& bounds, int threads, const Functions& functions) {
   const ChosenEstimator chosen = MakeChosen(name, file, options, allow_process, functions);
-  const std::vector<FailureBounds> failure_bounds = MakeBounds(bounds);
+  const PosteriorRequest request{MakeBounds(bounds)};
   AnswerArrays arrays(pairs.size(), bounds.size());
   constexpr size_t kNumTogether = 2'000;  // number of pairs whose full answers are in memory at a time
   for (size_t begin = 0; begin < pairs.size(); begin += kNumTogether) {
@@ -275,7 +315,7 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
     for (const auto& [x1, x2, camera1, camera2, noise_scale] : block)
       undistorted.push_back(MakeProblem(x1, x2, camera1, camera2, sigma_px, noise_scale));
     const std::vector<EstimateForBounds> found =
-        AnswerOnThreads(*chosen.estimator, block, undistorted, failure_bounds, seed, threads);
+        AnswerOnThreads(*chosen.estimator, block, undistorted, request, seed, threads);
     for (size_t i = 0; i < found.size(); ++i) arrays.Set(static_cast<py::ssize_t>(begin + i), found[i]);
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
   }
@@ -289,6 +329,7 @@ py::dict EstimateMany(const std::vector<GivenPair>& pairs, double sigma_px, cons
 void BindEstimate(py::module_& module) {
   py::class_<Lens>(module, "Camera").def(py::init(&MakeCamera));
   py::class_<MotionPrior>(module, "MotionPrior").def(py::init(&MakePrior));
+  module.def("camera_doubts", &ListCameraDoubts);
   module.def("estimate", &EstimatePair);
   module.def("estimate_many", &EstimateMany);
 }

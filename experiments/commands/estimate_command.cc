@@ -147,8 +147,9 @@ class Answerer {
     return pair;
   }
 
-  PairAnswer Answer(const ReadPair& pair) const {
-    PairAnswer answer = AnswerMatches(pair);
+  // `is_posterior_kept`: costs some milliseconds (rcme_calibrated.h).
+  PairAnswer Answer(const ReadPair& pair, bool is_posterior_kept) const {
+    PairAnswer answer = AnswerMatches(pair, is_posterior_kept && !noise_);
     if (!pair.data.problem.undistortion) return answer;
     RestoreDistorted(pair.data.problem, pair.rows, pair.num_rows, &answer.estimate);
     answer.num_left_out = static_cast<int>(pair.num_rows - pair.rows.size());
@@ -156,18 +157,19 @@ class Answerer {
   }
 
  private:
-  PairAnswer AnswerMatches(const ReadPair& pair) const {
+  PairAnswer AnswerMatches(const ReadPair& pair, bool is_posterior_kept) const {
     PairAnswer answer;
     TrialData data = pair.data;
-    EstimateForBounds found = Ask(data.problem);
+    EstimateForBounds found = Ask(data.problem, is_posterior_kept);
     if (noise_ && RemovesReadout(*noise_) && found.estimate.status == MotionStatus::kOk) {
       data.problem = CorrectReadout(std::move(data.problem), found.estimate.cam2_from_cam1, *noise_,
                                     pair.seconds_between);
-      found = Ask(data.problem);
+      found = Ask(data.problem, is_posterior_kept);
     }
     if (noise_) WidenCovariance(data.problem, *noise_, HasRobustCovariance(spec_), &found.estimate);
     answer.estimate = std::move(found.estimate);
     answer.for_bounds = std::move(found.probabilities);
+    if (found.posterior) answer.posterior = SummarizePosterior(*found.posterior);
     answer.record = Score(answer.estimate, data, 0.0);
     answer.has_truth_sd = data.truth.sd.has_value();
     answer.has_prior = data.problem.prior.has_value();
@@ -180,8 +182,9 @@ class Answerer {
     return answer;
   }
 
-  EstimateForBounds Ask(const MotionProblem& problem) const {
-    return AnswerProblem(*estimator_, problem, bounds_, static_cast<std::uint64_t>(arguments_.seed));
+  EstimateForBounds Ask(const MotionProblem& problem, bool is_posterior_kept) const {
+    return AnswerProblem(*estimator_, problem, {bounds_, is_posterior_kept},
+                         static_cast<std::uint64_t>(arguments_.seed));
   }
 
   const EstimateArguments& arguments_;
@@ -213,7 +216,7 @@ void PrintCaution(const LoopInspection& inspection, const MotionProblem& problem
 FileAnswer AnswerFile(const Answerer& answerer, const std::string& path) {
   FileAnswer file{.path = path};
   try {
-    file.answer = answerer.Answer(answerer.Read(path, &file.doubts));
+    file.answer = answerer.Answer(answerer.Read(path, &file.doubts), false);
   } catch (const InputError& error) {
     file.error = error.what();
   }
@@ -234,7 +237,7 @@ void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, con
   CameraWarnings warnings;
   warnings.Add(file.doubts);
   warnings.Print();
-  file.answer = answerer.Answer(pair);
+  file.answer = answerer.Answer(pair, true);
   const AnswerTerms terms = answerer.terms();
   if (arguments.format == kJsonLines) {
     PrintJsonLine(file, terms);

@@ -11,7 +11,7 @@ Conventions, everywhere:
 
 - A point X1 in camera 1's frame is X2 = R X1 + t in camera 2's; cameras look along +z, x to the right, y down. The scale
   cannot be seen: |t| = 1.
-- Points are in pixels, N x 2, without lens distortion; (0, 0) is the centre of the top-left pixel. Points and
+- Points are in pixels, N x 2, distorted as the camera's model says; (0, 0) is the centre of the top-left pixel. Points and
   cameras that share COLMAP's origin, its corner, may stay as they are: half a pixel hardly changes an answer.
 - pose_cov is 6 x 6, of [w1, w2, w3, dt1, dt2, dt3]: the true R is Exp([w]x) R, w in rad, and the true t
   is t + dt, both along the axes of camera 2; dt has no unit. Its rank is 5: nothing along t. For a normalised

@@ -253,8 +253,14 @@ def within_image(points: np.ndarray, camera: Any) -> tuple[np.ndarray, Any]:
     return points + (moved - centre), K
 
 
+CAMERA_KEYS = ("model", "width", "height", "params")
+
+
 def _camera_of_dict(name: str, value: Mapping[str, Any]) -> _rcme.Camera:
-    missing = [key for key in ("model", "width", "height", "params") if key not in value]
+    unknown = [key for key in value if key not in (*CAMERA_KEYS, "camera_id", "id")]
+    if unknown:
+        raise ValueError(f"{name}: key {words(unknown[0])} is not allowed; expected {', '.join(CAMERA_KEYS)}")
+    missing = [key for key in CAMERA_KEYS if key not in value]
     if missing:
         raise ValueError(f"{name}: a dict without {', '.join(map(repr, missing))}; expected model, width, height and params")
     model = value["model"]

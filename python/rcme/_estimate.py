@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import warnings
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NamedTuple, Optional
 
@@ -13,6 +14,7 @@ from rcme._function import Functions, named_function
 
 
 MAX_PAIRS = 1_000_000
+MAX_DRAWS = 1_000_000
 OPTIONS_OF_CALLS = ("estimator", "estimator_file", "allow_process", "sigma_px", "noise_scale", "integrity_risk", "seed")
 
 
@@ -43,7 +45,7 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
                            options: Optional[Mapping[str, Any]] = None,
                            bounds: Iterable[tuple[float, float]] = (),
                            prior: Optional[Mapping[str, Any]] = None,
-                           estimators: Optional[Mapping[str, Callable[..., Any]]] = None) -> tuple[Optional[Pose], dict[str, Any]]:
+                           estimators: Optional[Mapping[str, Callable[..., Any]]] = None, draws: int = 0) -> tuple[Optional[Pose], dict[str, Any]]:
     """Estimates the motion between two images, with its uncertainty.
 
     Parameters
@@ -73,6 +75,9 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     estimators : dict {name: function}
         Functions as `run` takes them, for the option estimator and for a file of `conform` that is of one of them. A file of a
         function whose source has changed since is refused.
+    draws : int
+        So many random motions (at most 1,000,000) of the distribution that the probabilities are computed from. Only
+        rcme_calibrated.
 
     Returns
     -------
@@ -86,8 +91,9 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         both along the axes of camera 2; rank 5 (nothing along t);
         p_failure, the probability that the motion is wrong by more than the estimator's bounds (its options max_rotation_error_deg
         and max_direction_error_deg, 3 and 15 degrees unless given; None if it states none); p_failure_domain, "verified" or
-        "extrapolated": whether the matches are like those that it was verified on ("not_stated"); p_failure_for_bounds, for each of `bounds` {rotation_deg, direction_deg, p_failure, domain}
-        (empty where there is no motion); protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and
+        "extrapolated": whether the matches are like those that it was verified on ("not_stated"); p_failure_for_bounds, for each
+        of `bounds` {rotation_deg, direction_deg, p_failure, domain} (empty where there is no motion); draws, {R (draws, 3, 3),
+        t (draws, 3)}, NaN in the share that "none of these motions" has (None if none were asked for, or without a motion); protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and
         that of t exceed with a probability of at most integrity_risk each, by pose_cov and p_failure (pi: every angle; None
         without a motion); sigma and sigma_sd (px), the noise level that it found (None likewise);
         prior, "used", "contradicted" (the matches speak against it: the answer is of these alone) or "none"; prior_p_value, the
@@ -103,11 +109,12 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
     x1, x2, *cameras = _pair("", x1, x2, camera1, camera2)
     chosen = _options(options, len(x1))
     pairs = _bounds(bounds)
+    num_draws = _check.whole("draws", draws, 0, MAX_DRAWS)
     known = motion_prior(prior)
     functions = _functions(estimators)
     try:
         answer = _rcme.estimate(x1, x2, *cameras, chosen["sigma_px"], chosen["noise_scale"], chosen["estimator"],
-                                chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"], pairs,
+                                chosen["estimator_file"], chosen["options"], chosen["seed"], chosen["allow_process"], pairs, num_draws,
                                 chosen["integrity_risk"], known, functions)
     except ValueError as error:
         raise ValueError(_in_words(error, chosen["options"])) from None
@@ -233,11 +240,15 @@ def _pair(place: str, x1: Any, x2: Any, camera1: Any, camera2: Any) -> tuple[Any
     x1, x2 = _check.points(f"{place}x1", x1), _check.points(f"{place}x2", x2)
     if len(x1) != len(x2):
         raise ValueError(f"{place}x2: its shape is {x2.shape}; expected that of x1, {x1.shape}: row i of both is one match")
-    for name, camera in ((f"{place}camera1", camera1), (f"{place}camera2", camera2)):
-        _check.camera(name, camera)
-    x1, camera1 = _check.within_image(x1, camera1)
-    x2, camera2 = _check.within_image(x2, camera2)
-    return x1, x2, _check.camera(f"{place}camera1", camera1), _check.camera(f"{place}camera2", camera2)
+    cameras = [(f"{place}{name}", camera) for name, camera in (("camera1", camera1), ("camera2", camera2))]
+    lenses = [_check.camera(name, camera) for name, camera in cameras]
+    (moved1, near1), (moved2, near2) = _check.within_image(x1, camera1), _check.within_image(x2, camera2)
+    if moved1 is x1 and moved2 is x2:
+        for doubt in _rcme.camera_doubts(x1, x2, *lenses, [name for name, _ in cameras],
+                                         [isinstance(camera, Mapping) for _, camera in cameras]):
+            warnings.warn(doubt, stacklevel=3)
+        return x1, x2, *lenses
+    return moved1, moved2, _check.camera(cameras[0][0], near1), _check.camera(cameras[1][0], near2)
 
 
 def _numbered_pair(place: int, pair: Any) -> tuple[Any, ...]:
@@ -312,6 +323,7 @@ def _pose_and_info(answer: dict[str, Any], num_matches: int) -> tuple[Optional[P
             "prior": answer["prior"],
             "p_failure_domain": answer["p_failure_domain"],
             "p_failure_for_bounds": answer["p_failure_for_bounds"],
+            "draws": answer["draws"],
             "protection_levels": answer["protection_levels"],
             "other_motions": answer["other_motions"]}
     return Pose(motion["R"], motion["t"]) if motion else None, info

@@ -89,7 +89,7 @@ class AnswersOfFunctions(unittest.TestCase):
 class Estimates(unittest.TestCase):
     def answer(self, **more):
         return {"status": "ok", "message": "", "estimator": "x", "motion": None, "inliers": [1], "p_failure": np.nan,
-                "p_failure_domain": "not_stated", "p_failure_for_bounds": [], "protection_levels": None, "sigma": 0.5, "sigma_sd": np.nan, "prior": "none", "prior_p_value": np.nan,
+                "p_failure_domain": "not_stated", "p_failure_for_bounds": [], "draws": None, "protection_levels": None, "sigma": 0.5, "sigma_sd": np.nan, "prior": "none", "prior_p_value": np.nan,
                 "inlier_probabilities": [], "other_motions": [], **more}
 
     def test_unknown_numbers_are_none(self):

@@ -43,6 +43,28 @@ class Estimate(unittest.TestCase):
         self.assertEqual(of[2]["domain"], "extrapolated")
         self.assertEqual(rcme.estimate_relative_pose(*self.arguments)[1]["p_failure"], info["p_failure"])
 
+    def test_draws_are_of_the_distribution_that_the_probabilities_are_computed_from(self):
+        pose, info = rcme.estimate_relative_pose(*self.arguments, bounds=[(0.2, 1), (1, 5), (3, 15)], draws=20_000)
+        R, t = info["draws"]["R"], info["draws"]["t"]
+        self.assertEqual((R.shape, t.shape), ((20_000, 3, 3), (20_000, 3)))
+        is_none = np.isnan(t[:, 0])
+        self.assertTrue((np.isnan(R).any(axis=(1, 2)) == is_none).all())
+        cosine = (np.einsum("nij,ij->n", R, pose.R) - 1.0) / 2.0
+        rotation, direction = (np.degrees(np.arccos(np.clip(c, -1.0, 1.0))) for c in (cosine, t @ pose.t))
+        for p in info["p_failure_for_bounds"]:
+            beyond = is_none | (rotation > p["rotation_deg"]) | (direction > p["direction_deg"])
+            # Five standard deviations of the share, and what the points behind p_failure err by.
+            tolerance = 5 * np.sqrt(p["p_failure"] * (1 - p["p_failure"]) / 20_000) + 0.005
+            self.assertAlmostEqual(beyond.mean(), p["p_failure"], delta=tolerance)
+        self.assertTrue(0.05 < info["p_failure_for_bounds"][0]["p_failure"] < 0.95, "no power")
+        again = rcme.estimate_relative_pose(*self.arguments, draws=3)[1]["draws"]
+        np.testing.assert_array_equal(again["t"], t[:3])
+        self.assertIsNone(rcme.estimate_relative_pose(*self.arguments)[1]["draws"])
+        with self.assertRaisesRegex(ValueError, "draws: only rcme_calibrated"):
+            rcme.estimate_relative_pose(*self.arguments, {"estimator": "standard"}, draws=1)
+        with self.assertRaisesRegex(ValueError, "draws"):
+            rcme.estimate_relative_pose(*self.arguments, draws=-1)
+
     def test_protection_levels_are_of_the_covariance_the_probability_and_the_risk(self):
         """An isotropic covariance has closed forms, but no estimator states one: the levels lie between those of the least and
         of the greatest standard deviation in all directions."""

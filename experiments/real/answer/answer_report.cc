@@ -93,7 +93,9 @@ std::string RenderAnswers(const std::vector<FileAnswer>& files, const AnswerTerm
     table.rows.emplace_back(row.begin(), row.end());
   }
   const auto num_motions = std::ranges::count_if(files, HasMotion);
-  return RenderText(table) + "\n" + AnswerLegend(has_errors, terms.integrity_risk) +
+  const bool has_extrapolated = std::ranges::any_of(
+      files, [&](const FileAnswer& file) { return is_read(file) && IsExtrapolated(file.answer); });
+  return RenderText(table) + "\n" + AnswerLegend(has_errors, terms.integrity_risk, has_extrapolated) +
          fmt::format("{} pairs: {} motions, {} without one, {} not read\n", files.size(), num_motions,
                      std::ssize(table.rows) - num_motions, std::ssize(files) - std::ssize(table.rows));
 }
@@ -130,8 +132,12 @@ Table MakeFileAnswerTable(const std::vector<FileAnswer>& files, const AnswerTerm
                    [](const MotionEstimate& e) {
                      return ComputeSpread(e.cam2_from_cam1, e.pose_cov).direction_sd_deg(0);
                    }),
-      MotionColumn(Column::Number("failure_probability"), [](const MotionEstimate& e) {
-        return std::isnan(e.failure_probability) ? Value() : Value(e.failure_probability);
+      MotionColumn(Column::Number("failure_probability"),
+                   [](const MotionEstimate& e) {
+                     return std::isnan(e.failure_probability) ? Value() : Value(e.failure_probability);
+                   }),
+      MotionColumn(Column::Text("failure_probability_domain"), [](const MotionEstimate& e) {
+        return std::isnan(e.failure_probability) ? Value() : Value(Name(e.probability_domain));
       })};
   AddBoundColumns(terms, &columns);
   AddLevelColumns(terms, &columns);

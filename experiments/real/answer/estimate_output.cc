@@ -117,6 +117,24 @@ std::string CalibrationText(const std::vector<CalibrationEffect>& effects, const
                             CanStateCalibrationErrors(spec) ? "" : " --set covariance=robust");
 }
 
+// The covariance covers 95 % of heavy-tailed errors, most of all with few matches, and may then be wider than
+// the posterior that P is of. Says by how much, as the two seem to contradict each other.
+std::string NarrowedText(const std::optional<PosteriorSummary>& posterior) {
+  constexpr double kVisible = 0.95;
+  if (!posterior || posterior->narrowed > kVisible) return {};
+  std::string text = fmt::format(
+      "             This covariance is wider than the distribution that P is computed from: its\n"
+      "             standard deviations are {:.2g} times as great.",
+      1.0 / posterior->narrowed);
+  const auto& [rotation_rad, direction_rad] = posterior->quantile_95;
+  if (std::isfinite(rotation_rad + direction_rad))
+    text += fmt::format(
+        " 95 % of that one have the\n             rotation within {:.2g} deg, 95 % the direction within {:.2g} "
+        "deg.",
+        kDegPerRad * rotation_rad, kDegPerRad * direction_rad);
+  return text + "\n";
+}
+
 std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const EstimatorSpec& spec) {
   const MotionEstimate& estimate = answer.estimate;
   std::string text = "\nHow sure\n";
@@ -133,6 +151,7 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
       "  95 %       rotation within {:.2g} x {:.2g} x {:.2g} deg, direction within {:.2g} x {:.2g} deg\n",
       spread.rotation_95_deg(0), spread.rotation_95_deg(1), spread.rotation_95_deg(2),
       spread.direction_95_deg(0), spread.direction_95_deg(1));
+  text += NarrowedText(answer.posterior);
   if (answer.protection) text += FormatProtection(*answer.protection);
   text += CalibrationText(answer.calibration_effects, spec);
   const MotionMode* found = FindRunnerUp(estimate);
@@ -240,6 +259,16 @@ Json ForBoundsAsJson(const std::vector<ProbabilityForBounds>& for_bounds) {
   return list;
 }
 
+// An angle is null if the weight of none leaves less than 95 % to motions.
+Json PosteriorAsJson(const PosteriorSummary& posterior) {
+  return {{"weight_of_none", posterior.weight_of_none},
+          {"narrowed", posterior.narrowed},
+          {"rotation_95_deg", JsonNumber(kDegPerRad * posterior.quantile_95.rotation_rad)},
+          {"direction_95_deg", JsonNumber(kDegPerRad * posterior.quantile_95.direction_rad)},
+          {"median_R", RowMajor(posterior.median.R)},
+          {"median_t", RowMajor(posterior.median.t)}};
+}
+
 Json CalibrationEffectsAsJson(const std::vector<CalibrationEffect>& effects) {
   Json list = Json::array();
   for (const CalibrationEffect& effect : effects) {
@@ -263,6 +292,11 @@ Json EvidenceAsJson(const MotionEvidence& e) {
 }
 
 }  // namespace
+
+PosteriorSummary SummarizePosterior(const MotionPosterior& posterior) {
+  return {posterior.weight_of_none, posterior.narrowed,
+          PosteriorDistances(posterior, posterior.answer).FindQuantile(0.95), Median(posterior)};
+}
 
 std::string AnswerAsText(const PairAnswer& answer, const EstimatorSpec& spec) {
   const MotionEstimate& estimate = answer.estimate;
@@ -311,6 +345,7 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
   json["failed_by_kappa"] = estimate.failed_by_kappa;
   if (!std::isnan(estimate.failure_probability)) AddProbabilities(estimate, &json);
   if (!answer.for_bounds.empty()) json["failure_probabilities"] = ForBoundsAsJson(answer.for_bounds);
+  if (answer.posterior) json["posterior"] = PosteriorAsJson(*answer.posterior);
   if (answer.protection) {
     json["protection_levels"] = {{"risk", answer.protection->risk},
                                  {"rotation_rad", answer.protection->levels.rotation_rad},
@@ -326,6 +361,11 @@ Json AnswerAsJson(const PairAnswer& answer, const EstimatorSpec& spec) {
     json["truth_sd"] = answer.has_truth_sd ? "stated" : "unknown";
   }
   return json;
+}
+
+bool IsExtrapolated(const PairAnswer& answer) {
+  return answer.estimate.status == MotionStatus::kOk &&
+         answer.estimate.probability_domain == ProbabilityDomain::kExtrapolated;
 }
 
 std::vector<std::string> ListAnswerColumns(const AnswerTableColumns& columns) {
@@ -351,7 +391,8 @@ std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnsw
   const MotionSpread spread = ComputeSpread(pose, estimate.pose_cov);
   row[2] = fmt::format("{:.2f} ({:.2g})", ComputeTurn(pose.R).angle_deg, spread.angle_sd_deg);
   row[3] = fmt::format("{} ({:.2g})", DescribePlace(pose), spread.direction_sd_deg(0));
-  if (!std::isnan(estimate.failure_probability)) row[4] = ProbabilityText(estimate.failure_probability);
+  if (!std::isnan(estimate.failure_probability))
+    row[4] = ProbabilityText(estimate.failure_probability) + (IsExtrapolated(answer) ? "*" : "");
   for (size_t i = 0; i < answer.for_bounds.size(); ++i)
     row[5 + i] = ProbabilityText(answer.for_bounds[i].failure_probability);
   size_t next = 5 + columns.bounds.size();
@@ -364,7 +405,7 @@ std::vector<std::string> FormatAnswerRow(const std::string& name, const PairAnsw
   return row;
 }
 
-std::string AnswerLegend(bool with_errors, std::optional<double> integrity_risk) {
+std::string AnswerLegend(bool with_errors, std::optional<double> integrity_risk, bool with_extrapolated) {
   std::string text =
       "turned: by how much camera 2 is rotated, deg; stands: where it is, seen from camera 1; (sd): their "
       "standard deviations, deg";
@@ -374,6 +415,7 @@ std::string AnswerLegend(bool with_errors, std::optional<double> integrity_risk)
         *integrity_risk);
   }
   if (with_errors) text += "; errors: of rotation/direction against the file's true motion, deg";
+  if (with_extrapolated) text += "; *: matches like these were not among those that P was verified on";
   return FormatParagraph(text);
 }
 

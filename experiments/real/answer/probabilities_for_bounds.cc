@@ -18,16 +18,19 @@ bool AreCovered(const FailureBounds& bounds) {
 }
 
 EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const MotionProblem& problem,
-                                     const std::vector<FailureBounds>& bounds, RandomStream& rng) {
-  if (bounds.empty()) return {estimator.Estimate(problem, rng), {}};
+                                     const PosteriorRequest& request, RandomStream& rng) {
   const WeightInspection* inspection = FindWeightInspection(estimator);
-  if (inspection == nullptr)
+  if (!request.bounds.empty() && inspection == nullptr)
     throw InputError("bounds: only rcme_calibrated knows the probability of failure for other bounds");
+  if (inspection == nullptr || (request.bounds.empty() && !request.is_kept))
+    return {estimator.Estimate(problem, rng), {}, {}};
   std::optional<MotionPosterior> posterior;
-  EstimateForBounds answer{inspection->EstimateWithPosterior(problem, rng, &posterior), {}};
+  EstimateForBounds answer{inspection->EstimateWithPosterior(problem, rng, &posterior), {}, {}};
   if (!posterior || answer.estimate.status != MotionStatus::kOk) return answer;
+  if (request.is_kept) answer.posterior = posterior;
+  if (request.bounds.empty()) return answer;
   const PosteriorDistances distances(*posterior, answer.estimate.cam2_from_cam1);
-  for (const FailureBounds& each : bounds) {
+  for (const FailureBounds& each : request.bounds) {
     const double p = distances.FailureProbability(
         {kRadPerDeg * each.max_rotation_error_deg, kRadPerDeg * each.max_direction_error_deg});
     answer.probabilities.push_back(
@@ -39,9 +42,9 @@ EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const Mot
 }  // namespace
 
 EstimateForBounds AnswerProblem(const MotionEstimator& estimator, const MotionProblem& problem,
-                                const std::vector<FailureBounds>& bounds, std::uint64_t seed) {
+                                const PosteriorRequest& request, std::uint64_t seed) {
   RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kSampling);
-  EstimateForBounds found = EstimateWithBounds(estimator, problem, bounds, rng);
+  EstimateForBounds found = EstimateWithBounds(estimator, problem, request, rng);
   found.estimate = Judged(std::move(found.estimate), problem.matches.size());
   return found;
 }

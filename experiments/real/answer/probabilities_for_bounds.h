@@ -1,9 +1,12 @@
-// Failure probabilities for other bounds than those of the estimator, from the same fit.
+// What an estimator states beside its answer, from the same fit: failure probabilities for other bounds, and
+// the distribution of the motion.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "estimator/calibrated/motion_posterior.h"
 #include "estimator/motion_estimator.h"
 #include "experiments/study/study.h"
 
@@ -17,15 +20,21 @@ struct ProbabilityForBounds {
   ProbabilityDomain domain = ProbabilityDomain::kExtrapolated;
 };
 
+struct PosteriorRequest {
+  std::vector<FailureBounds> bounds = {};  // a failure probability for each
+  bool is_kept = false;                    // return the posterior if the estimator has one
+};
+
 struct EstimateForBounds {
   MotionEstimate estimate;                          // as Estimate returns it
   std::vector<ProbabilityForBounds> probabilities;  // one for each of the bounds; empty without a motion
+  std::optional<MotionPosterior> posterior;  // if requested, the estimator has one, and the status is ok
 };
 
 // Answers with the stream of samples for `seed` and checks the answer (trial/answer_check.h). `rcme estimate`
 // and Python use this function. Throws InputError if bounds are given but the estimator has no posterior
 // (calibrated/motion_posterior.h).
 EstimateForBounds AnswerProblem(const MotionEstimator& estimator, const MotionProblem& problem,
-                                const std::vector<FailureBounds>& bounds, std::uint64_t seed);
+                                const PosteriorRequest& request, std::uint64_t seed);
 
 }  // namespace rcme
