@@ -114,7 +114,8 @@ void AddMapCommand(CLI::App& app) {
 propagates the noise to first order, and counts how often the truth lies in the 95 %
 region. A coverage below 0.95 means that the covariance is too small. A sample without a
 model counts as not covered. The defaults take six minutes on one core.
-Writes two tables with n and exact 95 % intervals:
+Writes two tables with n and exact 95 % intervals; those of the second are of its fixed
+samples alone, not of all that the family has:
   validity_map.csv        120 cells (8 noise levels, 5 sample sizes, 3 baselines) for f,
                           pose, the inlier test of a fresh_point, and ml_pose (maximum
                           likelihood); over all trials, and over thirds of the sample's

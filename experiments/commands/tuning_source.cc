@@ -40,6 +40,11 @@ StudyPlan MakeTuningPlan(const TuningArguments& arguments) {
     throw InputError(fmt::format(
         "{}: repeats_per_scene: tuning needs a new scene for every trial; leave it out", arguments.study));
   }
+  if (study.common_scenes) {
+    throw InputError(fmt::format(
+        "{}: common_scenes: the guarantee needs conditions with scenes of their own; leave it out",
+        arguments.study));
+  }
   for (const std::string& text : arguments.overrides) {
     const size_t equals = std::min(text.find('='), text.size());
     const std::string value = equals < text.size() ? text.substr(equals + 1) : "";

@@ -1,9 +1,11 @@
 #include "experiments/search/crossing_output.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
@@ -38,6 +40,7 @@ std::vector<ColumnOf<RateCrossing>> CrossingColumns(const CrossingQuestion& ques
   add_interval("logistic_lower,logistic_upper", "logistic_interval", "if logistic",
                &RateCrossing::logistic_interval);
   columns.push_back({Column::Count("trials"), [](const RateCrossing& one) { return one.num_trials(); }});
+  columns.push_back({Column::Count("refused"), [](const RateCrossing& one) { return one.num_refused; }});
   return columns;
 }
 
@@ -48,11 +51,27 @@ Json EventsAsJson(const std::vector<EventsAtLevel>& events) {
   return json;
 }
 
+// A rate without refusals falls again where more and more trials are refused, and then has no one crossing.
+std::string WarnOfRefusals(const CrossingQuestion& question, const CrossingAnswer& answer) {
+  constexpr double kVisible = 0.02;
+  std::set<std::string> refusing;
+  for (const RateCrossing& one : answer.crossings) {
+    if (static_cast<double>(one.num_refused) > kVisible * static_cast<double>(one.num_trials()))
+      refusing.insert(one.estimator);
+  }
+  if (refusing.empty()) return {};
+  return FormatParagraph(fmt::format(
+      "Warning: trials were refused ({}), which {} does not count. Where refusals rise with {} that rate may turn, "
+      "against what the intervals suppose: ask with --quantity failure_or_refusal as well.",
+      fmt::join(refusing, ", "), question.event.name, question.setting));
+}
+
 std::string CrossingsAsTable(const Study& study, const CrossingQuestion& question,
                              const CrossingAnswer& answer) {
   std::vector<ColumnOf<RateCrossing>> columns = CrossingColumns(question, answer.factors);
-  std::erase_if(columns,
-                [](const auto& one) { return one.column.name == "lower,upper"; });  // beside the estimate
+  std::erase_if(columns, [](const auto& one) {  // beside the estimate, or in a warning
+    return one.column.name == "lower,upper" || one.column.name == "refused";
+  });
   const std::int64_t num_trials = question.num_trials * std::ssize(answer.crossings);
   std::int64_t num_simulated = 0;
   for (const RateCrossing& crossing : answer.crossings) num_simulated += crossing.num_trials();
@@ -66,6 +85,7 @@ std::string CrossingsAsTable(const Study& study, const CrossingQuestion& questio
              "second also that its log-odds "
              "are linear where the fresh trials were run. inf: the crossing may lie beyond the range; 'or anywhere', or nothing: the trials exclude no place.",
              question.is_falling ? "rise" : "fall", question.setting)) +
+         WarnOfRefusals(question, answer) +
          FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials));
 }
 

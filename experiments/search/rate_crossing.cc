@@ -138,28 +138,35 @@ class Asker {
     study_.estimators = {study.estimators[estimator]};
   }
 
+  std::int64_t num_refused() const { return num_refused_; }
+
   // Returns the events among those of the trials that could be simulated.
   EventsAtLevel Ask(double place, std::int64_t num_trials) {
     const std::string level = scale_.TextAt(place);
     std::int64_t& next = levels_[level].next_trial;
     const StepForm<Events> form = {
-        [](const Events& events) { return fmt::format("[{},{}]", events.num_events, events.num_trials); },
+        [](const Events& events) {
+          return fmt::format("[{},{},{}]", events.num_events, events.num_trials, events.num_refused);
+        },
         [&](const std::string& json) {
           const nlohmann::ordered_json counts = ParsePiece(json);
-          RequireSize(counts, 2);
-          const std::int64_t num_simulated = CountFrom(counts[1], num_trials);
-          return Events{CountFrom(counts[0], num_simulated), num_simulated};
+          RequireSize(counts, 3);
+          const std::int64_t num_simulated = CountFrom(counts[1], num_trials),
+                             num_events = CountFrom(counts[0], num_simulated);
+          return Events{num_events, num_simulated, CountFrom(counts[2], num_simulated - num_events)};
         }};
     const Events events = TakeStep<Events>(
         steps_, [&] { return Count(level, next, num_trials); }, form);
     next += num_trials;
     *num_done_ += num_trials;
+    num_refused_ += events.num_refused;
     return {place, events.num_events, events.num_trials};
   }
 
  private:
   struct Events {
     std::int64_t num_events = 0, num_trials = 0;
+    std::int64_t num_refused = 0;  // refusals that are no events
   };
 
   // A setting that does not enter the names of the streams is added to them: otherwise all levels would have
@@ -178,7 +185,7 @@ class Asker {
     if (!made) made = MakePlanAt(level);
     const StudyPlan& plan = *made;
     const Condition& condition = plan.conditions.front();
-    std::atomic<std::int64_t> num_events = 0, num_simulated = 0;
+    std::atomic<std::int64_t> num_events = 0, num_simulated = 0, num_refused = 0;
     ForEachIndex(num_trials, num_threads_, [&](std::int64_t index) {
       const TrialResult result = RunTrialOfDraw(plan, condition, static_cast<std::uint32_t>(first + index));
       (*progress_)->Advance(1);
@@ -186,9 +193,11 @@ class Asker {
       if (!IsCounted(result.records.front())) return;
       CheckTrial(result, question_);
       ++num_simulated;
-      num_events += question_.event.has_happened(result.records.front(), plan.study.failure);
+      const bool has_happened = question_.event.has_happened(result.records.front(), plan.study.failure);
+      num_events += has_happened;
+      num_refused += !has_happened && HasRefused(result.records.front());
     });
-    return {num_events, num_simulated};
+    return {num_events, num_simulated, num_refused};
   }
 
   Study study_;
@@ -201,6 +210,7 @@ class Asker {
   std::optional<Progress>* progress_;  // starts with the first trial whose result is not kept
   std::int64_t total_;
   std::int64_t* num_done_;
+  std::int64_t num_refused_ = 0;
   struct Level {
     std::optional<StudyPlan> plan;  // of this condition only, made for its first trial
     std::int64_t next_trial = 0;
@@ -255,11 +265,11 @@ Study KeepEstimatorsWithSetting(Study study, const CrossingQuestion& question) {
 }
 
 WorkPlan PlanCrossings(const Study& study, const CrossingQuestion& question) {
-  const std::string identity =
-      fmt::format("{}\ncrossing: {} of {} in [{}, {}], logarithmic {}, falling {}, at {}, {} trials\n",
-                  MakePlan(study, PlanEstimators::kNotMade).identity, question.event.name, question.setting,
-                  question.from, question.to, question.is_logarithmic, question.is_falling, question.rate,
-                  question.num_trials);
+  const std::string identity = fmt::format(
+      "{}\ncrossing with refusals: {} of {} in [{}, {}], logarithmic {}, falling {}, at {}, {} trials\n",
+      MakePlan(study, PlanEstimators::kNotMade).identity, question.event.name, question.setting,
+      question.from, question.to, question.is_logarithmic, question.is_falling, question.rate,
+      question.num_trials);
   return {"solve", "step", identity, {}, true};
 }
 
@@ -286,7 +296,7 @@ CrossingAnswer FindCrossings(const Study& study, const CrossingQuestion& questio
                                   scale.RoundedSettingAt(found.estimate), scale.SettingsIn(found.interval),
                                   scale.SettingsIn(found.logistic_interval),
                                   scale.SettingsOfEvents(std::move(found.searched)),
-                                  scale.SettingsOfEvents(std::move(found.fresh))});
+                                  scale.SettingsOfEvents(std::move(found.fresh)), asker.num_refused()});
     }
   }
   return answer;

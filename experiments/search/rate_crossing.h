@@ -28,6 +28,7 @@ struct RateCrossing {
   double estimate = 0.0;
   Interval interval, logistic_interval;
   std::vector<EventsAtLevel> searched, fresh;
+  std::int64_t num_refused = 0;     // trials that ended in a refusal and count as no event
   std::int64_t num_trials() const;  // trials that could be simulated
 };
 

@@ -8,6 +8,7 @@
 
 #include "experiments/statistics/coverage_verdict.h"
 #include "experiments/statistics/failure_forecasts.h"
+#include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/trial_groups.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
@@ -176,9 +177,9 @@ std::vector<CoverageStratum> MeasureCoverageStrata(const VisibleAnswers& answers
 CoverageStrata MeasureCoverageStrata(const ResultStore& store) {
   const RunDescription run = store.Description();
   CoverageStrata strata;
-  strata.intervals = IsSampleOfPopulation(run.identity) ? StrataIntervals::kPopulation
-                     : run.stopping_rule.empty()        ? StrataIntervals::kClusters
-                                                        : StrataIntervals::kAnytime;
+  strata.intervals = HasPopulationIntervals(run) ? StrataIntervals::kPopulation
+                     : run.stopping_rule.empty() ? StrataIntervals::kClusters
+                                                 : StrataIntervals::kAnytime;
   for (const VisibleAnswers& answers : CollectAnswers(store, run)) {
     strata.sharpness_names = answers.sharpness_names;
     for (CoverageStratum& stratum : MeasureCoverageStrata(answers, strata.intervals))

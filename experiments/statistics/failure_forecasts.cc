@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/trial_groups.h"
 #include "experiments/study/population.h"
 #include "parameters/input_error.h"
@@ -145,7 +146,7 @@ std::vector<FailureForecasts> CollectFailureForecasts(const ResultStore& store, 
                                                   : ProbabilitiesFromInliers(answers[e]);
     const size_t first = all.size();
     for (const std::string& group : groups.names)
-      all.push_back({run.estimators[e].label, group, source, IsSampleOfPopulation(run.identity), {}, {}, 0});
+      all.push_back({run.estimators[e].label, group, source, HasPopulationIntervals(run), {}, {}, 0});
     for (size_t i = 0; i < answers[e].size(); ++i) {
       const Answer& answer = answers[e][i];
       FailureForecasts& of_group = all[first + answer.group];

@@ -233,16 +233,18 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
   return marginal;
 }
 
-// Intervals for these very conditions need trials that do not depend on each other.
+// Intervals need numbers of trials that the outcomes did not choose and, unless the conditions are a random
+// sample of a population, conditions that do not depend on each other. Those for chosen draws are of these
+// very conditions, so their trials must not depend on each other either.
 void CheckTrialsAreIndependent(const RunDescription& run) {
-  const char* why = HasCommonScenes(run)         ? "share their scenes (common_scenes: true)"
-                    : run.repeats_per_scene != 1 ? "repeat their scenes (repeats_per_scene)"
-                    : !run.stopping_rule.empty() ? "ended by a stopping rule (--until)"
-                                                 : nullptr;
+  const bool are_chosen = HasChosenDraws(run.identity), are_random = IsSampleOfPopulation(run.identity);
+  const char* why = !run.stopping_rule.empty()                 ? "ended by a stopping rule (--until)"
+                    : HasCommonScenes(run) && !are_random      ? "share their scenes (common_scenes: true)"
+                    : are_chosen && run.repeats_per_scene != 1 ? "repeat their scenes (repeats_per_scene)"
+                                                               : nullptr;
   if (why == nullptr) return;
   throw InputError(fmt::format(
-      "marginals: the conditions are chosen draws, no sample of a population, and {}, which intervals for "
-      "these very conditions do not allow; run the study without this",
+      "marginals: the conditions {}, which the intervals over conditions do not allow; run the study without this",
       why));
 }
 
@@ -312,7 +314,7 @@ Marginals MeasureMarginals(const ResultStore& run, const MarginalOptions& option
                                  description.conditions.size(), kLeastConditions));
   Marginals marginals;
   marginals.is_of_these_conditions = HasChosenDraws(description.identity);
-  if (marginals.is_of_these_conditions) CheckTrialsAreIndependent(description);
+  CheckTrialsAreIndependent(description);
   const Values values = CollectValues(run, description);
   const std::vector<size_t> draws = NumberDraws(description);
   const std::vector<Regime> regimes = ListRegimes(description, options.with_pairs);

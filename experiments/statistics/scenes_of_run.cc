@@ -19,7 +19,12 @@ bool HasCommonScenes(const RunDescription& run) {
 }
 
 void CheckMayBePooled(const RunDescription& run) {
-  if (run.conditions.size() < 2 || !HasCommonScenes(run) || IsSampleOfPopulation(run.identity)) return;
+  if (run.conditions.size() < 2) return;
+  if (!run.stopping_rule.empty())
+    throw InputError(
+        "the outcomes decided how many trials each condition has (--until), so a rate over all conditions would depend "
+        "on that; leave --pooled and --fifths-of out, or run the study with a fixed number of trials");
+  if (!HasCommonScenes(run) || IsSampleOfPopulation(run.identity)) return;
   throw InputError(
       "the conditions share their scenes (common_scenes: true), so their trials are not independent and an interval "
       "over all of them would be too short; leave --pooled and --fifths-of out");

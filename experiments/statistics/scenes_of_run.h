@@ -25,9 +25,9 @@ class SceneMean {
 // Returns whether trials with the same number share their scene in all conditions (Study::common_scenes).
 bool HasCommonScenes(const RunDescription& run);
 
-// Throws InputError if trials of several conditions cannot be pooled: exact intervals need independent
-// trials, and these conditions share their scenes. A population's intervals are of its draws and may be
-// pooled.
+// Throws InputError if trials of several conditions cannot be pooled. A stopping rule gives more trials to
+// conditions whose rate is hard to measure, so a rate over all would depend on the rule. Exact intervals need
+// independent trials, but conditions may share their scenes; a population's intervals are of its draws.
 void CheckMayBePooled(const RunDescription& run);
 
 // Calls `visit` for every trial of the run, ordered by condition and trial, and `end_of_scene` with the

@@ -44,7 +44,7 @@ std::string DescribeMissingTuningTrials(const StudyPlan& plan, const TuneResult&
 }
 
 // For each rate: the tuned figure, the verified one, and the optimism of the former.
-Table MakeVerifiedTable(const TuneResult& result) {
+Table MakeVerifiedTable(const Tuning& tuning, const TuneResult& result) {
   const SettingCount& tuned = result.calibrated[*result.choice.setting];
   const SettingCount& verified = result.verified[*result.choice.setting];
   Table table{{Column::Key("rate"), Column::Estimated("verified, fresh trials", kPercent), Column::Count("n"),
@@ -55,6 +55,8 @@ Table MakeVerifiedTable(const TuneResult& result) {
                           ComputeRate(seen) - ComputeRate(fresh)});
   };
   add("failure", verified.Failure(), tuned.Failure());
+  if (tuning.target == TuneTarget::kAcceptedFailure)
+    add("accepted failure", verified.AcceptedFailure(), tuned.AcceptedFailure());
   add("refusal", verified.Refusal(), tuned.Refusal());
   add("false refusal", verified.FalseRefusal(), tuned.FalseRefusal());
   return table;
@@ -177,7 +179,7 @@ std::string TuneAsTable(const StudyPlan& plan, const TuneResult& result,
       FormatParagraph(fmt::format("Tuned: {}{}; {}", result.settings[*result.choice.setting],
                                   DescribeCertified(tuning, result.choice),
                                   DescribeVerdict(tuning, result))) +
-      "\n" + RenderText(MakeVerifiedTable(result)) + "\n" +
+      "\n" + RenderText(MakeVerifiedTable(*plan.study.tuning, result)) + "\n" +
       FormatParagraph(
           "On the trials for verification, all with the same problems (exact 95 % intervals; differences: "
           "Tango)") +

@@ -123,6 +123,9 @@ TEST_F(TuneProgram, BadInput) {
   EXPECT_TRUE(IsRefused(Tune({"--shard", "1/2", "--out", out_, "--repeat", "3"}), {"--repeat", "--shard"}));
   EXPECT_TRUE(IsRefused(Tune({"--figures", folder_.Path("f"), "--repeat", "3"}), {"--repeat", "--figures"}));
   EXPECT_TRUE(IsRefused(Tune({"--repeat", "0"}), {"--repeat", "0"}));
+  const std::string shared = folder_.Write("shared.yaml", "common_scenes: true\n" + ReadBytes(study_));
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"tune", shared, "--out", out_}), {"shared.yaml", "common_scenes", "leave it out"}));
   study_ = folder_.Write("repeated.yaml", "repeats_per_scene: 2\n" + ReadBytes(study_));
   EXPECT_TRUE(IsRefused(Tune({"--out", out_}), {"repeated.yaml", "repeats_per_scene", "leave it out"}));
   study_ = folder_.Write("plain.yaml", SmallStudyYaml());

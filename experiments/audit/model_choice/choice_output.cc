@@ -64,6 +64,10 @@ std::string ChoicesAsTable(const StudyPlan& plan, const ChoiceCounts& counts) {
           fmt::format("{} trials in each of {} conditions. Rows: the truth; columns: the verdict, "
                       "its share of the row with the exact 95 % interval.",
                       plan.study.trials, plan.conditions.size())) +
+      (plan.study.population
+           ? FormatParagraph("The conditions are draws of a population; the intervals are of these draws "
+                             "alone, not of the population.")
+           : "") +
       FormatParagraph(DescribeNotSimulated(num_trials - num_simulated, num_trials));
   for (const ChoiceGroup& group : counts.groups) {
     text += fmt::format("\n{}\n", DescribeLevels(counts, group));

@@ -25,9 +25,22 @@ std::optional<std::uint32_t> FindCommonTrial(ResultStore* a, ResultStore* b, std
   return static_cast<std::uint32_t>(common - is_missing.begin());
 }
 
+// The part of a study that its problems depend on: from the seed to the estimators.
+std::string ProblemsIn(const std::string& identity) {
+  const size_t begin = identity.find("\nseed: "), end = identity.find("\nestimators:");
+  return begin < end && end != std::string::npos ? identity.substr(begin, end - begin) : identity;
+}
+
+bool HaveCommonEstimator(const RunDescription& a, const RunDescription& b) {
+  return std::ranges::any_of(a.estimators, [&](const DescribedEstimator& one) {
+    return std::ranges::count(b.estimators, one.label, &DescribedEstimator::label) > 0;
+  });
+}
+
+// Studies that differ in their name, description or other estimators have the same trials.
 void RequireDistinct(ResultStore* a, ResultStore* b) {
   const RunDescription of_a = a->Description(), of_b = b->Description();
-  if (of_a.identity != of_b.identity) return;
+  if (ProblemsIn(of_a.identity) != ProblemsIn(of_b.identity) || !HaveCommonEstimator(of_a, of_b)) return;
   for (size_t c = 0; c < std::min(of_a.conditions.size(), of_b.conditions.size()); ++c) {
     const auto num_trials =
         static_cast<std::uint32_t>(std::min(of_a.conditions[c].num_trials, of_b.conditions[c].num_trials));

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "experiments/search/crossing_output.h"
 #include "experiments/study/study_file.h"
 #include "tests/test_support/expect_input_error.h"
 
@@ -110,6 +112,32 @@ TEST(KeepEstimatorsWithSetting, AreThoseThatHaveTheOption) {
   question.setting = "standard.num_iteration";
   EXPECT_TRUE(ThrowsInputError([&] { KeepEstimatorsWithSetting(study, question); },
                                {"--over: ", "'num_iteration'", "num_iterations"}));
+}
+
+// Where an estimator refuses, its failures fall again, and the answer warns of it.
+TEST(FindCrossings, RefusalsAreCountedAndWarnedOf) {
+  const Study study = ParseStudy(
+      "name: refusing\ntrials: 10\ndata: {scene: uniform_volume, num_matches: 30, sigma_px: 1}\n"
+      "estimators: [{name: rcme_calibrated, options: {max_failure_probability: 0.2}}]\n",
+      "refusing.yaml");
+  CrossingQuestion question;
+  question.setting = "outlier_ratio";
+  question.to = 0.9;
+  question.rate = 0.3;
+  question.num_trials = 60;
+  const auto answer = [&](const char* event) {
+    question.event = *std::ranges::find(TrialEvents(), event, &TrialEvent::name);
+    return FindCrossings(study, question, 2, nullptr);
+  };
+  const CrossingAnswer failures = answer("failure"), both = answer("failure_or_refusal");
+  EXPECT_GT(failures.crossings[0].num_refused, 2);
+  EXPECT_EQ(both.crossings[0].num_refused, 0);
+  const auto warns = [&](const CrossingAnswer& of) {
+    return MakeCrossingsResult(study, question, of).text.find("failure_or_refusal as well") !=
+           std::string::npos;
+  };
+  EXPECT_TRUE(warns(failures));
+  EXPECT_FALSE(warns(both));
 }
 
 TEST(FindCrossings, RefusesDrawsThatSomeLevelsLack) {

@@ -175,7 +175,7 @@ TEST_F(MarginalsOfRun, ChosenDrawsAllowForFailuresThatWereNotSeen) {
 TEST_F(MarginalsOfRun, ChosenDrawsThatShareScenesAreRefused) {
   study_ = StudyOfDraws(true, "common_scenes: true\n");
   EXPECT_TRUE(ThrowsInputError([&] { Measure([](const Condition&) { return 0.0; }); },
-                               {"chosen draws, no sample", "share their scenes"}));
+                               {"the conditions share their scenes", "common_scenes"}));
 }
 
 TEST_F(MarginalsOfRun, OneOrTwoConditionsAreNoRegime) {

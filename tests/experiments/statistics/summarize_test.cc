@@ -590,5 +590,15 @@ TEST_F(SummarizedRun, ConditionsThatShareTheirScenesAreNotPooled) {
   EXPECT_NO_THROW(Summarize(store, false, Pooling::kPerCondition));
 }
 
+// Nor are conditions whose numbers of trials the outcomes chose: the pooled rate would depend on the rule.
+TEST_F(SummarizedRun, ConditionsOfAStoppingRuleAreNotPooled) {
+  Write("until", HandMadeRecords());
+  ResultStore::OpenForRun(folder_.Path("until"), MakePlan(study_)).NoteStoppingRule("ci=0.1");
+  const ResultStore store = ResultStore::OpenForReading(folder_.Path("until"));
+  EXPECT_TRUE(ThrowsInputError([&] { Summarize(store, false, Pooling::kPooled); }, {"--until"}));
+  EXPECT_TRUE(ThrowsInputError([&] { Compare(store, "", {.pooling = Pooling::kPooled}); }, {"--until"}));
+  EXPECT_NO_THROW(Summarize(store, false, Pooling::kPerCondition));
+}
+
 }  // namespace
 }  // namespace rcme

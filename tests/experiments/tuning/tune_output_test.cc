@@ -52,6 +52,14 @@ testing::AssertionResult Holds(const std::string& broken, const std::vector<std:
   return testing::AssertionSuccess();
 }
 
+// The rate that the target limits has its row: 4 failures of the 80 answers that are no refusals.
+TEST(TuneOutput, FailuresAmongTheAcceptedAreShownIfTheTargetIsOfThem) {
+  StudyPlan plan = Plan();
+  EXPECT_EQ(TuneAsTable(plan, Result(plan), {}).find("accepted failure"), std::string::npos);
+  plan.study.tuning->target = TuneTarget::kAcceptedFailure;
+  EXPECT_TRUE(Holds(TuneAsTable(plan, Result(plan), {}), {"accepted failure 5.00 % [1.38, 12.31] 80"}));
+}
+
 TEST(TuneOutput, RatesOfTheJsonAreThoseOfVerification) {
   const StudyPlan plan = Plan();
   const Json json = Json::parse(TuneAsJson(plan, MakeTunedSettings(plan), Result(plan), {}));

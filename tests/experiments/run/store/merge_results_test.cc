@@ -60,6 +60,14 @@ TEST_F(MergeTest, FilesThatHoldATrialBothAreTold) {
   for (const Paths& paths :
        {Paths{whole, whole}, Paths{parts[0], whole}, Paths{parts[0], parts[1], parts[0]}})
     EXPECT_TRUE(ThrowsInputError([&] { RequireDistinctTrials(paths); }, {paths.back(), "count twice"}));
+  // A copy of the study by another name has the same trials, one with another seed has not.
+  study_.name = "renamed";
+  const std::string renamed = folder_.Path("renamed.sqlite"), other = folder_.Path("other.sqlite");
+  RunShard(MakePlan(study_), {}, renamed);
+  EXPECT_TRUE(ThrowsInputError([&] { RequireDistinctTrials(Paths{whole, renamed}); }, {"count twice"}));
+  ++study_.seed;
+  RunShard(MakePlan(study_), {}, other);
+  EXPECT_NO_THROW(RequireDistinctTrials(Paths{whole, other}));
 }
 
 TEST_F(MergeTest, AnyNumberOrderAndGroupingGivesTheBytesOfOneRun) {
