@@ -181,18 +181,20 @@ def sets_with_parts(validation):
 def draw(validation):
     sets = sets_with_parts(validation)
     width, height = sheet.current().width or 13, 2.2 + 0.45 * len(sets)
+    heights = [height, 2.6, height] if any(map(has_faults, sets)) else [height, 2.6]
     if width < SIDE_BY_SIDE:
-        figure = Figure(figsize=(width, 2 * height + 2.6), layout="constrained")
-        ratios, correlations, faults = figure.subplots(3, 1, height_ratios=[height, 2.6, height])
+        figure = Figure(figsize=(width, sum(heights)), layout="constrained")
+        ratios, correlations, *faults = figure.subplots(len(heights), 1, height_ratios=heights)
     else:
         figure = Figure(figsize=(width, height), layout="constrained")
-        ratios, correlations, faults = figure.subplots(1, 3, width_ratios=[1.2, 1.2, 1.2])
+        ratios, correlations, *faults = figure.subplots(1, len(heights))
     FigureCanvasAgg(figure)
     ratios.nominal = validation["nominal_variance"]
     draw_ratios(ratios, sets)
     ends = draw_correlations(correlations, sets)
-    draw_faults(faults, sets)
-    for letter, axes, title in zip(style.letters(3), (ratios, correlations, faults),
+    for axes in faults:
+        draw_faults(axes, sets)
+    for letter, axes, title in zip(style.letters(3), (ratios, correlations, *faults),
                                    ("Stated covariances", "Neighbouring residuals", "Camera")):
         axes.set_title(letter + title)
     style.add_legend_and_caption(figure, [], CAPTION.format(farthest=FARTHEST_FAULT))

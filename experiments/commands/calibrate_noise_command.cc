@@ -8,6 +8,7 @@
 #include "experiments/commands/estimator_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
+#include "experiments/data/match_folder.h"
 #include "experiments/real/camera_noise/calibrate_noise_output.h"
 #include "experiments/study/estimator_spec.h"
 #include "parameters/input_error.h"
@@ -41,7 +42,11 @@ void RunCalibrateNoise(const CalibrateNoiseArguments& arguments) {
   const StopOnSignals stop;
   const EstimatorSpec spec = ChosenEstimator(arguments.estimator);
   CheckProcessEstimators({spec});
-  if (!arguments.out.empty()) CheckCanBeWritten(arguments.out);
+  if (!arguments.out.empty()) {
+    for (const std::filesystem::path& input : MatchFilesIn(arguments.pairs))
+      CheckIsNoInput(arguments.out, {input.string()});
+    CheckCanBeWritten(arguments.out);
+  }
   const PairSet set = ReadPairsOfCamera(arguments);
   const NoiseCalibration calibration =
       CalibrateNoise(set, *Make(spec), spec.label, static_cast<std::uint64_t>(arguments.seed));

@@ -197,7 +197,7 @@ std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::strin
 std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
                                             Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
                                             const std::string& place) {
-  constexpr size_t kFewest = 50;
+  constexpr size_t kFewest = 10;
   constexpr double kBeyond = 1.25,
                    kBefore = 0.02;  // of the size; undistortion moves points outside on all sides
   if (matches.size() < kFewest) return {};

@@ -26,7 +26,7 @@ struct CameraDoubt {
 std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::string& place);
 
 // Returns what is suspicious about K given the key points of its image, all but a twentieth of them; nothing
-// for fewer than 50. `is_size_known`: the camera has the width and height of the image; otherwise twice
+// for fewer than 10. `is_size_known`: the camera has the width and height of the image; otherwise twice
 // the principal point and the points are used instead.
 std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
                                             Eigen::Vector2d Correspondence::*x_px, bool is_size_known,

@@ -1,6 +1,7 @@
 #include "experiments/data/colmap_camera.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -38,11 +40,15 @@ const std::vector<ColmapModel>& ColmapModels() {
   return models;
 }
 
+// Other programs' names of models that COLMAP has.
+constexpr const char* kOtherNames =
+    "radtan and plumb_bob are OPENCV, equidistant, fisheye and KANNALA_BRANDT OPENCV_FISHEYE";
+
 [[noreturn]] void RefuseModel(const std::string& model, const std::string& place) {
-  throw InputError(
-      fmt::format("{}: model {} is not supported; SIMPLE_PINHOLE, PINHOLE, SIMPLE_RADIAL, RADIAL, OPENCV, "
-                  "FULL_OPENCV and the fisheye ones of OPENCV and RADIAL are",
-                  place, model));
+  std::vector<std::string> names;
+  for (const ColmapModel& each : ColmapModels()) names.push_back(each.name);
+  throw InputError(fmt::format("{}: model {} is not supported{}; allowed are {} ({})", place, Quoted(model),
+                               DidYouMean(model, names), fmt::join(names, ", "), kOtherNames));
 }
 
 const ColmapModel& FindColmapModel(std::int64_t number, const std::string& place) {
@@ -93,7 +99,7 @@ std::int64_t ColmapModelNumber(const std::string& name, const std::string& place
   for (const ColmapModel& model : ColmapModels()) {
     if (model.name == name) return model.number;
   }
-  RefuseModel(Quoted(name), place);
+  RefuseModel(name, place);
 }
 
 Lens LensOfColmapCamera(const ColmapCamera& camera, const std::string& place) {
@@ -120,7 +126,7 @@ Lens LensFromWords(const std::vector<std::string>& words, const std::string& pla
 }
 
 Lens LensWithoutSizeFromWords(const std::vector<std::string>& words, const std::string& place) {
-  if (words.empty()) RefuseModel("''", place);
+  if (words.empty()) RefuseModel("", place);
   return MakeNamedLens(words.front(), ParseNumbers(std::span(words).subspan(1), place), {0, 0}, place);
 }
 

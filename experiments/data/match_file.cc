@@ -71,6 +71,7 @@ std::optional<MotionPrior> ReadPrior(const MatchHeader& header) {
 }
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::string_view kZipArchive = "PK\x03\x04";
 constexpr size_t kMaxSceneBytes = 200;
 
 std::optional<RelativePose> ReadTruePose(const MatchHeader& header) {
@@ -167,6 +168,11 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   for (std::string_view line; lines.Next(&line); is_empty = false) {
     if (lines.line_number() == 1 && line.starts_with(kByteOrderMark))
       line.remove_prefix(kByteOrderMark.size());
+    if (lines.line_number() == 1 && line.starts_with(kZipArchive))
+      throw InputError(
+          fmt::format("{}: is a zip or npz archive; a match file is text, and `rcme pairs "
+                      "--layout npz` makes such files of archives",
+                      path));
     line = Trim(line);
     if (line.empty()) continue;
     if (line.front() == '#') {
@@ -183,6 +189,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
   file.camera2 = lens2.camera;
   file.doubts = FindHeaderDoubts(header, file, given);
   std::ranges::move(rows.ListDoubts(), std::back_inserter(file.doubts));
+  std::ranges::copy(header.doubts(), std::back_inserter(file.doubts));
   ReadScores(header, rows, &file);
   UndistortMatches(
       lens1, lens2, [&](size_t i) { return rows.Place(i); }, &file);

@@ -9,6 +9,7 @@
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -70,7 +71,13 @@ void MatchHeader::AddLine(std::string_view line, const GzipLines& lines) {
   const size_t colon = line.find(':');
   if (colon == std::string_view::npos) return;  // a comment
   const std::string key(Trim(line.substr(1, colon - 1)));
-  if (std::ranges::find(kHeaderKeys, key) == kHeaderKeys.end()) return;
+  if (std::ranges::find(kHeaderKeys, key) == kHeaderKeys.end()) {
+    const std::string meant = DidYouMean(key, {kHeaderKeys.begin(), kHeaderKeys.end()});
+    if (!meant.empty())
+      doubts_.push_back({fmt::format("{}:{}", path_, lines.line_number()),
+                         fmt::format("{} is no key and is read as a comment{}", Quoted(key), meant)});
+    return;
+  }
   const Entry entry{std::string(Trim(line.substr(colon + 1))), lines.line_number()};
   if (!entries_.emplace(key, entry).second) lines.Fail(fmt::format("key '{}' stands twice", key));
 }
@@ -82,10 +89,13 @@ std::string MatchHeader::Place(const std::string& key) const {
 std::vector<double> MatchHeader::Numbers(const std::string& key, size_t count) const {
   if (!Has(key)) {
     const bool is_of_camera = key.starts_with("size") || key.starts_with("K");
+    const bool has_camera = Has("camera1") || Has("camera2");  // of the other image
     const bool has_a_part =
-        std::ranges::any_of(std::array{"size1", "size2", "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy"},
-                            [&](const char* other) { return Has(other); });
-    throw InputError(fmt::format("{}: header key '# {}: ...' is missing{}", path_, key,
+        has_camera || std::ranges::any_of(std::array{"size1", "size2", "K1_fx_fy_cx_cy", "K2_fx_fy_cx_cy"},
+                                          [&](const char* other) { return Has(other); });
+    const std::string missing =
+        is_of_camera && has_camera ? fmt::format("camera{}", key.substr(key.find_first_of("12"), 1)) : key;
+    throw InputError(fmt::format("{}: header key '# {}: ...' is missing{}", path_, missing,
                                  !is_of_camera ? ""
                                  : has_a_part
                                      ? "; add it, the header has others of the cameras"

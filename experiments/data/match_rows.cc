@@ -45,7 +45,8 @@ bool HasColumnsFirst(const std::vector<std::string>& fields) {
 
 Correspondence ReadMatch(const std::vector<std::string>& fields, const GzipLines& lines) {
   if (fields.size() < kCoordinateColumns.size())
-    lines.Fail(fmt::format("{} columns; x1,y1,x2,y2 are needed", fields.size()));
+    lines.Fail(
+        fmt::format("{} columns; x1,y1,x2,y2 are needed, separated by commas or blanks", fields.size()));
   std::array<double, 4> x{};
   for (size_t i = 0; i < x.size(); ++i) {
     if (ParseReal(fields[i], &x[i]) && std::abs(x[i]) <= kMaxCoordinatePx) continue;

@@ -81,10 +81,16 @@ TEST_F(CalibrateNoiseProgram, RefusesWhatItCannotUse) {
   TempFolder few;
   for (const char* name : {"a.csv", "b.csv"}) few.Write(name, MatchHeader() + MatchRows(60));
   EXPECT_TRUE(
-      IsRefused(RunRcme({"calibrate-noise", few.path(), "--out", file_}), {"2 pairs of 2", "takes 5"}));
+      IsRefused(RunRcme({"calibrate-noise", few.path(), "--out", file_}), {"2 of 2 pairs", "takes 5"}));
   EXPECT_TRUE(IsRefused(Call({"--scene", "none"}), {"--scene", "none"}));
   EXPECT_TRUE(IsRefused(Call({"--sigma", "nan"}), {"--sigma"}));
   EXPECT_FALSE(std::filesystem::exists(file_));
+  const std::string own =
+      pairs_ + "/" + std::filesystem::directory_iterator(pairs_)->path().filename().string();
+  const std::string before = ReadBytes(own);
+  EXPECT_TRUE(
+      IsRefused(RunRcme({"calibrate-noise", pairs_, "--out", own}), {"--out", "is the input itself"}));
+  EXPECT_EQ(ReadBytes(own), before);
 }
 
 }  // namespace

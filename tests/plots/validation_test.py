@@ -97,6 +97,11 @@ class Validation(PlotTestCase):
         self.assertEqual([label.get_text() for label in ratios.get_yticklabels()], ["hall (12)", "street (3)"])
         self.assertEqual([label.get_text() for label in faults.get_yticklabels()], ["hall"])
 
+    def test_without_any_such_set_there_is_no_panel(self):
+        content = fake()
+        content["camera_faults"][0] |= {"beside_others": None, "beside_others_interval": [None, None]}
+        self.assertEqual(len(script.draw(content).axes), 2)
+
     def test_a_test_and_a_fault_that_this_script_does_not_know_are_drawn_by_their_names(self):
         content = fake()
         content["tests"].append(test_of("hall", "new_test", 1.2, "holds"))

@@ -254,10 +254,12 @@ NoiseCalibration CalibrateNoise(const PairSet& set, const MotionEstimator& estim
   std::vector<PairAnswers> answers = AnswerAll(of_camera, estimator, seed);
   calibration.num_unanswered = static_cast<int>(of_camera.pairs.size() - answers.size());
   if (answers.size() < kLeastPairsOfCamera)
-    throw InputError(
-        fmt::format("calibrate-noise: {} pairs of {} are of one camera and have a motion; it takes {} "
-                    "(--scene picks some)",
-                    answers.size(), set.pairs.size(), kLeastPairsOfCamera));
+    throw InputError(fmt::format(
+        "calibrate-noise: {} of {} pairs have both images of the first pair's first camera, and {} of "
+        "these have a motion; it takes {}{}",
+        of_camera.pairs.size(), set.pairs.size(), answers.size(), kLeastPairsOfCamera,
+        of_camera.pairs.empty() ? " (a stereo rig has two cameras, and none of its pairs is of one)"
+                                : " (--scene picks pairs)"));
   CameraNoise& noise = calibration.noise;
   noise.estimator = estimator_name;
   noise.camera = of_camera.pairs.front().problem.camera1;

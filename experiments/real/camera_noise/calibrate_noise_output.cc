@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "experiments/core/table/render_table.h"
@@ -30,9 +31,12 @@ Estimate RootEstimate(const PooledParameter& variance) {
   return {root(variance.value), {root(variance.interval.lower), root(variance.interval.upper)}, kNaN};
 }
 
-Estimate ReachEstimate(const SharedVariance& shared) {
-  const double factor = std::pow(shared.reach_factor, 1.96);
-  return {shared.field.reach_px, {shared.field.reach_px / factor, shared.field.reach_px * factor}, kNaN};
+// Without a factor the reach is at an end of its range. Reaches beyond the image look alike.
+Estimate ReachEstimate(const SharedVariance& shared, const Camera& camera) {
+  const double reach = shared.field.reach_px, factor = std::pow(shared.reach_factor, 1.96);
+  const double lower = reach / factor >= 1.0 ? reach / factor : 0.0;
+  const bool is_open = factor == 1.0 || reach * factor > std::hypot(camera.width, camera.height);
+  return {reach, {lower, is_open ? std::numeric_limits<double>::infinity() : reach * factor}, kNaN};
 }
 
 std::string FieldVerdict(const NoiseCalibration& calibration) {
@@ -48,7 +52,9 @@ void AddSharedRows(const NoiseCalibration& calibration, std::vector<NoiseRow>* r
   const std::int64_t pairs = calibration.noise.num_pairs;
   rows->push_back({"displacement_px", "displacement field", "px", RootEstimate(shared.field.variance),
                    FieldVerdict(calibration), pairs});
-  if (shared.is_found) rows->push_back({"reach_px", "its reach", "px", ReachEstimate(shared), "", pairs});
+  if (shared.is_found)
+    rows->push_back(
+        {"reach_px", "its reach", "px", ReachEstimate(shared, calibration.noise.camera), "", pairs});
   if (std::isfinite(shared.key_point.value)) {
     rows->push_back({"key_point_px", "shared by a key point", "px", RootEstimate(shared.key_point),
                      shared.is_key_point_found ? "found" : "not found", pairs});

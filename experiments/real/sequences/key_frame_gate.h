@@ -30,7 +30,7 @@ struct KeyFrameGate {
 
 struct KeyFrameVerdict {
   std::string reason;  // "kept", or which condition failed, such as "too_few_matches"
-  int num_inliers = 0;
+  std::optional<int> num_inliers = std::nullopt;  // of the chosen model; none if no model was fitted
   double parallax_deg = std::numeric_limits<double>::quiet_NaN();  // the 50th largest; NaN: not computed
 };
 inline const std::string kKeptPair = "kept", kTooFewMatches = "too_few_matches";

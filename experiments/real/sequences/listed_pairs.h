@@ -1,6 +1,7 @@
 // Data sets that already contain matches: gives their pairs one after another.
 #pragma once
 
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -22,6 +23,9 @@ class ListedPairs {
   virtual size_t size() const = 0;
   virtual std::string PairId(size_t i) const = 0;  // the name of its match file
   virtual ListedPair Read(size_t i) = 0;           // throws InputError that names the file
+  virtual std::filesystem::path Source(size_t) const {
+    return {};
+  }  // the pair's own file; empty: it has none
   virtual std::string Note() const { return {}; }
 };
 

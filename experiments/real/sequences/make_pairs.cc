@@ -34,6 +34,17 @@ void StopIfRequested(const PairJournal& journal) {
         fmt::format("stopped after {} pairs; the same command goes on from here", journal.rows().size()));
 }
 
+// Throws InputError if a source of a pair was written after the match file that was made of it.
+void RequireOlder(const std::filesystem::path& source, const PairsOptions& options,
+                  const std::string& pair_id) {
+  const std::filesystem::path made = std::filesystem::path(options.out) / (pair_id + ".csv");
+  std::error_code no_source, not_made;  // a pair that was not kept has no file
+  const auto written = std::filesystem::last_write_time(source, no_source);
+  if (no_source || written <= std::filesystem::last_write_time(made, not_made) || not_made) return;
+  throw InputError(fmt::format("{}: is newer than {}, which was made of it; remove {} or give another --out",
+                               source.string(), made.string(), options.out));
+}
+
 bool IsDirectionWeak(const PairsOptions& options, double baseline) {
   return options.truth_sd.value_or(PoseSd()).IsDirectionWeak(baseline);
 }
@@ -121,7 +132,10 @@ class SequencePairs {
   // Returns the row of the two images; null if the second is damaged. The first was read before.
   const PairRow* Pair(LoadedFrame* frame1, LoadedFrame* frame2) {
     const std::string pair_id = fmt::format("{}_{:06}_{:06}", FileName(), frame1->number, frame2->number);
-    if (const PairRow* row = journal_->Find(pair_id)) return row;
+    if (const PairRow* row = journal_->Find(pair_id)) {
+      for (const LoadedFrame* frame : {frame1, frame2}) RequireOlder(frame->frame->path, options_, pair_id);
+      return row;
+    }
     if (!Load(frame1) || !Load(frame2)) return nullptr;
     PairRow row;
     row.pair_id = pair_id;
@@ -222,7 +236,10 @@ void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJourna
     StopIfRequested(*journal);
     PairRow row;
     row.pair_id = pairs.PairId(i);
-    if (journal->Find(row.pair_id)) continue;
+    if (journal->Find(row.pair_id)) {
+      RequireOlder(pairs.Source(i), options, row.pair_id);
+      continue;
+    }
     ListedPair listed = pairs.Read(i);
     warnings.Add(FindPairDoubts(listed.file.camera1, listed.file.camera2, listed.file.matches,
                                 {row.pair_id + ": camera 1", row.pair_id + ": camera 2"}));

@@ -11,9 +11,11 @@ class MatchFilePairs : public ListedPairs {
 
   size_t size() const override { return paths_.size(); }
   std::string PairId(size_t i) const override { return ExtractPairId(paths_.at(i)); }
+  std::filesystem::path Source(size_t i) const override { return paths_.at(i); }
   ListedPair Read(size_t i) override {
     ListedPair listed;
     listed.file = ReadMatchFile(paths_.at(i).string());
+    listed.baseline = listed.file.baseline;
     listed.is_direction_weak = weak_.contains(PairId(i));
     return listed;
   }

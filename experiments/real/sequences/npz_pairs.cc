@@ -129,6 +129,7 @@ class NpzPairs : public ListedPairs {
 
   size_t size() const override { return paths_.size(); }
   std::string PairId(size_t i) const override { return paths_.at(i).stem().string(); }
+  std::filesystem::path Source(size_t i) const override { return paths_.at(i); }
   std::string Note() const override { return "no truth: .npz files of matches have none"; }
   ListedPair Read(size_t i) override {
     const NpzFile npz(paths_.at(i).string());

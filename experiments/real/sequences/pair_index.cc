@@ -40,7 +40,7 @@ Json AsJson(const PairRow& row) {
           {"image2", row.image2},
           {"reason", row.reason},
           {"num_matches", row.num_matches},
-          {"num_inliers", row.num_inliers},
+          {"num_inliers", row.num_inliers ? Json(*row.num_inliers) : Json()},
           {"time1_s", JsonNumber(row.time1_s)},
           {"time2_s", JsonNumber(row.time2_s)},
           {"parallax_deg", JsonNumber(row.parallax_deg)},
@@ -57,7 +57,7 @@ PairRow RowFrom(const Json& json) {
   row.image2 = json.at("image2");
   row.reason = json.at("reason");
   row.num_matches = json.at("num_matches");
-  row.num_inliers = json.at("num_inliers");
+  if (const Json& inliers = json.at("num_inliers"); !inliers.is_null()) row.num_inliers = inliers.get<int>();
   row.time1_s = RealIn(json, "time1_s");
   row.time2_s = RealIn(json, "time2_s");
   row.parallax_deg = RealIn(json, "parallax_deg");
@@ -179,7 +179,8 @@ Table MakeIndexTable(const std::vector<PairRow>& rows) {
        {Column::Count("kept"), [](R r) { return std::int64_t{r.reason == kKeptPair}; }},
        {Column::Text("reason"), [](R r) { return r.reason; }},
        {Column::Count("n_matches"), [](R r) { return r.num_matches; }},
-       {Column::Count("n_inliers"), [](R r) { return r.num_inliers; }},
+       {Column::Count("n_inliers"),
+        [](R r) { return r.num_inliers ? Value(std::int64_t{*r.num_inliers}) : Value(); }},
        {Column::Number("parallax_deg"), [](R r) { return r.parallax_deg; }},
        {Column::Number("true_rotation_deg"), [](R r) { return r.rotation_deg; }},
        {Column::Number("true_baseline"), [](R r) { return r.baseline; }},

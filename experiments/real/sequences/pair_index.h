@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,8 @@ namespace rcme {
 struct PairRow {
   std::string pair_id, scene, image1, image2;
   std::string reason;  // "kept", or why it was dropped
-  int num_matches = 0, num_inliers = 0;
+  int num_matches = 0;
+  std::optional<int> num_inliers = std::nullopt;  // of the gate's model; none if it fitted none
   // NaN: not known, here and below.
   double time1_s = std::numeric_limits<double>::quiet_NaN(), time2_s = time1_s;
   double parallax_deg = time1_s;

@@ -1,9 +1,12 @@
 #include "experiments/real/sequences/timed_frames.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <optional>
 #include <set>
+#include <vector>
 
 namespace rcme {
 namespace {
@@ -37,18 +40,29 @@ TimedPoses ReadTimedPoses(const TimedFiles& files) {
   return truth;
 }
 
+// What a reader should know about the true poses of the frames, or empty.
+std::string DescribeTruth(const TimedFiles& files, const TimedPoses& truth,
+                          const std::vector<Frame>& frames) {
+  const std::string file = files.truth.string();
+  if (!fs::exists(files.truth)) return fmt::format("no truth: {} is not there", file);
+  std::vector<std::string> notes;
+  if (!truth.ambiguous_s.empty())
+    notes.push_back(fmt::format("{}: {} times stand there more than once; their poses are not used", file,
+                                truth.ambiguous_s.size()));
+  const auto num_without = std::ranges::count_if(frames, [](const Frame& f) { return !f.pose_true; });
+  if (num_without > 0)
+    notes.push_back(
+        fmt::format("{}: {} of {} images have no true pose: their times are before the first pose, after the "
+                    "last, or between two poses more than {:g} s apart",
+                    file, num_without, frames.size(), files.longest_gap_s));
+  return fmt::format("{}", fmt::join(notes, "; "));
+}
+
 }  // namespace
 
 void AddTimedFrames(const DatasetOptions& options, const TimedFiles& files, Sequence* sequence) {
   TimedPoses truth;
-  if (fs::exists(files.truth)) {
-    truth = ReadTimedPoses(files);
-    if (!truth.ambiguous_s.empty())
-      sequence->note = fmt::format("{}: {} times stand there more than once; their poses are not used",
-                                   files.truth.string(), truth.ambiguous_s.size());
-  } else {
-    sequence->note = fmt::format("no truth: {} is not there", files.truth.string());
-  }
+  if (fs::exists(files.truth)) truth = ReadTimedPoses(files);
   for (TableFile table(files.images, files.images_origin, files.separator, TableFile::kMaxImages);
        table.Next();) {
     table.Need(2, "timestamp, filename");
@@ -58,6 +72,7 @@ void AddTimedFrames(const DatasetOptions& options, const TimedFiles& files, Sequ
                                 truth.trajectory.At(time_s, files.longest_gap_s)});
   }
   FinishSequence(options, files.images, sequence);
+  sequence->note = DescribeTruth(files, truth, sequence->frames);
 }
 
 }  // namespace rcme

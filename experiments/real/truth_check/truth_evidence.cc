@@ -266,9 +266,10 @@ FrontEndEvidence WeighTruth(const MotionProblem& problem, const GivenTruth& trut
     const TruthContest contest = CompareWithTruth(halves[1 - found_in], truth, bounds, *motion);
     evidence.counts.AddCounts(contest);
     evidence.p_value = std::max(evidence.p_value, contest.PValue());
-    const bool is_against = IsBeyond(bounds, truth, *motion) && contest.SpeaksAgainstTruth(level);
-    num_against += is_against;
-    num_for += !is_against && contest.SpeaksForTruth();
+    const bool is_beyond = IsBeyond(bounds, truth, *motion);
+    num_against += is_beyond && contest.SpeaksAgainstTruth(level);
+    // A wrong truth explains more matches than chance too, but another motion explains more than it.
+    num_for += contest.SpeaksForTruth() && !(is_beyond && contest.p_matches <= level);
   }
   evidence.verdict = num_against == 2 ? TruthVerdict::kInDoubt
                      : num_for > 0    ? TruthVerdict::kHolds

@@ -26,7 +26,7 @@
 //       the truth explain more than the motion (each p > .01, over the blocks by Bonferroni). A second
 //       motion of most of the image thus casts no doubt on the camera's motion, which the rest follows.
 //
-// A half speaks for the truth if it does not speak against it, and the truth explains at least 10 matches
+// A half speaks for the truth if (a) and (b) are not both true, and the truth explains at least 10 matches
 // and more than chance does (as in (e), of all matches). A front end doubts the truth if both halves speak
 // against it. Otherwise the truth holds for this front end if a half speaks for it, and if none does, the
 // front end is silent. A pair is in doubt if a front end doubts its truth and it holds for none.

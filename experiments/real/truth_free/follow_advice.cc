@@ -127,10 +127,10 @@ class Follower {
     if (follow({{"covariance", "robust"}, {"covariance_factor", value}},
                "covariance=robust, covariance_factor=" + value))
       return;
-    advice_.push_back(
-        fmt::format("no covariance_factor makes them hold{} ({}): the tests differ, as with wrong matches or "
-                    "faults of the camera",
-                    Misfit(after) < before ? ", though it is better" : "", tried));
+    advice_.push_back(fmt::format(
+        "covariance_factor={} does not make them hold{} ({}): wrong matches or faults of the camera "
+        "may be left",
+        value, Misfit(after) < before ? ", though it is better" : "", tried));
   }
 
   const AdvisedEstimator& estimator_;

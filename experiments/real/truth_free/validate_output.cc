@@ -190,7 +190,7 @@ SetRow MakeCorrelationRow(const SetReport& set, const DistanceCorrelation& c) {
   SetRow row{&set, fmt::format("correlation_{:g}_to_{:g}_px", c.from_px, c.to_px),
              "",   CorrelationVerdict(c),
              "",   std::llround(c.num_products)};
-  row.interval = c.difference;
+  row.interval = {std::max(c.difference.lower, -2.0), std::min(c.difference.upper, 2.0)};
   if (!IsKnown(c)) return row;
   row.value = c.correlation - c.twin_correlation;
   row.heading = fmt::format("residuals {:g} to {:g} px apart", c.from_px, c.to_px);

@@ -42,7 +42,7 @@ TEST(ColmapCamera, ParametersOfEveryModel) {
       EXPECT_EQ(lens.k[i], i < known.k.size() ? known.k[i] : 0.0) << known.name << " " << i;
   }
   EXPECT_TRUE(
-      ThrowsInputError([] { NumColmapParameters(7, "db: camera 3"); }, {"db: camera 3: model 7 is not"}));
+      ThrowsInputError([] { NumColmapParameters(7, "db: camera 3"); }, {"db: camera 3: model '7' is not"}));
 }
 
 // In words the same, without COLMAP's half pixel, with and without the size.

@@ -489,6 +489,11 @@ TEST_F(MatchFileTest, BadLenses) {
   };
   EXPECT_TRUE(
       Refuses(with("MAGIC 640 480 600 600 319.5 239.5"), {":1: camera1: ", "'MAGIC' is not supported"}));
+  EXPECT_TRUE(Refuses(with("opencv 640 480 600 600 319.5 239.5 0 0 0 0"), {"did you mean 'OPENCV'?"}));
+  EXPECT_TRUE(Refuses(with("radtan 640 480 600 600 319.5 239.5 0 0 0 0"),
+                      {"FULL_OPENCV, SIMPLE_RADIAL_FISHEYE", "radtan and plumb_bob are OPENCV"}));
+  EXPECT_TRUE(Refuses("# camera1: PINHOLE 640 480 600 600 319.5 239.5\n1,2,3,4\n",
+                      {"'# camera2: ...' is missing; add it"}));
   EXPECT_TRUE(
       Refuses(with("OPENCV 640 480 600 600 319.5 239.5"), {":1: camera1: ", "4 parameters; OPENCV has 8"}));
   EXPECT_TRUE(
@@ -548,6 +553,7 @@ TEST_F(MatchFileTest, RowsOfMoreColumnsThanStated) {
   EXPECT_THAT(named[0].what, testing::HasSubstr("more columns than there are names"));
   EXPECT_TRUE(Refuses(MatchHeader() + "x1,y1,x2,y2,x1\n1,2,3,4,5\n", {"column x1 stands twice"}));
   EXPECT_TRUE(Refuses(MatchHeader() + "1,2,3\n", {"3 columns; x1,y1,x2,y2 are needed"}));
+  EXPECT_TRUE(Refuses("PK\x03\x04 and bytes\n", {"is a zip or npz archive", "rcme pairs --layout npz"}));
 }
 
 TEST_F(MatchFileTest, WriteRoundTrip) {

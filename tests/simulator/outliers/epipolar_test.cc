@@ -164,12 +164,12 @@ TEST(EpipolarOutliers, WithDefectsOfTheCamerasAreAsRightMatchesAre) {
       int num_far = 0;
       for (size_t i = 0; i < 200; ++i) {
         EXPECT_LT(std::abs(TripleProductOfRows(scene, defects, wrong.matches[i])), 1e-6) << motion << i;
-        num_far += std::abs(TripleProductOfRows(scene, defects, ideal.matches[i])) > 1e-5;
         if (i < 100) {
           EXPECT_TRUE(wrong.is_undetectable[i]);
+          num_far += std::abs(TripleProductOfRows(scene, defects, ideal.matches[i])) > 1e-5;
         }
       }
-      EXPECT_GT(num_far, 100) << "no power: " << motion;
+      EXPECT_GT(num_far, 50) << "no power: " << motion;
     }
   }
 }

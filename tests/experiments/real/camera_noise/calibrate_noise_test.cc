@@ -423,7 +423,7 @@ TEST(CalibrateNoise, LeavesOtherCamerasOutAndRefusesTooFewPairs) {
   EXPECT_THAT(result.json, HasSubstr("rcme noise calibration 1"));
   EXPECT_THAT(RenderResult(result, "csv"), HasSubstr("\nsigma_px,0."));
   taken.set.pairs.resize(7);
-  EXPECT_TRUE(ThrowsInputError([&] { CalibrateTaken(taken, 5); }, {"4 pairs of 7", "takes 5"}));
+  EXPECT_TRUE(ThrowsInputError([&] { CalibrateTaken(taken, 5); }, {"4 of 7 pairs", "takes 5"}));
 }
 
 }  // namespace

@@ -272,7 +272,7 @@ TEST_F(Colmap, ABrokenDatabaseIsNamedByPath) {
   EXPECT_TRUE(Refuses("DELETE FROM cameras", {"image 1: its camera 1 is not in the database"}));
   EXPECT_TRUE(
       Refuses("DELETE FROM keypoints WHERE image_id = 3", {"keypoints of image 3: are not in the database"}));
-  EXPECT_TRUE(Refuses("UPDATE cameras SET model = 10", {"camera 1: model 10 is not supported"}));
+  EXPECT_TRUE(Refuses("UPDATE cameras SET model = 10", {"camera 1: model '10' is not supported"}));
   EXPECT_TRUE(
       Refuses("UPDATE cameras SET params = x'00'", {"camera 1: params holds 1 bytes; 32 are needed"}));
   EXPECT_TRUE(Refuses("UPDATE cameras SET width = 0", {"camera 1: an image of 0 x 240 px"}));

@@ -1,11 +1,13 @@
 // A folder of match files as a data set: what it says of its directions, and what is written of its motions.
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <chrono>
+#include <filesystem>
 
 #include "experiments/data/match_folder.h"
 #include "experiments/real/sequences/listed_pairs.h"
 #include "experiments/real/sequences/make_pairs.h"
+#include "tests/test_support/expect_input_error.h"
 #include "tests/test_support/temp_folder.h"
 #include "tests/test_support/two_camera_scene.h"
 
@@ -54,7 +56,33 @@ TEST(MakeListedPairs, StatesTheTrueRotation) {
   ASSERT_EQ(journal.rows().size(), 2u);
   EXPECT_NEAR(journal.rows()[0].rotation_deg, 5.7295780, 1e-4);
   EXPECT_NEAR(journal.rows()[1].rotation_deg, 11.459156, 1e-4);
-  EXPECT_EQ(journal.rows()[0].num_inliers, 0);  // nothing was judged: all are kept
+  EXPECT_FALSE(journal.rows()[0].num_inliers.has_value());  // nothing was judged: all are kept
+}
+
+// The length of a true motion is kept, and a source that changed after its pair was made is named.
+TEST(MakeListedPairs, KeepsBaselinesAndNoticesNewerSources) {
+  const TempFolder folder, out;
+  WriteTwoPairs(folder);
+  MatchFile file = ReadMatchFile(folder.Path("pair1.csv"));
+  file.baseline = 0.83;
+  WriteMatchFile(file, folder.Path("pair1.csv"));
+  DatasetOptions dataset;
+  dataset.folder = folder.path();
+  PairsOptions options;
+  options.out = out.Path("pairs");
+  options.gate.criterion.reset();
+  const auto make = [&] {
+    PairJournal journal(options.out, "test");
+    MakeListedPairs(*OpenMatchFiles(dataset), options, &journal);
+    return journal.rows();
+  };
+  EXPECT_EQ(make()[0].baseline, 0.83);
+  EXPECT_EQ(ReadMatchFile(options.out + "/pair1.csv").baseline, 0.83);
+  EXPECT_NO_THROW(make());
+  std::filesystem::last_write_time(
+      folder.Path("pair2.csv"),
+      std::filesystem::last_write_time(options.out + "/pair2.csv") + std::chrono::seconds(2));
+  EXPECT_TRUE(ThrowsInputError(make, {"pair2.csv: is newer than", "give another --out"}));
 }
 
 }  // namespace

@@ -70,6 +70,23 @@ TEST(WeighTruth, AWrongTruthIsInDoubt) {
   }
 }
 
+// The truth of the inverse motion explains more matches than chance does, but another motion still more.
+TEST(WeighTruth, AnInverseTruthDoesNotHold) {
+  const std::unique_ptr<MotionEstimator> estimator = MakeEstimator("rcme_calibrated");
+  for (const char* motion : {"general", "orbit", "forward"}) {
+    const std::shared_ptr<const SimulatedData> data =
+        MakeSimulatedData(Family("uniform_volume", "0.3", {{"motion", motion}, {"num_matches", "200"}}));
+    int num_holds = 0;
+    for (std::uint32_t trial = 0; trial < 20; ++trial) {
+      const TrialData pair = data->Make({1, 0, trial, 0});
+      const RelativePose truth = *pair.truth.cam2_from_cam1_true;
+      const GivenTruth inverse{{truth.R.transpose(), -(truth.R.transpose() * truth.t)}, {}};
+      num_holds += WeighTruth(pair.problem, inverse, {}, *estimator, 1).verdict == TruthVerdict::kHolds;
+    }
+    EXPECT_LE(num_holds, 1) << motion;
+  }
+}
+
 // Within the bounds no motion is a failure: nothing is in doubt. What a file states narrows the reach.
 TEST(WeighTruth, HowFarOffATruthHasToBeDependsOnWhatIsKnownOfIt) {
   const Settings room = Family("uniform_volume", "0.3");
