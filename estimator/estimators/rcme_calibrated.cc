@@ -324,6 +324,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     } else if (options_.covariance == CovarianceKind::kRobust) {
       RobustCovarianceOptions robust = options_.robust;
       robust.calibration = options_.calibration;
+      robust.factor = 1.0;  // below, of the greater of both
       const Mode& answer = modes[weights.answer].mode;
       const Matrix5d own = prior.motion ? OwnCovarianceOfMatches(matches, prior, answer) : verdict.pose_cov;
       MakeCovarianceRobust(problem, robust, own, &estimate);
@@ -332,7 +333,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
         const double ratio =
             is_checked ? estimate.pose_cov.llt().solve(CovarianceFactor(check) * own).trace() / 5.0 : 1.0;
         estimate.pose_cov = BoundByUniformMotion(CovarianceWithPrior(
-            (ratio > 1.0 && std::isfinite(ratio) ? ratio : 1.0) * estimate.pose_cov, answer, prior));
+            options_.robust.factor * (ratio > 1.0 && std::isfinite(ratio) ? ratio : 1.0) * estimate.pose_cov,
+            answer, prior));
       }
     }
     if (posterior != nullptr)

@@ -69,6 +69,21 @@ TEST_F(RcmeCalibratedOf, RobustCovarianceIsNoSmallerThanItsOwn) {
   }
 }
 
+// Whether the residuals' covariance or the checked one is the greater.
+TEST_F(RcmeCalibratedOf, FactorScalesTheRobustCovariance) {
+  CalibratedOptions robust, scaled;
+  robust.covariance = scaled.covariance = CovarianceKind::kRobust;
+  const Scene scene = TwoCameraScene(300, 1);
+  const Observation seen = ObserveTwoCameraScene(scene, 0.5, 0.2, 1);
+  const MotionProblem problem{seen.matches, scene.camera1, scene.camera2, 0.5};
+  const Matrix5d once = RunOn(problem, 1, robust).pose_cov;
+  for (const double factor : {0.1, 2.5}) {
+    scaled.robust.factor = factor;
+    // Not exactly: a uniform law of motions bounds both.
+    EXPECT_NEAR(once.llt().solve(RunOn(problem, 1, scaled).pose_cov).trace() / 5.0, factor, 1e-3 * factor);
+  }
+}
+
 TEST_F(RcmeCalibratedOf, FindsTheMotionAndItsMatches) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const Scene scene = TwoCameraScene(200, trial);
