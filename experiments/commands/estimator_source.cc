@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "estimator/conform/conform_estimator.h"
+#include "estimator/estimator_registry.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
@@ -38,13 +40,25 @@ void AddEstimatorOptions(CLI::App* command, CLI::Option* name, EstimatorChoice* 
   AddProcessOption(command, &choice->allow_process);
 }
 
+namespace {
+
+// The estimator of a name: a built-in one, or an installed file by its name or its label.
+EstimatorSpec NamedEstimator(const std::string& name) {
+  if (IsNameOfEstimatorFile(name)) return LoadEstimatorFile(name);
+  const bool is_built_in = std::ranges::count(EstimatorRegistry(), name, &EstimatorEntry::name) > 0;
+  if (!is_built_in) {
+    if (const std::optional<std::string> file = FindInstalledFile(name)) return LoadEstimatorFile(*file);
+  }
+  RequireEstimatorName(name);
+  return DefaultEstimator(name);
+}
+
+}  // namespace
+
 EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
-  const bool is_by_name = !choice.conform && !choice.file && !IsNameOfEstimatorFile(choice.name);
-  if (is_by_name) RequireEstimatorName(choice.name);
   EstimatorSpec spec = choice.conform ? DefaultEstimator(kConformEstimator)
                        : choice.file  ? LoadEstimatorFile(*choice.file)
-                       : is_by_name   ? DefaultEstimator(choice.name)
-                                      : LoadEstimatorFile(choice.name);
+                                      : NamedEstimator(choice.name);
   Settings options;
   if (choice.conform) options.emplace_back("file", *choice.conform);
   for (const std::string& text : choice.overrides) {

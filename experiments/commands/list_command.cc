@@ -35,15 +35,6 @@ Rows ListEstimators() {
   return rows;
 }
 
-// Which estimators the build lacks and how to get them; empty if none.
-std::string DescribeLeftOut() {
-  const bool has_poselib = std::ranges::count(EstimatorRegistry(), "poselib", &EstimatorEntry::name) > 0;
-  return has_poselib ? ""
-                     : "Left out: poselib, as PoseLib was not found when rcme was built. Install PoseLib\n"
-                       "(https://github.com/PoseLib/PoseLib), then configure the build again with\n"
-                       "-DCMAKE_PREFIX_PATH=FOLDER_OF_POSELIB.\n";
-}
-
 Rows ListOptions() {
   Rows rows = {{"estimator", "option", "default", "unit", "allowed", "what it is"}};
   for (const EstimatorEntry& entry : EstimatorRegistry()) {
@@ -253,7 +244,8 @@ void AddListCommand(CLI::App& app) {
         continue;
       }
       fmt::print("{}\n", *format == "table" ? FormatNarrowColumns(list.make()) : FormatMarkdown(list.make()));
-      if (*format == "table" && list.name == "estimators") fmt::print("{}", DescribeLeftOut());
+      if (*format == "table" && list.name == "estimators")
+        fmt::print("{}", FormatParagraph(DescribeLeftOut()));
     }
     if (*format == "json") fmt::print("{}", JsonText(kListFormat, json));
   });

@@ -62,7 +62,16 @@ std::string ReadLabel(const Place& place, const YAML::Node& node) {
   return label;
 }
 
+std::string DescribeLeftOut() {
+  if (std::ranges::count(EstimatorRegistry(), "poselib", &EstimatorEntry::name) > 0) return {};
+  return "PoseLib was not found when rcme was built, so poselib and poselib_gravity are left out: install it "
+         "(https://github.com/PoseLib/PoseLib), then configure the build again with "
+         "-DCMAKE_PREFIX_PATH=FOLDER_OF_POSELIB";
+}
+
 void RequireEstimatorName(const std::string& name) {
+  if (name.starts_with("poselib") && !DescribeLeftOut().empty())
+    throw InputError(fmt::format("unknown estimator {}: {}", Quoted(name), DescribeLeftOut()));
   if (IsNameOfEstimatorFile(name)) {
     throw InputError(fmt::format("unknown estimator {0}; {0} is an estimator file: write {{file: {1}}}",
                                  Quoted(name), name));

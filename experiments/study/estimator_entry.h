@@ -20,6 +20,9 @@ std::string ReadLabel(const Place& place, const YAML::Node& node);
 // estimator files.
 void RequireEstimatorName(const std::string& name);
 
+// Says which estimators this build lacks and how to get them: a sentence, or empty.
+std::string DescribeLeftOut();
+
 // Returns whether only a file that comes with the program has this name, and no estimator.
 bool IsNameOfEstimatorFile(const std::string& name);
 

@@ -4,6 +4,7 @@
 #include "experiments/core/files/shared_files.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
+#include "parameters/input_error.h"
 
 namespace rcme {
 namespace {
@@ -26,6 +27,16 @@ EstimatorSpec LoadEstimatorFile(const std::string& name) {
 
 EstimatorSpec ParseEstimatorFile(const std::string& yaml, const std::string& path) {
   return ReadEstimatorEntry(Place(path), ParseYaml(yaml, path, EstimatorFileKind()), "estimator");
+}
+
+std::optional<std::string> FindInstalledFile(const std::string& label) {
+  for (const std::string& name : NamesIn(SharedFolder::kEstimators)) {
+    try {
+      if (LoadEstimatorFile(name).label == label) return name;
+    } catch (const InputError&) {  // of an estimator that this build lacks
+    }
+  }
+  return std::nullopt;
 }
 
 EstimatorSpec LoadConformedEstimator(const std::string& path) {

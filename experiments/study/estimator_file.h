@@ -6,6 +6,7 @@
 //   provenance: {study: tune_mu_lambda, seed: 1, verified: "..."}   # any keys and texts, kept for people
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,6 +24,10 @@ EstimatorSpec LoadEstimatorFile(const std::string& name);
 
 // The same from text; messages call it `path`.
 EstimatorSpec ParseEstimatorFile(const std::string& yaml, const std::string& path);
+
+// Returns the name of the installed estimator file with this label, as tables of results print it: nullopt if
+// there is none.
+std::optional<std::string> FindInstalledFile(const std::string& label);
 
 // Returns the estimator that a file of `rcme conform` wraps. A command of it counts as one from that file
 // (command_permission.h). Throws InputError as ReadConformFile does.
