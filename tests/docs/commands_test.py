@@ -41,7 +41,6 @@ ELSEWHERE = {
 
 # Places for the reader's own things, and how a command of minutes becomes one of a second: (pattern, what it becomes).
 SHORTER = [
-    (r"^\$rcme", "rcme"),
     (r"\bSTUDY --until ci=0.01\b", "STUDY --set outlier_ratio=0.1 --until ci=0.3"),
     (r"^rcme (tune|transfer) (STUDY|studies/tune_acceptance.yaml)",
      r"rcme \1 studies/tune_acceptance.yaml --set outlier_ratio=0.1 --set num_matches=60"),

@@ -7,7 +7,7 @@ FENCE = re.compile(r"^\s*```(\w*)\s*$")
 FILE_BEFORE = re.compile(r"`([\w./-]+)`:\s*$")  # "..., in `first.yaml`:" before a block: the file it shows
 GENERATED = re.compile(r"<!-- begin generated: .*?<!-- end generated: ", re.DOTALL)  # of committed results, not of the commands beside it
 COMMENT = re.compile(r"\s+# .*$|\s{2,}#.*$")
-FIRST_WORDS = ("rcme", "$rcme", "build/release/bin/rcme", "scripts/", "python3", "pip", "cmake", "sbatch", "sacct", "parallel",
+FIRST_WORDS = ("rcme", "build/release/bin/rcme", "scripts/", "python3", "pip", "cmake", "sbatch", "sacct", "parallel",
                "kubectl", "mkdir ", "PYTHONPATH=")
 
 
@@ -75,6 +75,6 @@ def contents(text):
                 line = line[:-1].rstrip() + " " + lines[number].strip()
             number += 1
             line = COMMENT.sub("", line).strip()
-            if line.startswith(FIRST_WORDS) and not line.startswith("rcme="):
+            if line.startswith(FIRST_WORDS):
                 shown.append(Command(begin + first, line))
     return shown
