@@ -29,6 +29,7 @@
 #include "python/stoppable.h"
 #include "python/study_source.h"
 #include "stats/constants.h"
+#include "stats/fnv1a.h"
 
 namespace rcme {
 namespace {
@@ -199,17 +200,34 @@ std::vector<FailureBounds> MakeBounds(const AnglePairs& pairs) {
   return bounds;
 }
 
-// {R, t} of random motions of the posterior, n x 3 x 3 and n x 3; NaN: none of its motions. None if there is
-// no posterior.
-py::object DrawMotions(const std::optional<MotionPosterior>& posterior, int num_draws, std::uint64_t seed) {
-  if (!posterior) return py::none();
-  RandomStream rng = StreamFor({seed, 0, 0, 0}, StreamPurpose::kMonteCarlo);
-  Array R({num_draws, 3, 3}), t({num_draws, 3});
+// The stream of a pair's random motions: those of different pairs do not depend on each other.
+RandomStream StreamOfDraws(const MotionProblem& problem, std::uint64_t seed) {
+  Fnv1a hash;
+  for (const Correspondence& match : problem.matches)
+    for (const Eigen::Vector2d& x_px : {match.x1_px, match.x2_px})
+      for (const double coordinate : x_px) hash.Add(coordinate);
+  return StreamFor({seed, hash.value() >> 16, 0, 0}, StreamPurpose::kMonteCarlo);
+}
+
+// Random motions of the posterior; NaN: none of its motions.
+std::vector<RelativePose> DrawMotions(const MotionPosterior& posterior, int num_draws, RandomStream rng) {
   const RelativePose none{Eigen::Matrix3d::Constant(kNaN), Eigen::Vector3d::Constant(kNaN)};
-  for (py::ssize_t i = 0; i < num_draws; ++i) {
-    const RelativePose motion = Draw(*posterior, rng).value_or(none);
-    SetRow(motion.R, i, &R);
-    SetRow(motion.t, i, &t);
+  std::vector<RelativePose> motions(static_cast<size_t>(num_draws));
+  RunStoppable([&] {
+    for (RelativePose& motion : motions) {
+      if (IsStopRequested()) throw Stopped("stopped");
+      motion = Draw(posterior, rng).value_or(none);
+    }
+  });
+  return motions;
+}
+
+// {R, t}: n x 3 x 3 and n x 3.
+py::dict DictOfMotions(const std::vector<RelativePose>& motions) {
+  Array R({motions.size(), size_t{3}, size_t{3}}), t({motions.size(), size_t{3}});
+  for (size_t i = 0; i < motions.size(); ++i) {
+    SetRow(motions[i].R, static_cast<py::ssize_t>(i), &R);
+    SetRow(motions[i].t, static_cast<py::ssize_t>(i), &t);
   }
   return py::dict("R"_a = R, "t"_a = t);
 }
@@ -223,7 +241,8 @@ py::dict EstimatePair(const Array& x1, const Array& x2, const Lens& camera1, con
   UndistortedProblem pair = MakeProblem(x1, x2, camera1, camera2, sigma_px, std::move(noise_scale));
   pair.problem.prior = prior;
   if (num_draws > 0 && FindWeightInspection(*chosen.estimator) == nullptr)
-    throw InputError("draws: only rcme_calibrated states a distribution of the motion");
+    throw InputError(
+        "draws: only rcme_calibrated, without model_choice or conform, states a distribution of the motion");
   const PosteriorRequest request{MakeBounds(bounds), num_draws > 0};
   EstimateForBounds found;
   {
@@ -233,7 +252,10 @@ py::dict EstimatePair(const Array& x1, const Array& x2, const Lens& camera1, con
   py::dict dict = MakeDict(found.estimate);
   dict["protection_levels"] = LevelsAt(found.estimate, integrity_risk);
   dict["p_failure_for_bounds"] = MakeProbabilityList(found.probabilities);
-  dict["draws"] = DrawMotions(found.posterior, num_draws, seed);
+  dict["draws"] = py::none();
+  if (found.posterior)
+    dict["draws"] =
+        DictOfMotions(DrawMotions(*found.posterior, num_draws, StreamOfDraws(pair.problem, seed)));
   dict["estimator"] = chosen.spec.label;
   return dict;
 }

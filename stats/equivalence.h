@@ -15,9 +15,9 @@ Interval Around(double nominal, double margin);
 
 // kHolds if the whole interval lies within `allowed` (an end may be infinite), kDoesNotHold if it lies wholly
 // outside, else kUndecided; also kUndecided if an end is NaN. With a two-sided interval of confidence 1 -
-// alpha each wrong verdict has probability at most alpha / 2: "holds" for a value that is not allowed, and
-// "does not hold" for an allowed one. With a confidence sequence the bound is alpha, also for a study that
-// looks after every trial and stops at the first verdict.
+// alpha "holds" for a value that is not allowed has probability at most alpha / 2, "does not hold" for an
+// allowed one alpha (alpha / 2 if `allowed` is open on one side). With a confidence sequence both have at
+// most alpha, also for a study that looks after every trial and stops at the first verdict.
 Verdict DecideEquivalence(const Interval& interval, const Interval& allowed);
 
 // The approximate number of trials that decide a binomial rate with probability .9, the power, if `rate` is

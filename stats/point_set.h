@@ -10,7 +10,8 @@ namespace rcme {
 
 enum class PointSet {
   // Sobol's (1967) sequence with the direction numbers of Joe & Kuo (2008), by Boost.Random. Every coordinate
-  // is combined (exclusive or) with random bits of its own, Owen's (1995) digital shift. Any 2^k points from
+  // is combined (exclusive or) with random bits of its own, a digital shift (L'Ecuyer & Lemieux 2002). Any
+  // 2^k points from
   // a multiple of 2^k on have one in each 2^-k of an axis, before and after the shift, and each point is
   // uniform. More points continue the sequence.
   kSobol,

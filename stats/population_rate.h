@@ -59,9 +59,9 @@ enum class ConditionWeights {
 struct PopulationRate {
   double value = 0.0;  // p; NaN without trials
   Interval interval;   // of the population's rate; [0, 1] below two conditions
-  // The interval of the mean rate of exactly these conditions with infinitely many trials each: exact
-  // (Clopper & Pearson 1934) for 1 / sum a_i^2 / n_i trials. Conservative, since different rates scatter less
-  // than equal ones (Hoeffding 1956).
+  // Of the mean rate of exactly these conditions with infinitely many trials each: exact (Clopper & Pearson
+  // 1934) for 1 / sum a_i^2 / n_i trials. By trials, or with equal n_i, conservative, since different rates
+  // scatter less than equal ones (Hoeffding 1956); too short if a condition with a few trials weighs much.
   Interval of_these_conditions;
   // By analysis of variance; may be below zero. NaN if nothing varies, or if each condition has one trial.
   double intraclass_correlation = 0.0;

@@ -46,8 +46,8 @@ struct MotionPosterior {
   std::vector<MotionComponent> components;
   std::vector<DirectionCell> cells;  // about the answer's direction; empty unless that is weak
   double weight_of_none = 1.0;
-  // Factor of the answer's standard deviations, at most 1. With cells, it multiplies the rotation's standard
-  // deviations and the weights beyond the bound.
+  // Factor of the answer's standard deviations, at most 1. With cells, it multiplies the rotations' means and
+  // standard deviations and the weights beyond the bound.
   double narrowed = 1.0;
 };
 
@@ -64,8 +64,8 @@ struct MotionDistance {
 };
 // The distances from a motion to the posterior, as weighted points. The points are the same in every call,
 // and reproduce the stated probability at the default bounds to rounding. The answer has 512 evenly spread
-// directions by 17 radii, which are quantiles, finest in the tail. Cells have 6,000 points in all, in
-// proportion to their weights. Compared with random draws the points err by some thousandths. `none` has no
+// directions by 17 radii, which are quantiles, finest in the tail. Cells have 6,000 points in proportion to
+// their weights, and four each. Compared with random draws the points err by some thousandths. `none` has no
 // point.
 class PosteriorDistances {
  public:

@@ -1,7 +1,7 @@
 // The covariance of a least-squares motion whose residuals are correlated within groups of matches.
 //
-// Let a motion minimise 1/2 sum r_i^2 over its matches. If the errors of a group c of them vanish, it moves
-// by (A - A_c)^-1 s_c to first order, with
+// Let a motion minimise 1/2 sum r_i^2 over its matches. If a group c of them is left out, it moves by
+// (A - A_c)^-1 s_c to first order, with
 //
 //   A = sum J_i' J_i    information of all matches, 5x5; A_c of the group; J_i = g_p / (sigma |J|), 1x5
 //   s_c = sum J_i' r_i  score of the group, 5x1; r_i = g / (sigma |J|)

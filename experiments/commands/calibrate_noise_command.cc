@@ -6,6 +6,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/scene_choice.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/match_folder.h"
@@ -25,16 +26,10 @@ struct CalibrateNoiseArguments {
 
 // The pairs of all scenes of a folder, or of one.
 PairSet ReadPairsOfCamera(const CalibrateNoiseArguments& arguments) {
-  PairSet all{arguments.scene, {}};
-  std::string names;
-  for (PairSet& set : PairSetsOfFolder(arguments.pairs, arguments.sigma_px)) {
-    names += (names.empty() ? "" : ", ") + set.name;
-    if (!arguments.scene.empty() && set.name != arguments.scene) continue;
-    std::ranges::move(set.pairs, std::back_inserter(all.pairs));
-  }
-  if (all.pairs.empty())
-    throw InputError(fmt::format("--scene: there is no scene '{}'; give one of: {}", arguments.scene, names));
-  if (all.name.empty()) all.name = names;
+  std::vector<PairSet> sets = PairSetsOfFolder(arguments.pairs, arguments.sigma_px);
+  const std::string names = KeepScene(arguments.scene, &PairSet::name, &sets);
+  PairSet all{arguments.scene.empty() ? names : arguments.scene, {}};
+  for (PairSet& set : sets) std::ranges::move(set.pairs, std::back_inserter(all.pairs));
   return all;
 }
 

@@ -7,6 +7,7 @@
 #include "estimator/conform/conform_estimator.h"
 #include "estimator/estimator_registry.h"
 #include "experiments/commands/common_options.h"
+#include "experiments/core/text/key_value.h"
 #include "experiments/study/command_permission.h"
 #include "experiments/study/estimator_entry.h"
 #include "experiments/study/estimator_file.h"
@@ -62,9 +63,8 @@ EstimatorSpec ChosenEstimator(const EstimatorChoice& choice) {
   Settings options;
   if (choice.conform) options.emplace_back("file", *choice.conform);
   for (const std::string& text : choice.overrides) {
-    const size_t equals = std::min(text.find('='), text.size());
-    const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
-    options.emplace_back(text.substr(0, equals), value);
+    const KeyValue given = SplitKeyValue(text);
+    options.emplace_back(given.key, given.value);
   }
   SetOwnOptions(&spec, options);
   std::vector<EstimatorSpec> chosen = {std::move(spec)};

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "experiments/commands/common_options.h"
+#include "experiments/core/text/key_value.h"
 #include "experiments/study/absent_python.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/study/study_file.h"
@@ -48,11 +49,11 @@ Study LoadChangedStudy(const std::string& path, const StudyChanges& changes) {
   Study study = LoadStudy(path);
   for (const std::string& file : changes.estimators) AddEstimatorOfFile(file, &study);
   for (const std::string& text : changes.overrides) {
-    const size_t equals = text.find('=');
-    if (equals == std::string::npos || equals == 0) {
+    const auto [key, value, has_equals] = SplitKeyValue(text);
+    if (!has_equals || key.empty()) {
       throw InputError(fmt::format("--set: '{}' is not allowed; give key=value", text));
     }
-    Override(&study, text.substr(0, equals), text.substr(equals + 1));
+    Override(&study, key, value);
   }
   if (changes.seed >= 0) study.seed = static_cast<std::uint64_t>(changes.seed);
   if (changes.allow_process) AllowAndSay(&study.estimators);

@@ -7,6 +7,7 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/text/key_value.h"
 #include "experiments/core/text/message.h"
 #include "experiments/statistics/coverage_strata_output.h"
 #include "experiments/statistics/forecast_output.h"
@@ -54,10 +55,10 @@ void PrintStrata(const Arguments& arguments) {
 Settings ParseLabels(const std::vector<std::string>& texts) {
   Settings labels;
   for (const std::string& text : texts) {
-    const size_t equals = text.find('=');
-    if (equals == 0 || equals == std::string::npos)
+    const auto [name, label, has_equals] = SplitKeyValue(text);
+    if (name.empty() || !has_equals)
       throw InputError(fmt::format("--labels: {} is not allowed; give name=text", Quoted(text)));
-    labels.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+    labels.emplace_back(name, label);
   }
   return labels;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "experiments/commands/common_options.h"
+#include "experiments/core/text/key_value.h"
 #include "experiments/data/make_data.h"
 #include "experiments/study/study_file.h"
 #include "experiments/study/tuning_file.h"
@@ -46,9 +47,8 @@ StudyPlan MakeTuningPlan(const TuningArguments& arguments) {
         arguments.study));
   }
   for (const std::string& text : arguments.overrides) {
-    const size_t equals = std::min(text.find('='), text.size());
-    const std::string value = equals < text.size() ? text.substr(equals + 1) : "";
-    FindParameter(Parameters(*study.tuning), text.substr(0, equals)).SetFromText(value);
+    const KeyValue given = SplitKeyValue(text);
+    FindParameter(Parameters(*study.tuning), given.key).SetFromText(given.value);
   }
   CheckCombinations(*study.tuning, study.estimators);  // of another estimator than in the file
   const bool is_simulated = FindSetting(study.data, "scene") != kMatchFilesScene;

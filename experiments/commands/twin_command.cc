@@ -8,6 +8,7 @@
 #include "experiments/commands/commands.h"
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/scene_choice.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/core/files/file_name.h"
 #include "experiments/core/files/file_output.h"
@@ -118,14 +119,7 @@ void RunTwin(const TwinArguments& arguments) {
                         AddImageNames(file, &images);
                         if (!arguments.sigma_px) sigmas.Add(file);
                       });
-  std::string names;
-  for (const auto& [scene, data] : scenes) names += (names.empty() ? "" : ", ") + scene;
-  if (!arguments.scene.empty()) {
-    std::erase_if(scenes, [&](const auto& scene) { return scene.first != arguments.scene; });
-    if (scenes.empty())
-      throw InputError(
-          fmt::format("--scene: there is no scene '{}'; give one of: {}", arguments.scene, names));
-  }
+  const std::string names = KeepScene(arguments.scene, &Scenes::value_type::first, &scenes);
   CheckIsNoInput(arguments.out, {arguments.pairs});
   const std::filesystem::path out(arguments.out);
   const bool is_one_study = out.extension() == ".yaml";

@@ -8,9 +8,11 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/draw_figures.h"
 #include "experiments/commands/estimator_source.h"
+#include "experiments/commands/scene_choice.h"
 #include "experiments/commands/shard_options.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/table/render_table.h"
+#include "experiments/core/text/key_value.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/data/simulated_sequence.h"
 #include "experiments/real/camera_noise/apply_noise.h"
@@ -53,10 +55,9 @@ std::vector<PairSet> ReadSets(const std::string& pairs, const ValidateArguments&
   }
   Study study = LoadStudy(pairs);
   for (const std::string& setting : arguments.data) {
-    const size_t equals = setting.find('=');
-    if (equals == std::string::npos)
-      throw InputError(fmt::format("--data: '{}' is not allowed; give key=value", setting));
-    Override(&study, setting.substr(0, equals), setting.substr(equals + 1));
+    const auto [key, value, has_equals] = SplitKeyValue(setting);
+    if (!has_equals) throw InputError(fmt::format("--data: '{}' is not allowed; give key=value", setting));
+    Override(&study, key, value);
   }
   if (arguments.trials > 0) study.trials = arguments.trials;
   const StudyPlan plan = MakePlan(study, PlanEstimators::kNotMade);
@@ -94,14 +95,7 @@ AdvisedEstimator ChooseAdvised(const EstimatorSpec& spec, const PlantedFaults& p
 
 std::vector<PairSet> ChooseSets(const ValidateArguments& arguments, const PlantedFaults& planted) {
   std::vector<PairSet> sets = ReadAllSets(arguments);
-  if (!arguments.scene.empty()) {
-    std::string names;
-    for (const PairSet& set : sets) names += (names.empty() ? "" : ", ") + set.name;
-    std::erase_if(sets, [&](const PairSet& set) { return set.name != arguments.scene; });
-    if (sets.empty())
-      throw InputError(
-          fmt::format("--scene: there is no scene '{}'; give one of: {}", arguments.scene, names));
-  }
+  KeepScene(arguments.scene, &PairSet::name, &sets);
   for (PairSet& set : sets) set = PlantFaultsIn(std::move(set), planted);
   return sets;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "experiments/core/text/key_value.h"
 #include "experiments/statistics/compared.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
@@ -74,8 +75,7 @@ std::vector<std::string> GateQuantityNames() {
 namespace {
 
 void SetMargin(const std::string& text, std::vector<GateTest>* tests) {
-  const size_t equals = std::min(text.find('='), text.size());
-  const std::string name = text.substr(0, equals);
+  const auto [name, value, has_equals] = SplitKeyValue(text);
   std::vector<std::string> names;
   for (const GateTest& test : *tests) names.push_back(test.quantity.name);
   const auto test = std::ranges::find(names, name);
@@ -84,10 +84,10 @@ void SetMargin(const std::string& text, std::vector<GateTest>* tests) {
                                  Quoted(name), DidYouMean(name, names), fmt::join(names, ", ")));
   }
   double margin = 0.0;
-  const bool is_number = equals < text.size() && ParseReal(text.substr(equals + 1), &margin);
+  const bool is_number = ParseReal(value, &margin);
   if (!is_number || margin <= 0.0 || margin >= 1.0) {
-    throw InputError(fmt::format("--margin: {}: {} is not allowed; give a number between 0 and 1", name,
-                                 Quoted(equals < text.size() ? text.substr(equals + 1) : "")));
+    throw InputError(
+        fmt::format("--margin: {}: {} is not allowed; give a number between 0 and 1", name, Quoted(value)));
   }
   (*tests)[static_cast<size_t>(test - names.begin())].margin = margin;
 }

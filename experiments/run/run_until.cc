@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "experiments/core/text/key_value.h"
 #include "experiments/core/text/message.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
@@ -68,10 +69,8 @@ CellPrecision Look(const StudyPlan& plan, const Condition& condition, std::int64
 
 PrecisionTarget PrecisionTarget::Parse(const std::string& text) {
   PrecisionTarget target;
-  const size_t equals = std::min(text.find('='), text.size());
-  const std::string name = text.substr(0, equals);
-  const bool is_number =
-      equals < text.size() && ParseReal(text.substr(equals + 1), &target.value) && target.value > 0.0;
+  const auto [name, value, has_equals] = SplitKeyValue(text);
+  const bool is_number = ParseReal(value, &target.value) && target.value > 0.0;
   target.kind = name == "rel" ? Kind::kRelative : Kind::kHalfWidth;
   if ((name != "ci" && name != "rel") || !is_number || target.value > 1.0 || target.value < 1e-6) {
     throw InputError(

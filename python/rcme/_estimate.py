@@ -195,6 +195,8 @@ def intrinsics(camera: Any) -> np.ndarray:
 def _in_words(error: ValueError, options: list[tuple[str, str]]) -> str:
     """What is wrong with the options; one that no estimator has may be misspelt of the call itself."""
     text = str(error)
+    if text.startswith(("bounds: ", "draws: ")):
+        return text
     near = [match for key, _ in options if key in text for match in difflib.get_close_matches(key, OPTIONS_OF_CALLS, 1, 0.7)]
     return f"options: {text}" + (f" (did you mean '{near[0]}'?)" if near else "")
 

@@ -7,6 +7,8 @@ import pathlib
 from collections.abc import Iterable, Mapping
 from typing import Any, Union
 
+import numpy as np
+
 from rcme import _check, _rcme
 from rcme._estimate import motion_prior
 
@@ -22,7 +24,7 @@ def write_pairs(folder: Union[str, "os.PathLike[str]"], pairs: Iterable[Mapping[
     folder : where to write 000000.csv, 000001.csv, ...; it is made, and must hold nothing
     pairs : dicts with the keys that `simulate` returns
         - x1, x2 (N, 2; px) and camera1, camera2 (dicts {model, width, height, params} with a model of COLMAP)
-        - optional: truth, a dict of R (3, 3) and t (3), X2 = R X1 + t; sigma_px, the noise level that estimators assume; noise_scale
+        - optional: truth, a dict of R (3, 3) and t (3), X2 = R X1 + t; sigma_px, the noise level that estimators assume (0.5); noise_scale
           (N), how noisy each match is beside the others; prior, as `estimate_relative_pose` takes it (of rotation_cov the diagonal);
           scene, a name: pairs of one scene are one condition of the study.
           Other keys are ignored.
@@ -65,20 +67,23 @@ def _match_file(name: str, pair: Mapping[str, Any]) -> str:
     truth = {} if pair.get("truth") is None else pair["truth"]
     if not isinstance(truth, Mapping):
         raise ValueError(f"{name}: truth: {_check.words(truth)} is not allowed; expected a dict of R and t")
-    if truth.get("R") is not None and truth.get("t") is not None:
+    if (truth.get("R") is None) != (truth.get("t") is None):
+        raise ValueError(f"{name}: truth: R and t are not both there (the direction of a pure rotation is not known); expected both, "
+                         "or no truth, which is not scored")
+    if truth.get("R") is not None:
         R = _check.rotation(f"{name}: truth: R", _check.shaped(f"{name}: truth: R", truth["R"], (3, 3), "a rotation"))
         t = _check.direction(f"{name}: truth: t", _check.shaped(f"{name}: truth: t", truth["t"], (3,), "a translation"))
         lines += [f"# R_rowmajor: {_row(R.ravel(), ' ')}", f"# t_unit: {_row(t, ' ')}"]
-    sigma = pair.get("sigma_px")
-    if sigma is not None:
-        lines.append(f"# sigma_px: {_check.number(f'{name}: sigma_px', sigma, 1e-9, 1000.0)!r}")
+    scales = _check.scales(f"{name}: noise_scale", pair.get("noise_scale"), len(x1))
+    sigma = _check.number(f"{name}: sigma_px", 0.5 if pair.get("sigma_px") is None else pair["sigma_px"], 1e-9, 1000.0)
+    # The file's level is that of the match of median noise; its column counts relative to that.
+    lines.append(f"# sigma_px: {sigma * (float(np.median(scales)) if scales else 1.0)!r}")
     try:
         prior = motion_prior(pair.get("prior"))
     except ValueError as error:
         raise ValueError(f"{name}: {error}") from None
     if prior is not None:
         lines += _rcme.format_prior(prior).splitlines()
-    scales = _check.scales(f"{name}: noise_scale", pair.get("noise_scale"), len(x1))
     lines.append("x1,y1,x2,y2" + (",sigma_px" if scales else ""))
     lines += [_row([*first, *second, *([scales[i]] if scales else [])], ",") for i, (first, second) in enumerate(zip(x1, x2))]
     return "\n".join(lines) + "\n"

@@ -57,6 +57,11 @@ class Estimate(unittest.TestCase):
             tolerance = 5 * np.sqrt(p["p_failure"] * (1 - p["p_failure"]) / 20_000) + 0.005
             self.assertAlmostEqual(beyond.mean(), p["p_failure"], delta=tolerance)
         self.assertTrue(0.05 < info["p_failure_for_bounds"][0]["p_failure"] < 0.95, "no power")
+        x1, x2, *cameras = self.arguments
+        other_pose, other = rcme.estimate_relative_pose(x1[1:], x2[1:], *cameras, draws=20_000)
+        pairs = zip(R @ pose.R.T, other["draws"]["R"] @ other_pose.R.T)
+        offsets = np.array([(a[2, 1] - a[1, 2], b[2, 1] - b[1, 2]) for a, b in pairs if np.isfinite([a, b]).all()])
+        self.assertLess(abs(np.corrcoef(offsets.T)[0, 1]), 0.04, "pairs share their random numbers")  # five standard deviations
         again = rcme.estimate_relative_pose(*self.arguments, draws=3)[1]["draws"]
         np.testing.assert_array_equal(again["t"], t[:3])
         self.assertIsNone(rcme.estimate_relative_pose(*self.arguments)[1]["draws"])

@@ -273,6 +273,7 @@ class Tables(unittest.TestCase):
         self.assertIsNone(pairs[0]["prior"])
         for key, value, message in (("prior", {"rotation": np.eye(3)}, "prior: rotation_sd_deg"), ("x2", np.zeros((3, 2)), "x2 3"), ("camera1", np.eye(3), "camera1"),
                                     ("truth", {"R": 2 * np.eye(3), "t": [1, 0, 0]}, "truth: R"), ("truth", [1], "truth"),
+                                    ("truth", {"R": np.eye(3), "t": None}, "R and t are not both there"),
                                     ("sigma_px", -1.0, "sigma_px"), ("sigma_px", 1e6, "sigma_px"), ("scene", "mine ", "scene")):
             with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, rf"pairs\[0\].*{message}"):
                 rcme.write_pairs(folder, [{**pairs[0], key: value}])
@@ -280,6 +281,20 @@ class Tables(unittest.TestCase):
             rcme.write_pairs(file.name, pairs)
         with tempfile.TemporaryDirectory() as folder, self.assertRaisesRegex(ValueError, r"pairs\[0\]: 3 is not allowed"):
             rcme.write_pairs(folder, [3])
+
+    def test_noise_of_written_matches_is_that_of_the_pair(self):
+        """A file counts noise relative to the match of median noise."""
+        pair = {**rcme.simulate({**STUDY, "factors": {}}), "sigma_px": 0.4}
+        scales = np.linspace(2.0, 6.0, len(pair["x1"]))
+        with tempfile.TemporaryDirectory() as folder:
+            written = rcme.write_pairs(os.path.join(folder, "pairs"), [{**pair, "noise_scale": scales}])
+            read = rcme.simulate({**STUDY, "trials": 1, "factors": {}, "data": {"scene": "match_files", "folder": written}})
+        np.testing.assert_allclose(read["sigma_px"] * np.array(read["noise_scale"]), 0.4 * scales, rtol=1e-9)
+
+    def test_the_package_s_own_function_is_an_estimator(self):
+        run = rcme.run({**STUDY, "factors": {}, "trials": 3}, {"itself": rcme.estimate_relative_pose})
+        trials = rcme.trials(run)
+        self.assertEqual(set(trials[trials.estimator == "itself"].status), {"ok"})
 
     def test_names_of_scenes_are_texts(self):
         pairs = [{**rcme.simulate(STUDY, trial=i), "scene": name} for i, name in enumerate(("00", "01", "1"))]

@@ -21,7 +21,8 @@ EstimateForBounds EstimateWithBounds(const MotionEstimator& estimator, const Mot
                                      const PosteriorRequest& request, RandomStream& rng) {
   const WeightInspection* inspection = FindWeightInspection(estimator);
   if (!request.bounds.empty() && inspection == nullptr)
-    throw InputError("bounds: only rcme_calibrated knows the probability of failure for other bounds");
+    throw InputError(
+        "bounds: only rcme_calibrated, without model_choice or conform, knows the probability of failure for other bounds");
   if (inspection == nullptr || (request.bounds.empty() && !request.is_kept))
     return {estimator.Estimate(problem, rng), {}, {}};
   std::optional<MotionPosterior> posterior;

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "experiments/core/text/key_value.h"
 #include "experiments/data/match_folder.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
@@ -202,12 +203,9 @@ TableRow MakeTableRow(const std::string& name, bool is_group, const std::vector<
 }  // namespace
 
 SceneGroup ParseSceneGroup(const std::string& text) {
-  const size_t equals = text.find('=');
-  SceneGroup group{text.substr(0, equals), {}};
-  if (equals != std::string::npos) {
-    group.patterns = SplitText(text.substr(equals + 1), ',');
-    std::erase_if(group.patterns, [](const std::string& pattern) { return pattern.empty(); });
-  }
+  const KeyValue given = SplitKeyValue(text);
+  SceneGroup group{given.key, SplitText(given.value, ',')};
+  std::erase_if(group.patterns, [](const std::string& pattern) { return pattern.empty(); });
   if (group.name.empty() || group.patterns.empty()) {
     throw InputError(fmt::format(
         "--group: {} is not allowed; give NAME=SCENE,SCENE,..., a scene's name or its beginning with a star",

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "experiments/core/text/key_value.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 
@@ -58,12 +59,12 @@ PlantedFaults ParsePlantedFaults(const std::vector<std::string>& settings) {
   PlantedFaults faults;
   const std::vector<Parameter> parameters = Parameters(faults);
   for (const std::string& setting : settings) {
-    const size_t equals = std::min(setting.find('='), setting.size());
-    const auto found = std::ranges::find(parameters, setting.substr(0, equals), &Parameter::name);
-    if (found == parameters.end() || equals == setting.size())
+    const KeyValue given = SplitKeyValue(setting);
+    const auto found = std::ranges::find(parameters, given.key, &Parameter::name);
+    if (found == parameters.end() || !given.has_equals)
       throw InputError(fmt::format("--plant: '{}' is not allowed; give NAME=VALUE, NAME one of: {}", setting,
                                    PlantableFaults()));
-    found->SetFromText(setting.substr(equals + 1));
+    found->SetFromText(given.value);
   }
   return faults;
 }
