@@ -226,7 +226,7 @@ TEST(ValidateAndAdvise, MeasuresWhatItAdvises) {
   EXPECT_THAT(small.advice.back(), testing::Not(HasSubstr("no covariance_factor")));
   const SetReport zero = ValidateAndAdvise(MakeOwnPairs(), Advised(0.0), {1, 1});
   EXPECT_EQ(zero.covariances.verdict, TruthFreeVerdict::kTooSmall);
-  EXPECT_THAT(zero.advice.back(), HasSubstr("no covariance_factor makes them hold"));
+  EXPECT_THAT(zero.advice.back(), HasSubstr("does not make them hold"));
 }
 
 // A sigma half of what it is: found, and gone when followed.
