@@ -116,10 +116,10 @@ std::optional<std::string> DoubtOrder(const Numbers& K, const Eigen::Vector2d& s
   return DescribeOrder(*order);
 }
 
-std::vector<std::string> DoubtFocalLength(const Numbers& K, const Eigen::Vector2d& size) {
+std::vector<std::string> DoubtFocalLength(const Numbers& K, const Eigen::Vector2d& size, LensModel model) {
   std::vector<std::string> doubts;
   const double corner = ComputeCornerTangent(K, size), focal = std::max(K[0], K[1]);
-  if (corner > kWideCorner)
+  if (corner > kWideCorner && model != LensModel::kFisheye)
     doubts.push_back(
         fmt::format("with fx = {:.6g} a corner of the image of {} is {:.1f} degrees off the axis; no "
                     "pinhole image shows that much, so check that fx and fy are in px",
@@ -138,14 +138,14 @@ std::vector<std::string> DoubtFocalLength(const Numbers& K, const Eigen::Vector2
 }
 
 // Throws if K is certainly wrong.
-void CheckPossible(const Numbers& K, const Eigen::Vector2d& size, const std::string& place) {
+void CheckPossible(const Numbers& K, const Eigen::Vector2d& size, const std::string& place, LensModel model) {
   const std::string given = fmt::format("{}: {:.6g} {:.6g} {:.6g} {:.6g}", place, K[0], K[1], K[2], K[3]);
   const bool is_outside = ComputeOffset(K, size).cwiseAbs().maxCoeff() > 0.5;
   const std::optional<std::string> order = FindOrder(K, size, kNearCentre);
   if (order && (is_outside || ComputePixelLength(K) > kOddPixels))
     throw InputError(
         fmt::format("{} in an image of {}: {}", given, DescribeSize(size), DescribeOrder(*order)));
-  if (ComputeCornerTangent(K, size) > kImpossibleCorner)
+  if (ComputeCornerTangent(K, size) > kImpossibleCorner && model != LensModel::kFisheye)
     throw InputError(
         fmt::format("{} in an image of {}: a corner would be more than 89 degrees off the axis; give fx, "
                     "fy, cx and cy in px, not in mm or in shares of the image",
@@ -182,12 +182,12 @@ PointSpread MeasureSpread(const std::vector<Correspondence>& matches, Eigen::Vec
 
 }  // namespace
 
-std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::string& place) {
+std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::string& place, LensModel model) {
   const Numbers K = {camera.fx, camera.fy, camera.cx, camera.cy};
   const Eigen::Vector2d size(camera.width, camera.height);
-  CheckPossible(K, size, place);
+  CheckPossible(K, size, place, model);
   std::vector<CameraDoubt> doubts;
-  for (const std::string& what : DoubtFocalLength(K, size)) doubts.push_back({place, what});
+  for (const std::string& what : DoubtFocalLength(K, size, model)) doubts.push_back({place, what});
   for (const auto& what : {DoubtPrincipalPoint(K, size), DoubtOrder(K, size)}) {
     if (what) doubts.push_back({place, *what});
   }
@@ -196,7 +196,7 @@ std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::strin
 
 std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
                                             Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
-                                            const std::string& place) {
+                                            const std::string& place, LensModel model) {
   constexpr size_t kFewest = 10;
   constexpr double kBeyond = 1.25,
                    kBefore = 0.02;  // of the size; undistortion moves points outside on all sides
@@ -217,7 +217,8 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
                             "K is of a larger image, unless the matches are of one corner",
                             camera.cx, camera.cy)});
   const Eigen::Vector2d reach = (greatest - centre).cwiseAbs().cwiseMax((least - centre).cwiseAbs());
-  if (const double tangent = std::hypot(reach.x() / camera.fx, reach.y() / camera.fy); tangent > kWideCorner)
+  if (const double tangent = std::hypot(reach.x() / camera.fx, reach.y() / camera.fy);
+      tangent > kWideCorner && model != LensModel::kFisheye)
     doubts.push_back(
         {place, fmt::format("with fx = {:.6g} key points lie {:.1f} degrees off the axis; no pinhole "
                             "image shows that much, so check that fx, fy, cx and cy are in px",
@@ -235,11 +236,11 @@ namespace {
 // wrong, and what the checks say of K by that size is left out.
 std::vector<CameraDoubt> FindImageDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
                                          Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
-                                         const std::string& place) {
-  std::vector<CameraDoubt> of_points = FindKeyPointDoubts(camera, matches, x_px, is_size_known, place);
+                                         const std::string& place, LensModel model) {
+  std::vector<CameraDoubt> of_points = FindKeyPointDoubts(camera, matches, x_px, is_size_known, place, model);
   if (!is_size_known) return of_points;
-  std::vector<CameraDoubt> doubts = FindCameraDoubts(camera, place);
-  if (!of_points.empty() && FindKeyPointDoubts(camera, matches, x_px, false, place).empty()) {
+  std::vector<CameraDoubt> doubts = FindCameraDoubts(camera, place, model);
+  if (!of_points.empty() && FindKeyPointDoubts(camera, matches, x_px, false, place, model).empty()) {
     const Eigen::Vector2d implied(2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0);
     return {{place, fmt::format("key points lie far outside of an image of {}, its size, but fit K, whose "
                                 "principal point is the centre of one of {}; correct the size",
@@ -269,7 +270,8 @@ bool AreNormalised(const Camera& camera1, const Camera& camera2, const std::vect
 std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
                                         const std::vector<Correspondence>& matches,
                                         const std::array<std::string, 2>& places,
-                                        const std::array<bool, 2>& are_sizes_known) {
+                                        const std::array<bool, 2>& are_sizes_known,
+                                        const std::array<LensModel, 2>& models) {
   if (AreNormalised(camera1, camera2, matches)) {
     return {{places[0],
              fmt::format("all key points are within 5 px of (0, 0), which with fx = {:.6g} do not look like "
@@ -277,9 +279,9 @@ std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& cam
                          camera1.fx)}};
   }
   std::vector<CameraDoubt> doubts =
-      FindImageDoubts(camera1, matches, &Correspondence::x1_px, are_sizes_known[0], places[0]);
+      FindImageDoubts(camera1, matches, &Correspondence::x1_px, are_sizes_known[0], places[0], models[0]);
   for (const CameraDoubt& doubt :
-       FindImageDoubts(camera2, matches, &Correspondence::x2_px, are_sizes_known[1], places[1])) {
+       FindImageDoubts(camera2, matches, &Correspondence::x2_px, are_sizes_known[1], places[1], models[1])) {
     const bool is_known =
         std::ranges::any_of(doubts, [&](const CameraDoubt& d) { return d.what == doubt.what; });
     if (!is_known) doubts.push_back(doubt);

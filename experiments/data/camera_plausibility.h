@@ -10,6 +10,7 @@
 
 #include "estimator/geometry/camera.h"
 #include "estimator/geometry/correspondence.h"
+#include "estimator/geometry/lens.h"
 #include "estimator/motion_problem.h"
 
 namespace rcme {
@@ -22,15 +23,17 @@ struct CameraDoubt {
 // Returns what is suspicious about K for an image of this size; usually nothing. Throws InputError that
 // begins with `place` if K is certainly wrong: the principal point is outside the image, a corner is more
 // than 89.4 degrees off the axis (K is not in px), or pixels are far from square and the numbers fit the
-// image in another order. The cameras of KITTI, EuRoC, TUM, ETH3D, ScanNet, DTU, Waymo and phones pass.
-std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::string& place);
+// image in another order. The cameras of KITTI, EuRoC, TUM, ETH3D, ScanNet, DTU, Waymo and phones pass. A
+// fisheye image may show more than a pinhole one, so nothing is said of its corners, here and below.
+std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::string& place,
+                                          LensModel model = LensModel::kPinhole);
 
 // Returns what is suspicious about K given the key points of its image, all but a twentieth of them; nothing
 // for fewer than 10. `is_size_known`: the camera has the width and height of the image; otherwise twice
 // the principal point and the points are used instead.
 std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
                                             Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
-                                            const std::string& place);
+                                            const std::string& place, LensModel model = LensModel::kPinhole);
 
 // Both checks for both images of a pair; equal findings are reported once. Key points that lie outside of the
 // stated size and fit K make the size doubtful, not K. Key points that are all within 5 px of (0, 0) make
@@ -38,7 +41,8 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
 std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
                                         const std::vector<Correspondence>& matches,
                                         const std::array<std::string, 2>& places,
-                                        const std::array<bool, 2>& are_sizes_known = {true, true});
+                                        const std::array<bool, 2>& are_sizes_known = {true, true},
+                                        const std::array<LensModel, 2>& models = {});
 
 // Collects the doubts about many files and reports each once.
 class CameraWarnings {

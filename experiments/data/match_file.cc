@@ -187,7 +187,7 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
              lens2 = ReadLens(header, 2, given, file.matches);
   file.camera1 = lens1.camera;
   file.camera2 = lens2.camera;
-  file.doubts = FindHeaderDoubts(header, file, given);
+  file.doubts = FindHeaderDoubts(header, file, {lens1.model, lens2.model}, given);
   std::ranges::move(rows.ListDoubts(), std::back_inserter(file.doubts));
   std::ranges::copy(header.doubts(), std::back_inserter(file.doubts));
   ReadScores(header, rows, &file);

@@ -61,7 +61,7 @@ Lens ReadLens(const MatchHeader& header, int number, const GivenCameras& given,
 }
 
 std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file,
-                                          const GivenCameras& given) {
+                                          const std::array<LensModel, 2>& models, const GivenCameras& given) {
   const auto has_own = [&](const std::string& number) { return header.Has("camera" + number); };
   const auto place = [&](const std::string& number) {
     if (has_own(number)) return header.Place("camera" + number);
@@ -69,7 +69,7 @@ std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const Match
                  : header.Place("K" + number + "_fx_fy_cx_cy");
   };
   return FindPairDoubts(file.camera1, file.camera2, file.matches, {place("1"), place("2")},
-                        {header.Has("size1") || has_own("1"), header.Has("size2") || has_own("2")});
+                        {header.Has("size1") || has_own("1"), header.Has("size2") || has_own("2")}, models);
 }
 
 }  // namespace rcme

@@ -16,6 +16,6 @@ Lens ReadLens(const MatchHeader& header, int number, const GivenCameras& given,
 
 // Returns doubts about the cameras of a file.
 std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file,
-                                          const GivenCameras& given);
+                                          const std::array<LensModel, 2>& models, const GivenCameras& given);
 
 }  // namespace rcme

@@ -224,7 +224,7 @@ void MakePairsOfImages(const std::vector<Sequence>& sequences, const PairsOption
   FeatureCache cache(options.cache);
   CameraWarnings warnings;
   for (const Sequence& sequence : sequences)
-    warnings.Add(FindCameraDoubts(sequence.lens.camera, sequence.name + ": K"));
+    warnings.Add(FindCameraDoubts(sequence.lens.camera, sequence.name + ": K", sequence.lens.model));
   warnings.Print();
   for (const Sequence& sequence : sequences) SequencePairs(sequence, options, &cache, journal).Run(&progress);
 }

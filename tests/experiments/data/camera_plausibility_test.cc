@@ -184,6 +184,22 @@ TEST(CameraPlausibility, KeyPointsStandForASizeThatIsNotKnown) {
   EXPECT_EQ(SayOfPoints(sized, few, true), "");
 }
 
+// What no pinhole shows, a fisheye lens may: a corner at 74.8 deg of a pinhole is at 105 deg here.
+TEST(CameraPlausibility, AFisheyeImageMayBeWide) {
+  const Camera wide{300, 300, 959.5, 539.5, 1920, 1080};
+  EXPECT_EQ(FindCameraDoubts(wide, "K").size(), 1U);
+  EXPECT_TRUE(FindCameraDoubts(wide, "K", LensModel::kFisheye).empty());
+  const Camera tiny{1, 1, 959.5, 539.5, 1920, 1080};
+  EXPECT_TRUE(ThrowsInputError([&] { FindCameraDoubts(tiny, "K"); }, {"more than 89 degrees"}));
+  EXPECT_NO_THROW(FindCameraDoubts(tiny, "K", LensModel::kFisheye));
+  // Order and size are checked all the same.
+  EXPECT_TRUE(ThrowsInputError(
+      [] {
+        FindCameraDoubts({300, 300, 2000, 539.5, 1920, 1080}, "K", LensModel::kFisheye);
+      },
+      {"is outside"}));
+}
+
 TEST(CameraPlausibility, NormalisedCoordinatesAreNamedOnce) {
   RandomStream rng({.seed = 1, .purpose = 77});
   std::vector<Correspondence> matches(60);
