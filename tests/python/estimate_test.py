@@ -43,6 +43,18 @@ class Estimate(unittest.TestCase):
         self.assertEqual(of[2]["domain"], "extrapolated")
         self.assertEqual(rcme.estimate_relative_pose(*self.arguments)[1]["p_failure"], info["p_failure"])
 
+    def test_cameras_that_cannot_be_those_of_the_images_are_noticed(self):
+        x1, x2, camera, _ = self.arguments
+        fx, fy, cx, cy = camera["params"]
+        half = {**camera, "params": [fx / 2, fy / 2, cx / 2, cy / 2]}
+        with self.assertWarnsRegex(UserWarning, "camera1: .*if it was scaled"):
+            rcme.estimate_relative_pose(x1, x2, half, half)
+        outside = {**camera, "params": [fx, fy, 3 * camera["width"], cy]}
+        with self.assertRaisesRegex(ValueError, "camera1: .*outside of the image"):
+            rcme.estimate_relative_pose(x1, x2, outside, camera)
+        with self.assertRaisesRegex(ValueError, "camera1: key 'k1' is not allowed"):
+            rcme.estimate_relative_pose(x1, x2, {**camera, "k1": -0.3}, camera)
+
     def test_draws_are_of_the_distribution_that_the_probabilities_are_computed_from(self):
         pose, info = rcme.estimate_relative_pose(*self.arguments, bounds=[(0.2, 1), (1, 5), (3, 15)], draws=20_000)
         R, t = info["draws"]["R"], info["draws"]["t"]

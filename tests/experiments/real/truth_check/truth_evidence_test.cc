@@ -70,12 +70,18 @@ TEST(WeighTruth, AWrongTruthIsInDoubt) {
   }
 }
 
-// The truth of the inverse motion explains more matches than chance does, but another motion still more.
+// The inverse of the motion explains more matches than chance does, but another motion still more. Without
+// that comparison it holds for 13 of 20 pairs of either scene.
 TEST(WeighTruth, AnInverseTruthDoesNotHold) {
   const std::unique_ptr<MotionEstimator> estimator = MakeEstimator("rcme_calibrated");
-  for (const char* motion : {"general", "orbit", "forward"}) {
-    const std::shared_ptr<const SimulatedData> data =
-        MakeSimulatedData(Family("uniform_volume", "0.3", {{"motion", motion}, {"num_matches", "200"}}));
+  for (const Settings& scene :
+       {Settings{{"scene", "image_region"}, {"region", "half"}},
+        Settings{{"scene", "image_clusters"}, {"num_clusters", "3"}, {"cluster_spread_px", "60"}}}) {
+    Settings settings = scene;
+    for (const auto& [key, value] :
+         Settings{{"motion", "orbit"}, {"orbit_deg", "10"}, {"num_matches", "150"}, {"outlier_ratio", "0.3"}})
+      settings.emplace_back(key, value);
+    const std::shared_ptr<const SimulatedData> data = MakeSimulatedData(settings);
     int num_holds = 0;
     for (std::uint32_t trial = 0; trial < 20; ++trial) {
       const TrialData pair = data->Make({1, 0, trial, 0});
@@ -83,7 +89,7 @@ TEST(WeighTruth, AnInverseTruthDoesNotHold) {
       const GivenTruth inverse{{truth.R.transpose(), -(truth.R.transpose() * truth.t)}, {}};
       num_holds += WeighTruth(pair.problem, inverse, {}, *estimator, 1).verdict == TruthVerdict::kHolds;
     }
-    EXPECT_LE(num_holds, 1) << motion;
+    EXPECT_LE(num_holds, 2) << scene[0].second;
   }
 }
 
