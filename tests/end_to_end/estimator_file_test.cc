@@ -51,6 +51,10 @@ TEST_F(EstimatorFile, AddedToARunIsTheSameAsListedInTheStudy) {
   EXPECT_EQ(RunRcme({"replay", out_, "--condition", "1", "--trial", "3"}).exit_code, 0);
 }
 
+TEST_F(EstimatorFile, AnInstalledOneIsFoundByItsLabel) {
+  EXPECT_EQ(Estimate({"--estimator", "rcme_predictive_tuned"}), Estimate({"--estimator", "rcme_tuned"}));
+}
+
 TEST_F(EstimatorFile, SeveralAreAdded) {
   const std::string other = folder_.Write("other.yaml", "name: prcme\n");
   const ProgramResult result = Run(study_, {"--add-estimator", file_, "--add-estimator", other});

@@ -553,6 +553,13 @@ TEST_F(MatchFileTest, RowsOfMoreColumnsThanStated) {
   EXPECT_THAT(named[0].what, testing::HasSubstr("more columns than there are names"));
   EXPECT_TRUE(Refuses(MatchHeader() + "x1,y1,x2,y2,x1\n1,2,3,4,5\n", {"column x1 stands twice"}));
   EXPECT_TRUE(Refuses(MatchHeader() + "1,2,3\n", {"3 columns; x1,y1,x2,y2 are needed"}));
+  const TempFolder slips;
+  const auto near = [&](const std::string& line) {
+    return ReadMatchFile(slips.Write("slip.csv", line + "\n" + MatchHeader() + "1,2,3,4\n")).doubts;
+  };
+  ASSERT_EQ(near("# sigma: 0.7").size(), 1U);
+  EXPECT_NE(near("# sigma: 0.7")[0].what.find("did you mean 'sigma_px'?"), std::string::npos);
+  EXPECT_TRUE(near("# licence: free").empty());
   EXPECT_TRUE(Refuses("PK\x03\x04 and bytes\n", {"is a zip or npz archive", "rcme pairs --layout npz"}));
 }
 
