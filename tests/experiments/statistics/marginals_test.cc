@@ -178,6 +178,12 @@ TEST_F(MarginalsOfRun, ChosenDrawsThatShareScenesAreRefused) {
                                {"the conditions share their scenes", "common_scenes"}));
 }
 
+TEST_F(MarginalsOfRun, AGridThatSharesScenesIsRefused) {
+  study_.common_scenes = true;
+  EXPECT_TRUE(ThrowsInputError([&] { Measure([](const Condition&) { return 0.0; }); },
+                               {"share their scenes", "common_scenes"}));
+}
+
 TEST_F(MarginalsOfRun, OneOrTwoConditionsAreNoRegime) {
   const TempFolder folder;
   const StudyPlan plan = MakePlan(SmallStudy());

@@ -71,6 +71,18 @@ TEST(EstimateOutput, ACovarianceThatIsWiderThanTheDistributionSaysByHowMuch) {
   EXPECT_TRUE(AnswerAsJson(answer, spec)["posterior"]["rotation_95_deg"].is_null());
 }
 
+TEST(EstimateOutput, TablesMarkAnExtrapolatedProbability) {
+  PairAnswer answer;
+  answer.estimate.status = MotionStatus::kOk;
+  answer.estimate.cam2_from_cam1.t = Eigen::Vector3d::UnitX();
+  answer.estimate.failure_probability = 0.25;
+  const std::vector<FailureBounds> none;
+  answer.estimate.probability_domain = ProbabilityDomain::kVerified;
+  EXPECT_EQ(FormatAnswerRow("pair", answer, {none})[4], "0.25");
+  answer.estimate.probability_domain = ProbabilityDomain::kExtrapolated;
+  EXPECT_EQ(FormatAnswerRow("pair", answer, {none})[4], "0.25*");
+}
+
 // What is advised is an option of the estimator.
 TEST(EstimateOutput, AnUncertainMotionIsSeenByAnOptionThatTheEstimatorHas) {
   TempFolder folder;
