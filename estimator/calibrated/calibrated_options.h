@@ -16,7 +16,9 @@ enum class SigmaKnowledge {
 enum class CovarianceKind {
   kInformation,  // the inverse of the likelihood's Hessian
   kSandwich,     // HC2: variances from the residuals themselves
-  kRobust,  // for dependent errors (robust_covariance.h), on average no smaller than the checked sandwich
+  // For dependent errors (robust_covariance.h). On average no smaller than the checked sandwich, both before
+  // unstated errors of the calibration.
+  kRobust,
 };
 
 // A step to leave out in an ablation.
@@ -51,7 +53,10 @@ struct CalibratedOptions {
   // area (mode_weights.h).
   double second_motion_odds = 0.6;
   CalibratedStep leave_out = CalibratedStep::kNone;
-  CalibrationPrior calibration;    // uncertainty of the intrinsics, added to the covariance
+  CalibrationPrior calibration;  // uncertainty of the intrinsics, added to the covariance
+  // Prior probability that the calibration has errors of usual size, if `calibration` states none
+  // (unstated_errors.h).
+  double unstated_errors = 0.01;
   RobustCovarianceOptions robust;  // for kRobust; its calibration is taken from the field above
 };
 

@@ -117,7 +117,10 @@ IntrinsicsCheck Check(const MotionProblem& problem, const Mode& answer, const Ex
   };
   return {.reach_rad = root_within(D.squaredNorm(), kLeastRad, kMostRad),
           .root_gain = root_within(score.dot(theta), 0.0, kMostGain),
-          .shift_rad = root_within((D * theta).squaredNorm(), kLeastRad, kMostRad)};
+          .shift_rad = root_within((D * theta).squaredNorm(), kLeastRad, kMostRad),
+          .information = information,
+          .score = score,
+          .of_motion = -M};
 }
 
 }  // namespace

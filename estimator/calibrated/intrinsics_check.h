@@ -25,12 +25,16 @@
 
 namespace rcme {
 
-// The direction of the translation moves by D theta, where D are the last two rows of -M. Angles are clipped
-// to [1e-5, 3] rad.
+// I_theta, q and -M for the errors over their usual standard deviations. The direction of the translation
+// moves by D theta, where D are the last two rows of -M. Angles are clipped to [1e-5, 3] rad.
 struct IntrinsicsCheck {
+  static constexpr int kMostErrors = 8;
   double reach_rad = 1e-5;  // sqrt(tr D D'): the direction's standard deviation by errors of usual size
   double root_gain = 0.0;   // sqrt(q'Vq), at most 30: how clearly the matches show an error
   double shift_rad = 1e-5;  // |D V q|: how far the direction moves if the most likely errors are corrected
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostErrors, kMostErrors> information = {};
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostErrors, 1> score = {};
+  Eigen::Matrix<double, 5, Eigen::Dynamic, 0, 5, kMostErrors> of_motion = {};  // -M, rad
 };
 
 IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer,

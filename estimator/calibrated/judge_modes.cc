@@ -5,6 +5,7 @@
 #include "estimator/calibrated/checked_probability.h"
 #include "estimator/calibrated/failure_probability.h"
 #include "estimator/calibrated/intrinsics_check.h"
+#include "estimator/calibrated/unstated_errors.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -37,6 +38,21 @@ double ComputeLeftByIntrinsics(const JudgedModes& judged, const Mode& mode, cons
   return std::clamp(uncertain / std::max(exact, 1e-6), 1e-6, 1.0);
 }
 
+// The errors that the covariance counts.
+UnstatedErrors FindUnstatedErrors(const JudgedModes& judged) {
+  const CalibratedOptions& options = judged.options;
+  const bool is_wanted = options.calibration.IsNone() && options.covariance != CovarianceKind::kInformation &&
+                         options.leave_out != CalibratedStep::kModelCheck;
+  if (!is_wanted) return {};
+  UnstatedErrors errors =
+      WeighUnstatedErrors(judged.check.calibration, options.unstated_errors, CovarianceFactor(judged.check));
+  if (judged.prior.motion == nullptr) return errors;
+  const Mode& mode = judged.modes[judged.weights.answer].mode;
+  const Matrix5d to_both = mode.inverse_hessian * FindMatchInformation(judged.prior.motion, mode);
+  errors.moment = to_both * errors.moment * to_both.transpose();
+  return errors;
+}
+
 // The covariance of an answer whose direction is weak. Near the optimum the likelihood does not show how far
 // the direction may be away: without parallax it seems well determined (direction_posterior.h).
 Matrix5d WidenWeakDirection(const JudgedModes& judged, const Matrix5d& of_intrinsics) {
@@ -58,6 +74,10 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
   double within = 0.0, success = 0.0;
   Matrix5d of_weak = Matrix5d::Zero();
   ModesVerdict verdict;
+  verdict.unstated_errors = FindUnstatedErrors(judged);
+  // MakeCovarianceRobust comes before them.
+  const UnstatedErrors unstated =
+      options.covariance == CovarianceKind::kRobust ? UnstatedErrors{} : verdict.unstated_errors;
   if (spreads != nullptr) spreads->assign(modes.size(), Matrix5d::Zero());
   for (size_t i = 0; i < modes.size(); ++i) {
     const double weight = weights.of_modes[i];
@@ -75,14 +95,14 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
     if (i == weights.answer) {
       const Matrix5d exact = weak_direction ? Matrix5d(Matrix5d::Zero()) : reach;
       verdict.left_by_intrinsics = ComputeLeftByIntrinsics(judged, mode, curvature, exact, rng);
-      if (weak_direction) of_weak = WidenWeakDirection(judged, of_intrinsics);
+      if (weak_direction) of_weak = unstated.MixInto(WidenWeakDirection(judged, of_intrinsics));
     }
     if (spreads != nullptr) (*spreads)[i] = reach + of_intrinsics;
     if (!IsWithin(answer.pose, bounds, mode.pose)) continue;
     const Vector5d away = LocalCoordinates(answer.pose, mode.pose);
-    const Matrix5d covariance =
-        ComputeModeCovariance(modes[i], curvature, of_intrinsics, check, prior, options);
-    if (spreads != nullptr) (*spreads)[i] = covariance;
+    const Matrix5d exact = ComputeModeCovariance(modes[i], curvature, of_intrinsics, check, prior, options);
+    if (spreads != nullptr) (*spreads)[i] = exact;
+    const Matrix5d covariance = unstated.MixInto(exact);
     const Matrix5d to_answer = TransportTangent(mode.pose, answer.pose);
     verdict.pose_cov += weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
     within += weight;

@@ -1,6 +1,7 @@
 // The result of the modes' weights and the model check.
 #pragma once
 
+#include "estimator/calibrated/unstated_errors.h"
 #include "estimator/calibrated/weigh_modes.h"
 
 namespace rcme {
@@ -12,6 +13,7 @@ struct ModesVerdict {
   // The share of the probability within the bounds that is left if the intrinsics are more uncertain than
   // usual (intrinsics_check.h).
   double left_by_intrinsics = 1.0;
+  UnstatedErrors unstated_errors = {};  // of the calibration; in pose_cov unless CovarianceKind::kRobust
   Matrix5d pose_cov = Matrix5d::Zero();
 };
 

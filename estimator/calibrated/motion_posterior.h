@@ -2,9 +2,10 @@
 // these". The stated probability of failure, those for other bounds, the covariance, regions and medians are
 // all computed from it.
 //
-//   the answer    N(mode, its stated covariance) in the tangent at each mode within the failure bounds; if
-//                 the direction is weak (settle_direction.h), cells of the whole sphere instead, each with a
-//                 normal law of the rotation
+//   the answer    N(mode, its covariance) in the tangent at each mode within the failure bounds, wider with
+//                 the probability that the calibration has errors (unstated_errors.h); if the direction is
+//                 weak (settle_direction.h), cells of the whole sphere instead, each with a normal law of the
+//                 rotation
 //   rivals        N(mode, the covariance by its likelihood), with their weights after the check (verdict.h)
 //   none          the remaining weight: the check doubts the model itself, so that the motion is unknown. It
 //                 lies beyond any bounds. Over a population, 7 in 10 wrong answers are also beyond 10 and 40

@@ -332,13 +332,18 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
         // No smaller than the checked one, on average over the directions.
         const double ratio =
             is_checked ? estimate.pose_cov.llt().solve(CovarianceFactor(check) * own).trace() / 5.0 : 1.0;
-        estimate.pose_cov = BoundByUniformMotion(CovarianceWithPrior(
-            options_.robust.factor * (ratio > 1.0 && std::isfinite(ratio) ? ratio : 1.0) * estimate.pose_cov,
-            answer, prior));
+        const double factor = options_.robust.factor;
+        const Matrix5d of_matches =
+            factor * (ratio > 1.0 && std::isfinite(ratio) ? ratio : 1.0) * estimate.pose_cov;
+        UnstatedErrors errors = verdict.unstated_errors;
+        errors.moment *= factor;
+        estimate.pose_cov =
+            errors.MixInto(BoundByUniformMotion(CovarianceWithPrior(of_matches, answer, prior)));
       }
     }
     if (posterior != nullptr)
-      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, weak_direction.has_value(), estimate);
+      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, verdict.unstated_errors,
+                                  weak_direction.has_value(), estimate);
     workings->weights = std::move(weights);
     workings->weak_direction = weak_direction;
     workings->modes = std::move(modes);
@@ -382,7 +387,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   // the estimate's is used for the whole answer.
   MotionPosterior BuildPosterior(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
                                  const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
-                                 bool is_direction_weak, const MotionEstimate& estimate) const {
+                                 const UnstatedErrors& unstated, bool is_direction_weak,
+                                 const MotionEstimate& estimate) const {
     const bool is_whole = options_.covariance == CovarianceKind::kRobust;
     std::vector<MotionComponent> components;
     for (size_t i = 0; i < modes.size(); ++i) {
@@ -391,8 +397,11 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (is_direction_weak && (is_answer || !weights.is_second_motion[i])) continue;
       if (weight < kNegligibleWeight && i != weights.answer) continue;
       if (is_whole && is_answer && i != weights.answer) continue;
-      components.push_back(
-          {modes[i].mode.pose, is_whole && is_answer ? estimate.pose_cov : spreads[i], weight, is_answer});
+      const Matrix5d& spread = is_whole && is_answer ? estimate.pose_cov : spreads[i];
+      const double of_errors = is_answer && !is_whole ? weight * unstated.probability : 0.0;
+      components.push_back({modes[i].mode.pose, spread, weight - of_errors, is_answer});
+      if (of_errors > 0.0)
+        components.push_back({modes[i].mode.pose, unstated.AddTo(spread), of_errors, true});
     }
     std::vector<DirectionCell> cells;
     if (is_direction_weak)

@@ -239,9 +239,11 @@ TEST(PosteriorOfPairs, DrawsGiveEveryProbabilityAndRegion) {
 }
 
 // The answer's part alone: its second moment is the one that is computed, which is the stated covariance
-// where nothing was narrowed and the direction is normal. An element's standard error is at most
-// sqrt(2 / 20000) of the whitened matrix, of which five are allowed; .05 more for modes beside the answer,
-// whose tangents are not its own, and motions beyond half a turn, which come back from the other side.
+// where nothing was narrowed and the direction is normal. An element of the whitened matrix has at most the
+// variance 3 sum w m^2 / 20000 over the components, w their weights and m their greatest whitened variance
+// (1 if there are only cells), of which five standard errors are allowed; .05 more for modes beside the
+// answer, whose tangents are not its own, and motions beyond half a turn, which come back from the other
+// side.
 TEST(PosteriorOfPairs, DrawsOfTheAnswerHaveItsCovariance) {
   constexpr int kNumber = 20000;
   int num_stated = 0;
@@ -269,10 +271,16 @@ TEST(PosteriorOfPairs, DrawsOfTheAnswerHaveItsCovariance) {
         const Vector5d away = LocalCoordinates(of.estimate.cam2_from_cam1, *pose);
         sum += away * away.transpose() / kNumber;
       }
-      const double allowed = 5.0 * std::sqrt(2.0 / kNumber) + 0.05;
       const Eigen::LLT<Matrix5d> llt(covariance);
-      const Matrix5d half = llt.matrixL().solve(sum);
-      const Matrix5d whitened = llt.matrixL().solve(half.transpose());
+      const auto whiten = [&](const Matrix5d& moment) -> Matrix5d {
+        const Matrix5d half = llt.matrixL().solve(moment);
+        return llt.matrixL().solve(half.transpose());
+      };
+      double fourth = of.posterior.components.empty() ? 3.0 : 0.0;
+      for (const MotionComponent& c : of.posterior.components)
+        fourth += 3.0 * c.weight * std::pow(whiten(c.covariance).eigenvalues().real().maxCoeff(), 2);
+      const double allowed = 5.0 * std::sqrt(fourth / kNumber) + 0.05;
+      const Matrix5d whitened = whiten(sum);
       EXPECT_LT((whitened - Matrix5d::Identity()).cwiseAbs().maxCoeff(), allowed) << static_cast<int>(kind);
     }
   }
