@@ -129,6 +129,10 @@ struct MotionEstimate {
   Doubt doubt = Doubt::kNone;
   ProbabilityDomain probability_domain = ProbabilityDomain::kNotStated;
 
+  // Probability that the calibration has errors that nobody stated (unstated_errors.h), which pose_cov
+  // counts; 0: they are not counted.
+  double calibration_error_probability = std::numeric_limits<double>::quiet_NaN();
+
   PriorUse prior = PriorUse::kNone;
   // Probability that a correct prior is at least this far from the motion of the matches alone; NaN: not
   // computed.

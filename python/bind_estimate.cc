@@ -100,6 +100,7 @@ py::dict MakeDict(const MotionEstimate& estimate) {
   dict["p_failure_domain"] = Name(estimate.probability_domain);
   dict["prior"] = Name(estimate.prior);
   dict["prior_p_value"] = estimate.prior_p_value;
+  dict["calibration_error_probability"] = estimate.calibration_error_probability;
   dict["sigma"] = estimate.sigma_estimated_px;
   dict["sigma_sd"] = estimate.sigma_estimated_sd_px;
   dict["inlier_probabilities"] = estimate.inlier_probabilities;

@@ -94,6 +94,7 @@ void FillMotion(const ExplainedMode& answer, const ModesVerdict& verdict, double
   estimate->cam2_from_cam1 = estimate->initial_pose = answer.mode.pose;
   estimate->pose_cov = verdict.pose_cov;
   estimate->failure_probability = verdict.failure_probability;
+  estimate->calibration_error_probability = verdict.unstated_errors.probability;
   estimate->sigma_estimated_px = assumed_sigma_px * mixture.scale / mixture.noise.scale_of_gaussian;
 }
 

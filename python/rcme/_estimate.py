@@ -93,9 +93,11 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         and max_direction_error_deg, 3 and 15 degrees unless given; None if it states none); p_failure_domain, "verified" or
         "extrapolated": whether the matches are like those that it was verified on ("not_stated"); p_failure_for_bounds, for each
         of `bounds` {rotation_deg, direction_deg, p_failure, domain} (empty where there is no motion); draws, {R (draws, 3, 3),
-        t (draws, 3)}, NaN in the share that "none of these motions" has (None if none were asked for, or without a motion); protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and
-        that of t exceed with a probability of at most integrity_risk each, by pose_cov and p_failure (pi: every angle; None
-        without a motion); sigma and sigma_sd (px), the noise level that it found (None likewise);
+        t (draws, 3)}, NaN in the share that "none of these motions" has (None if none were asked for, or without a motion);
+        protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and that of t exceed with a probability
+        of at most integrity_risk each, by pose_cov and p_failure (pi: every angle; None without a motion); sigma and sigma_sd (px),
+        the noise level that it found (None likewise); calibration_error_probability, that the calibration has errors that no
+        option states, which pose_cov counts (None from most estimators);
         prior, "used", "contradicted" (the matches speak against it: the answer is of these alone) or "none"; prior_p_value, the
         probability that a right prior is as far from the matches (None without one);
         other_motions: a list of further explanations {R, t, pose_cov, weight, explained_share}, the most likely first.
@@ -321,7 +323,8 @@ def _pose_and_info(answer: dict[str, Any], num_matches: int) -> tuple[Optional[P
             "inliers": inliers, "num_inliers": int(inliers.sum()),
             "inlier_probabilities": probabilities if len(probabilities) else None,
             "pose_cov": motion["pose_cov"] if motion else None,
-            **{key: _known(answer[key]) for key in ("p_failure", "sigma", "sigma_sd", "prior_p_value")},
+            **{key: _known(answer[key]) for key in ("p_failure", "sigma", "sigma_sd", "prior_p_value",
+                                                    "calibration_error_probability")},
             "prior": answer["prior"],
             "p_failure_domain": answer["p_failure_domain"],
             "p_failure_for_bounds": answer["p_failure_for_bounds"],

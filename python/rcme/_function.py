@@ -19,7 +19,7 @@ ANSWER = "(pose, info), a pose (R, t), or None"
 MAX_MESSAGE = 500
 KEYS = ("inliers", "pose_cov", "p_failure", "sigma", "inlier_probabilities", "status", "message")
 # More of what `estimate_relative_pose` and PoseLib return with a pose; not read, so that a function can pass it on.
-PASSED_ON = ("estimator", "num_inliers", "sigma_sd", "prior", "prior_p_value", "p_failure_domain", "p_failure_for_bounds",
+PASSED_ON = ("estimator", "num_inliers", "sigma_sd", "prior", "prior_p_value", "calibration_error_probability", "p_failure_domain", "p_failure_for_bounds",
              "draws", "protection_levels", "other_motions", "refinements", "iterations", "inlier_ratio", "model_score")
 
 

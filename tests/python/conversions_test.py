@@ -89,14 +89,16 @@ class AnswersOfFunctions(unittest.TestCase):
 class Estimates(unittest.TestCase):
     def answer(self, **more):
         return {"status": "ok", "message": "", "estimator": "x", "motion": None, "inliers": [1], "p_failure": np.nan,
-                "p_failure_domain": "not_stated", "p_failure_for_bounds": [], "draws": None, "protection_levels": None, "sigma": 0.5, "sigma_sd": np.nan, "prior": "none", "prior_p_value": np.nan,
+                "p_failure_domain": "not_stated", "p_failure_for_bounds": [], "draws": None, "protection_levels": None, "sigma": 0.5,
+                "sigma_sd": np.nan, "prior": "none", "prior_p_value": np.nan, "calibration_error_probability": np.nan,
                 "inlier_probabilities": [], "other_motions": [], **more}
 
     def test_unknown_numbers_are_none(self):
         from rcme import _estimate
         pose, info = _estimate._pose_and_info(self.answer(), 3)
         self.assertIsNone(pose)
-        self.assertEqual([info[key] for key in ("p_failure", "sigma", "sigma_sd", "prior_p_value")], [None, 0.5, None, None])
+        self.assertEqual([info[key] for key in ("p_failure", "sigma", "sigma_sd", "prior_p_value", "calibration_error_probability")],
+                         [None, 0.5, None, None, None])
         self.assertEqual(info["inliers"].tolist(), [False, True, False])
         self.assertIsNone(info["inlier_probabilities"])
 

@@ -106,15 +106,23 @@ std::string FormatProtection(const LevelsAtRisk& at) {
 }
 
 // What errors of the calibration would do that nobody stated.
-std::string CalibrationText(const std::vector<CalibrationEffect>& effects, const EstimatorSpec& spec) {
+std::string CalibrationText(const PairAnswer& answer, const EstimatorSpec& spec) {
+  const std::vector<CalibrationEffect>& effects = answer.calibration_effects;
   if (effects.empty()) return {};
   std::string text = "  if K is off, errors with these standard deviations move the motion by (rms)\n";
   for (const CalibrationEffect& effect : effects) {
     text += fmt::format("             {:<27} rotation {:.2g} deg, direction {:.2g} deg\n", effect.error,
                         effect.rotation_rms_deg, effect.direction_rms_deg);
   }
-  return text + fmt::format("             in the covariance by{} --set focal_sd=0.005\n",
-                            CanStateCalibrationErrors(spec) ? "" : " --set covariance=robust");
+  text += fmt::format("             in the covariance by{} --set focal_sd=0.005\n",
+                      CanStateCalibrationErrors(spec) ? "" : " --set covariance=robust");
+  constexpr double kNotable = 0.05;
+  const double probability = answer.estimate.calibration_error_probability;
+  if (probability >= kNotable)
+    text += fmt::format(
+        "             the matches say that K is off with probability {}: the covariance counts it\n",
+        ProbabilityText(probability));
+  return text;
 }
 
 // The covariance covers 95 % of heavy-tailed errors, most of all with few matches, and may then be wider than
@@ -129,8 +137,8 @@ std::string NarrowedText(const std::optional<PosteriorSummary>& posterior) {
   const auto& [rotation_rad, direction_rad] = posterior->quantile_95;
   if (std::isfinite(rotation_rad + direction_rad))
     text += fmt::format(
-        " 95 % of that one have the\n             rotation within {:.2g} deg, 95 % the direction within {:.2g} "
-        "deg.",
+        " In that\n             distribution 95 % of the rotations lie within {:.2g} deg of the answer, and 95 %\n"
+        "             of the directions within {:.2g} deg.",
         kDegPerRad * rotation_rad, kDegPerRad * direction_rad);
   return text + "\n";
 }
@@ -153,7 +161,7 @@ std::string SureText(const PairAnswer& answer, const MotionSpread& spread, const
       spread.direction_95_deg(0), spread.direction_95_deg(1));
   text += NarrowedText(answer.posterior);
   if (answer.protection) text += FormatProtection(*answer.protection);
-  text += CalibrationText(answer.calibration_effects, spec);
+  text += CalibrationText(answer, spec);
   const MotionMode* found = FindRunnerUp(estimate);
   if (found == nullptr) return text;
   const MotionMode& other = *found;
@@ -234,6 +242,8 @@ void AddProbabilities(const MotionEstimate& estimate, Json* json) {
   (*json)["failure_probability"] = estimate.failure_probability;
   if (estimate.probability_domain != ProbabilityDomain::kNotStated)
     (*json)["failure_probability_domain"] = Name(estimate.probability_domain);
+  if (!std::isnan(estimate.calibration_error_probability))
+    (*json)["calibration_error_probability"] = estimate.calibration_error_probability;
   (*json)["sigma_estimated_px"] = estimate.sigma_estimated_px;
   (*json)["sigma_estimated_sd_px"] = estimate.sigma_estimated_sd_px;
   (*json)["inlier_probabilities"] = estimate.inlier_probabilities;

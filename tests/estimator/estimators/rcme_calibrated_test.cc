@@ -85,6 +85,41 @@ TEST_F(RcmeCalibratedOf, FactorScalesTheRobustCovariance) {
   }
 }
 
+// The matches as a lens with this k1 in both images makes them, undistorted with its negative.
+MotionProblem Distorted(MotionProblem problem, double k1) {
+  const auto move = [&](const Camera& camera, Eigen::Vector2d* x_px) {
+    *x_px -= k1 * camera.Ray(*x_px).head<2>().squaredNorm() * (*x_px - Eigen::Vector2d(camera.cx, camera.cy));
+  };
+  for (Correspondence& match : problem.matches) {
+    move(problem.camera1, &match.x1_px);
+    move(problem.camera2, &match.x2_px);
+  }
+  return problem;
+}
+
+// Errors that 300 matches show are probable, and widen the covariance; a right calibration is not doubted.
+// Nothing is added if the option says so, or if errors are stated.
+TEST_F(RcmeCalibratedOf, CovarianceCountsErrorsOfTheCalibrationThatTheMatchesShow) {
+  CalibratedOptions never, stated, stated_never;
+  never.unstated_errors = stated_never.unstated_errors = 0.0;
+  stated.calibration.focal_sd = stated_never.calibration.focal_sd = 0.01;
+  const auto log_det = [](const MotionEstimate& e) { return std::log(e.pose_cov.determinant()); };
+  int num_seen = 0, num_doubted = 0;
+  for (std::uint32_t trial = 0; trial < 20; ++trial) {
+    const Scene scene = TwoCameraScene(300, trial);
+    const MotionProblem right{ObserveTwoCameraScene(scene, 0.3, 0.2, trial).matches, scene.camera1,
+                              scene.camera2, 0.3};
+    num_doubted += RunOn(right, trial).calibration_error_probability > 0.1;
+    const MotionProblem wrong = Distorted(right, 0.1);
+    const MotionEstimate counted = RunOn(wrong, trial), exact = RunOn(wrong, trial, never);
+    num_seen += counted.calibration_error_probability > 0.9 && log_det(counted) > log_det(exact) + 5.0;
+    EXPECT_EQ(exact.calibration_error_probability, 0.0);
+    EXPECT_EQ(RunOn(wrong, trial, stated).pose_cov, RunOn(wrong, trial, stated_never).pose_cov);
+  }
+  EXPECT_GE(num_seen, 17);
+  EXPECT_LE(num_doubted, 3);
+}
+
 TEST_F(RcmeCalibratedOf, FindsTheMotionAndItsMatches) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const Scene scene = TwoCameraScene(200, trial);

@@ -71,6 +71,22 @@ TEST(EstimateOutput, ACovarianceThatIsWiderThanTheDistributionSaysByHowMuch) {
   EXPECT_TRUE(AnswerAsJson(answer, spec)["posterior"]["rotation_95_deg"].is_null());
 }
 
+TEST(EstimateOutput, ErrorsOfTheCalibrationThatTheMatchesShowAreNamed) {
+  PairAnswer answer;
+  answer.estimate.status = MotionStatus::kOk;
+  answer.estimate.cam2_from_cam1.t = Eigen::Vector3d::UnitX();
+  answer.estimate.failure_probability = 0.04;
+  const EstimatorSpec spec = DefaultEstimator("rcme_calibrated");
+  EXPECT_FALSE(AnswerAsJson(answer, spec).contains("calibration_error_probability"));
+  answer.calibration_effects = {{"1 % of the focal length", "focal_sd", 0.01, 0.1, 0.2}};
+  answer.estimate.calibration_error_probability = 0.01;
+  EXPECT_THAT(AnswerAsText(answer, spec), Not(HasSubstr("K is off with")));
+  answer.estimate.calibration_error_probability = 0.5;
+  EXPECT_THAT(AnswerAsText(answer, spec),
+              HasSubstr("K is off with probability 0.5: the covariance counts it"));
+  EXPECT_EQ(AnswerAsJson(answer, spec)["calibration_error_probability"], 0.5);
+}
+
 TEST(EstimateOutput, TablesMarkAnExtrapolatedProbability) {
   PairAnswer answer;
   answer.estimate.status = MotionStatus::kOk;
