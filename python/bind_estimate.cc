@@ -131,8 +131,8 @@ std::vector<std::string> ListCameraDoubts(const Array& x1, const Array& x2, cons
                                           const Lens& camera2, const std::array<std::string, 2>& places,
                                           const std::array<bool, 2>& are_sizes_known) {
   std::vector<std::string> doubts;
-  for (const CameraDoubt& doubt : FindPairDoubts(camera1.camera, camera2.camera, MakeMatches(x1, x2), places,
-                                                 are_sizes_known, {camera1.model, camera2.model}))
+  for (const InputDoubt& doubt : FindPairDoubts(camera1.camera, camera2.camera, MakeMatches(x1, x2), places,
+                                                are_sizes_known, {camera1.model, camera2.model}))
     doubts.push_back(doubt.place + ": " + doubt.what);
   return doubts;
 }

@@ -133,7 +133,7 @@ class Answerer {
   const MotionEstimator& estimator() const { return *estimator_; }
 
   // Throws InputError (match_file.h). `doubts`: about the file's cameras.
-  ReadPair Read(const std::string& path, std::vector<CameraDoubt>* doubts) const {
+  ReadPair Read(const std::string& path, std::vector<InputDoubt>* doubts) const {
     const bool is_input = path == kStandardInput;
     MatchFile file = is_input ? ReadMatchesFromInput(given_) : ReadMatchFile(path, given_);
     *doubts = file.doubts;
@@ -234,7 +234,7 @@ void PrintJsonLine(const FileAnswer& file, const AnswerTerms& terms) {
 void AnswerOne(const EstimateArguments& arguments, const Answerer& answerer, const std::string& path) {
   FileAnswer file{.path = path};
   const ReadPair pair = answerer.Read(path, &file.doubts);
-  CameraWarnings warnings;
+  InputWarnings warnings;
   warnings.Add(file.doubts);
   warnings.Print();
   file.answer = answerer.Answer(pair, true);
@@ -263,7 +263,7 @@ void AnswerMany(const EstimateArguments& arguments, const Answerer& answerer,
   std::vector<FileAnswer> answers;
   std::int64_t num_done = 0;
   bool is_any_bad = false;
-  CameraWarnings warnings;
+  InputWarnings warnings;
   const auto add = [&](FileAnswer file) {
     warnings.Add(file.doubts);
     if (!file.error.empty()) PrintMessage("rcme: {}\n", Printable(file.error));

@@ -45,7 +45,7 @@ Examples:
   command->callback([arguments, out, format] {
     CheckIsNoInput(*out, {arguments->image1, arguments->image2});
     const MatchFile file = MatchImages(*arguments);
-    CameraWarnings warnings;
+    InputWarnings warnings;
     warnings.Add(file.doubts);
     warnings.Print();
     WriteMatchFile(file, *out);

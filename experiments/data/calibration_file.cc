@@ -30,7 +30,7 @@ Settings IntrinsicsIn(const std::string& path) {
         "or fisheye",
         path));
   }
-  CameraWarnings warnings;
+  InputWarnings warnings;
   warnings.Add(file.doubts);
   warnings.Print();
   Settings intrinsics;

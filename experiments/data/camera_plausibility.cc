@@ -6,9 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "experiments/core/text/message.h"
 #include "parameters/input_error.h"
-#include "parameters/plain_text.h"
 #include "stats/constants.h"
 
 namespace rcme {
@@ -182,11 +180,11 @@ PointSpread MeasureSpread(const std::vector<Correspondence>& matches, Eigen::Vec
 
 }  // namespace
 
-std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::string& place, LensModel model) {
+std::vector<InputDoubt> FindCameraDoubts(const Camera& camera, const std::string& place, LensModel model) {
   const Numbers K = {camera.fx, camera.fy, camera.cx, camera.cy};
   const Eigen::Vector2d size(camera.width, camera.height);
   CheckPossible(K, size, place, model);
-  std::vector<CameraDoubt> doubts;
+  std::vector<InputDoubt> doubts;
   for (const std::string& what : DoubtFocalLength(K, size, model)) doubts.push_back({place, what});
   for (const auto& what : {DoubtPrincipalPoint(K, size), DoubtOrder(K, size)}) {
     if (what) doubts.push_back({place, *what});
@@ -194,9 +192,9 @@ std::vector<CameraDoubt> FindCameraDoubts(const Camera& camera, const std::strin
   return doubts;
 }
 
-std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
-                                            Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
-                                            const std::string& place, LensModel model) {
+std::vector<InputDoubt> FindKeyPointDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
+                                           Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
+                                           const std::string& place, LensModel model) {
   constexpr size_t kFewest = 10;
   constexpr double kBeyond = 1.25,
                    kBefore = 0.02;  // of the size; undistortion moves points outside on all sides
@@ -204,7 +202,7 @@ std::vector<CameraDoubt> FindKeyPointDoubts(const Camera& camera, const std::vec
   const auto [least, greatest] = MeasureSpread(matches, x_px);
   const Eigen::Vector2d centre(camera.cx, camera.cy), implied = 2.0 * centre + Eigen::Vector2d::Ones();
   const Eigen::Vector2d size = is_size_known ? Eigen::Vector2d(camera.width, camera.height) : implied;
-  std::vector<CameraDoubt> doubts;
+  std::vector<InputDoubt> doubts;
   if ((greatest.array() > kBeyond * size.array()).any() && (least.array() > -kBefore * size.array()).all())
     doubts.push_back(
         {place, fmt::format("key points lie far to the right of or below an image of {}, {}; K is of a "
@@ -234,12 +232,12 @@ namespace {
 
 // Both checks for one image. If the key points are outside of the stated size, but K fits them, the size is
 // wrong, and what the checks say of K by that size is left out.
-std::vector<CameraDoubt> FindImageDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
-                                         Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
-                                         const std::string& place, LensModel model) {
-  std::vector<CameraDoubt> of_points = FindKeyPointDoubts(camera, matches, x_px, is_size_known, place, model);
+std::vector<InputDoubt> FindImageDoubts(const Camera& camera, const std::vector<Correspondence>& matches,
+                                        Eigen::Vector2d Correspondence::*x_px, bool is_size_known,
+                                        const std::string& place, LensModel model) {
+  std::vector<InputDoubt> of_points = FindKeyPointDoubts(camera, matches, x_px, is_size_known, place, model);
   if (!is_size_known) return of_points;
-  std::vector<CameraDoubt> doubts = FindCameraDoubts(camera, place, model);
+  std::vector<InputDoubt> doubts = FindCameraDoubts(camera, place, model);
   if (!of_points.empty() && FindKeyPointDoubts(camera, matches, x_px, false, place, model).empty()) {
     const Eigen::Vector2d implied(2.0 * camera.cx + 1.0, 2.0 * camera.cy + 1.0);
     return {{place, fmt::format("key points lie far outside of an image of {}, its size, but fit K, whose "
@@ -267,45 +265,26 @@ bool AreNormalised(const Camera& camera1, const Camera& camera2, const std::vect
 
 }  // namespace
 
-std::vector<CameraDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
-                                        const std::vector<Correspondence>& matches,
-                                        const std::array<std::string, 2>& places,
-                                        const std::array<bool, 2>& are_sizes_known,
-                                        const std::array<LensModel, 2>& models) {
+std::vector<InputDoubt> FindPairDoubts(const Camera& camera1, const Camera& camera2,
+                                       const std::vector<Correspondence>& matches,
+                                       const std::array<std::string, 2>& places,
+                                       const std::array<bool, 2>& are_sizes_known,
+                                       const std::array<LensModel, 2>& models) {
   if (AreNormalised(camera1, camera2, matches)) {
     return {{places[0],
              fmt::format("all key points are within 5 px of (0, 0), which with fx = {:.6g} do not look like "
                          "pixels; give x1,y1,x2,y2 in px (fx x + cx, fy y + cy of normalised coordinates)",
                          camera1.fx)}};
   }
-  std::vector<CameraDoubt> doubts =
+  std::vector<InputDoubt> doubts =
       FindImageDoubts(camera1, matches, &Correspondence::x1_px, are_sizes_known[0], places[0], models[0]);
-  for (const CameraDoubt& doubt :
+  for (const InputDoubt& doubt :
        FindImageDoubts(camera2, matches, &Correspondence::x2_px, are_sizes_known[1], places[1], models[1])) {
     const bool is_known =
-        std::ranges::any_of(doubts, [&](const CameraDoubt& d) { return d.what == doubt.what; });
+        std::ranges::any_of(doubts, [&](const InputDoubt& d) { return d.what == doubt.what; });
     if (!is_known) doubts.push_back(doubt);
   }
   return doubts;
-}
-
-void CameraWarnings::Add(const std::vector<CameraDoubt>& doubts) {
-  for (const CameraDoubt& doubt : doubts) {
-    const auto known = std::ranges::find_if(
-        warnings_, [&](const Warning& warning) { return warning.first.what == doubt.what; });
-    if (known == warnings_.end()) {
-      warnings_.push_back({doubt, 1});
-    } else {
-      ++known->count;
-    }
-  }
-}
-
-void CameraWarnings::Print() const {
-  for (const auto& [first, count] : warnings_) {
-    const std::string more = count > 1 ? fmt::format(" (and {} more)", count - 1) : "";
-    PrintMessage("warning: {}{}: {}\n", Printable(first.place), more, first.what);
-  }
 }
 
 std::array<int, 2> LikelySize(const Camera& camera, const std::vector<Correspondence>& matches,

@@ -9,7 +9,7 @@
 #include "estimator/geometry/lens.h"
 #include "estimator/geometry/pose.h"
 #include "estimator/motion_problem.h"
-#include "experiments/data/camera_plausibility.h"
+#include "experiments/data/input_doubt.h"
 #include "experiments/data/truth_sd.h"
 
 namespace rcme {
@@ -73,7 +73,7 @@ struct MatchFile {
   std::optional<double> assumed_sigma_px = {};                        // the header sigma_px
   double noise_level = 1.0;                                           // of a template
   double seconds_between = std::numeric_limits<double>::quiet_NaN();  // NaN: not stated
-  std::vector<CameraDoubt> doubts = {};                               // about K
+  std::vector<InputDoubt> doubts = {};                                // about K
   std::optional<MotionPrior> prior = {};
   std::optional<BetterScore> better_score = {};  // nothing: the file has no scores
   std::vector<double> scores = {};               // per match, as in the file

@@ -60,8 +60,8 @@ Lens ReadLens(const MatchHeader& header, int number, const GivenCameras& given,
   return lens;
 }
 
-std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file,
-                                          const std::array<LensModel, 2>& models, const GivenCameras& given) {
+std::vector<InputDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file,
+                                         const std::array<LensModel, 2>& models, const GivenCameras& given) {
   const auto has_own = [&](const std::string& number) { return header.Has("camera" + number); };
   const auto place = [&](const std::string& number) {
     if (has_own(number)) return header.Place("camera" + number);

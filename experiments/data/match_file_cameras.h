@@ -15,7 +15,7 @@ Lens ReadLens(const MatchHeader& header, int number, const GivenCameras& given,
               const std::vector<Correspondence>& matches);
 
 // Returns doubts about the cameras of a file.
-std::vector<CameraDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file,
-                                          const std::array<LensModel, 2>& models, const GivenCameras& given);
+std::vector<InputDoubt> FindHeaderDoubts(const MatchHeader& header, const MatchFile& file,
+                                         const std::array<LensModel, 2>& models, const GivenCameras& given);
 
 }  // namespace rcme

@@ -186,7 +186,7 @@ std::vector<std::pair<std::string, std::shared_ptr<const DataSource>>> LoadMatch
   size_t num_matches = 0;
   const Redraw redraw(settings.redraw);
   TruthDoubts doubts(settings.truth_in_doubt);
-  CameraWarnings warnings;
+  InputWarnings warnings;
   for (const fs::path& path : paths) {
     MatchFile file = ReadMatchFile(path.string());
     if (visit) visit(file);

@@ -8,7 +8,7 @@
 
 #include "estimator/geometry/pose.h"
 #include "experiments/core/files/gzip_lines.h"
-#include "experiments/data/camera_plausibility.h"
+#include "experiments/data/input_doubt.h"
 
 namespace rcme {
 
@@ -26,7 +26,7 @@ class MatchHeader {
 
   std::string Place(const std::string& key) const;  // "file:12: key"
   // Comments that begin with nearly a key.
-  const std::vector<CameraDoubt>& doubts() const { return doubts_; }
+  const std::vector<InputDoubt>& doubts() const { return doubts_; }
   bool Has(const std::string& key) const { return entries_.count(key) > 0; }
   std::string Text(const std::string& key) const { return entries_.at(key).text; }
 
@@ -44,7 +44,7 @@ class MatchHeader {
   };
   std::string path_;
   std::map<std::string, Entry> entries_;
-  std::vector<CameraDoubt> doubts_;
+  std::vector<InputDoubt> doubts_;
 };
 
 }  // namespace rcme

@@ -98,7 +98,7 @@ void MatchRows::Add(std::string_view line, const GzipLines& lines) {
   }
 }
 
-std::vector<CameraDoubt> MatchRows::ListDoubts() const {
+std::vector<InputDoubt> MatchRows::ListDoubts() const {
   if (!first_with_more_) return {};
   return {{Place(*first_with_more_),
            has_names_

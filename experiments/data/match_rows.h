@@ -31,7 +31,7 @@ class MatchRows {
 
   std::string Place(size_t match) const;  // "file:12" of a match
   // Rows with more columns than stated are read by their first ones.
-  std::vector<CameraDoubt> ListDoubts() const;
+  std::vector<InputDoubt> ListDoubts() const;
   // Returns the scores; nothing unless there is exactly one such column. Call it only if the header has
   // better_score.
   std::optional<std::vector<double>> Scores() const;

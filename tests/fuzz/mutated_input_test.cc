@@ -328,7 +328,7 @@ class MatchLines {
 // All that a reader gives, but for the numbers of lines in its doubts and the doubt about further columns.
 std::string Described(const MatchFile& file) {
   const auto num_doubts = std::ranges::count_if(
-      file.doubts, [](const CameraDoubt& doubt) { return doubt.what.find("columns") == std::string::npos; });
+      file.doubts, [](const InputDoubt& doubt) { return doubt.what.find("columns") == std::string::npos; });
   std::string text = fmt::format("{}|{}|{}\n", file.scene, file.matches.size(), num_doubts);
   for (const Camera& camera : {file.camera1, file.camera2}) {
     text += fmt::format("{} {} {} {} {} {}\n", camera.fx, camera.fy, camera.cx, camera.cy, camera.width,

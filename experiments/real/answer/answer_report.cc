@@ -106,7 +106,7 @@ Json FileAnswerAsJson(const FileAnswer& file, const AnswerTerms& terms) {
   if (!file.error.empty())
     return {{"status", StatusName(MotionStatus::kInvalidInput)}, {"message", file.error}};
   Json json = AnswerAsJson(file.answer, terms.spec);
-  for (const CameraDoubt& doubt : file.doubts)
+  for (const InputDoubt& doubt : file.doubts)
     json["warnings"].push_back(fmt::format("{}: {}", doubt.place, doubt.what));
   return json;
 }

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "experiments/core/table/command_result.h"
-#include "experiments/data/camera_plausibility.h"
+#include "experiments/data/input_doubt.h"
 #include "experiments/real/answer/estimate_output.h"
 
 namespace rcme {
 
 // The answer for one file, or why it could not be read.
 struct FileAnswer {
-  std::string path, error = {};          // error: why it could not be read, or empty
-  std::vector<CameraDoubt> doubts = {};  // about the file's cameras
+  std::string path, error = {};         // error: why it could not be read, or empty
+  std::vector<InputDoubt> doubts = {};  // about the file's cameras
   PairAnswer answer = {};
 };
 

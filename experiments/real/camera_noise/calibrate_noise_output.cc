@@ -148,13 +148,12 @@ std::string NoiseCalibrationAsText(const NoiseCalibration& calibration, const st
   return FormatParagraph(DescribeEvidence(calibration, name)) + "\n" + RenderText(table) +
          FormatParagraph(
              "sigma: standard deviation per coordinate of a key point of the median size, with all that is "
-             "shared. Sizes are the stated noise over the median of the pair. The displacement field is "
-             "drawn "
+             "shared. Sizes are the stated noise over the median of the pair. The displacement field is drawn "
              "anew in every image, its correlation exp(-d / reach); that of all images is the same in each, "
-             "over 6x4 cells. Intervals 95 %, by the scatter of pairs; found: at 5 %. n: matches of the "
-             "noise, "
-             "pairs of the rest. is left: root mean square of what the pairs leave open of a fault, "
-             "after "
+             "over 6x4 cells. Intervals 95 %, by the scatter of pairs; found: at 5 %. n: matches of the noise, "
+             "pairs of the rest. The value of a fault is estimated beside all other faults. is removed: its "
+             "mean over the sets of faults that explain the pairs, most of which lack some; it may therefore "
+             "differ from the value. is left: root mean square of what the pairs leave open of a fault, after "
              "what is removed; covariances are widened by it. Faults: rcme help validate.");
 }
 

@@ -12,6 +12,7 @@
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
+#include "experiments/data/camera_plausibility.h"
 #include "parameters/input_error.h"
 #include "stats/constants.h"
 #include "stats/fnv1a.h"
@@ -222,7 +223,7 @@ void MakePairsOfImages(const std::vector<Sequence>& sequences, const PairsOption
     num_frames += static_cast<std::int64_t>((sequence.frames.size() + every - 1) / every);
   Progress progress("images", num_frames);
   FeatureCache cache(options.cache);
-  CameraWarnings warnings;
+  InputWarnings warnings;
   for (const Sequence& sequence : sequences)
     warnings.Add(FindCameraDoubts(sequence.lens.camera, sequence.name + ": K", sequence.lens.model));
   warnings.Print();
@@ -231,7 +232,7 @@ void MakePairsOfImages(const std::vector<Sequence>& sequences, const PairsOption
 
 void MakeListedPairs(ListedPairs& pairs, const PairsOptions& options, PairJournal* journal) {
   Progress progress("pairs", static_cast<std::int64_t>(pairs.size()), journal->num_before());
-  CameraWarnings warnings;
+  InputWarnings warnings;
   for (size_t i = 0; i < pairs.size(); ++i) {
     StopIfRequested(*journal);
     PairRow row;

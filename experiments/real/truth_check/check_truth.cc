@@ -111,7 +111,7 @@ std::vector<CheckedPair> CheckTruths(const std::vector<std::string>& folders,
                                      const MotionEstimator& estimator, const TruthCheckOptions& options) {
   const std::vector<PairFiles> files = ListPairFiles(folders);
   std::vector<CheckedPair> pairs;
-  CameraWarnings warnings;
+  InputWarnings warnings;
   Progress progress("pairs", std::ssize(files), 0);
   MakeInOrder(
       std::ssize(files), options.num_threads,

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/data/camera_plausibility.h"
+#include "experiments/data/input_doubt.h"
 #include "experiments/real/truth_check/truth_evidence.h"
 
 namespace rcme {
@@ -23,7 +23,7 @@ struct CheckedPair {
   bool has_truth = false;
   PairVerdict verdict;
   std::vector<FrontEndEvidence> front_ends;  // empty without a truth
-  std::vector<CameraDoubt> camera_doubts;
+  std::vector<InputDoubt> camera_doubts;
 };
 // Checks every pair of the folders, ordered by pair_id. The match files of a pair have file names that are
 // equal up to .csv. A folder is called by its own name, or by its given path if two have the same name.

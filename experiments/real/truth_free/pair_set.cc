@@ -22,7 +22,7 @@ std::string NameSet(const StudyPlan& plan, const Condition& condition) {
 
 std::vector<PairSet> PairSetsOfFolder(const std::string& folder, std::optional<double> sigma_px) {
   std::map<std::string, PairSet> sets;
-  CameraWarnings warnings;
+  InputWarnings warnings;
   StatedSigmas sigmas;
   for (const std::filesystem::path& path : MatchFilesIn(folder)) {
     MatchFile file = ReadMatchFile(path.string());

@@ -56,7 +56,7 @@ const std::vector<NamedCamera>& RealCameras() {
 
 TEST(CameraPlausibility, TheCamerasOfDataSetsPassWithoutAWord) {
   for (const auto& [name, camera] : RealCameras()) {
-    std::vector<CameraDoubt> doubts;
+    std::vector<InputDoubt> doubts;
     ASSERT_NO_THROW(doubts = FindCameraDoubts(camera, "K")) << name;
     EXPECT_TRUE(doubts.empty()) << name << ": " << doubts[0].what;
   }
@@ -64,7 +64,7 @@ TEST(CameraPlausibility, TheCamerasOfDataSetsPassWithoutAWord) {
 
 bool IsNoticed(const Camera& camera, const std::string& said) {
   try {
-    for (const CameraDoubt& doubt : FindCameraDoubts(camera, "K")) {
+    for (const InputDoubt& doubt : FindCameraDoubts(camera, "K")) {
       if (doubt.what.find(said) != std::string::npos) return true;
     }
   } catch (const InputError& error) {
@@ -88,7 +88,7 @@ TEST(CameraPlausibility, KOfAnotherSizeIsNoticedWithEveryCamera) {
   for (const double scale : {0.5, 2.0 / 3.0, 0.75, 1.25, 1.5}) {
     EXPECT_TRUE(IsNoticed(WithScaledK(RealCameras()[0].camera, scale), "if it was scaled, divide")) << scale;
   }
-  const std::vector<CameraDoubt> half =
+  const std::vector<InputDoubt> half =
       FindCameraDoubts(WithScaledK({700, 700, 319.5, 239.5, 640, 480}, 0.5), "a: K");
   ASSERT_EQ(half.size(), 1u);
   EXPECT_EQ(half[0].place, "a: K");
@@ -153,7 +153,7 @@ std::vector<Correspondence> PointsOnAGrid(double width = 640.0, double height = 
 std::string SayOfPoints(const Camera& camera, const std::vector<Correspondence>& matches,
                         bool is_size_known) {
   std::string said;
-  for (const CameraDoubt& d : FindKeyPointDoubts(camera, matches, &Correspondence::x1_px, is_size_known, "K"))
+  for (const InputDoubt& d : FindKeyPointDoubts(camera, matches, &Correspondence::x1_px, is_size_known, "K"))
     said += d.what + "\n";
   return said;
 }
@@ -213,13 +213,13 @@ TEST(CameraPlausibility, NormalisedCoordinatesAreNamedOnce) {
     EXPECT_NE(doubts[0].what.find("do not look like pixels"), std::string::npos) << doubts[0].what;
   }
   matches[5].x2_px << 40.0, 30.0;
-  for (const CameraDoubt& doubt : FindPairDoubts(camera1, camera2, matches, {"1", "2"}))
+  for (const InputDoubt& doubt : FindPairDoubts(camera1, camera2, matches, {"1", "2"}))
     EXPECT_EQ(doubt.what.find("do not look like pixels"), std::string::npos) << doubt.what;
 }
 
 TEST(CameraPlausibility, ASizeThatContradictsKAndKeyPointsIsTheOneFinding) {
   const Camera camera{600, 600, 319.5, 239.5, 330, 250};
-  const std::vector<CameraDoubt> doubts = FindPairDoubts(camera, camera, PointsOnAGrid(), {"1", "2"});
+  const std::vector<InputDoubt> doubts = FindPairDoubts(camera, camera, PointsOnAGrid(), {"1", "2"});
   ASSERT_EQ(doubts.size(), 1u);
   EXPECT_EQ(doubts[0].place, "1");
   EXPECT_NE(doubts[0].what.find("outside of an image of 330 x 250 px, its size, but fit K"),
@@ -244,7 +244,7 @@ TEST(CameraPlausibility, RealPairsPassAndHalfOfTheirKDoesNot) {
         return FindPairDoubts(WithScaledK(file.camera1, scale), WithScaledK(file.camera2, scale),
                               file.matches, places, {false, false});
       };
-      const std::vector<CameraDoubt> doubts = bare(1.0);
+      const std::vector<InputDoubt> doubts = bare(1.0);
       EXPECT_TRUE(doubts.empty()) << path << ": " << doubts[0].what;
       EXPECT_TRUE(IsNoticed(WithScaledK(file.camera1, 0.5), "an image of")) << path;
       EXPECT_TRUE(IsNoticed(WithScaledK(file.camera1, 2.0), "an image of")) << path;

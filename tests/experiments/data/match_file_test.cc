@@ -544,11 +544,11 @@ TEST_F(MatchFileTest, RowsOfMoreColumnsThanStated) {
   const auto doubts = [&](const std::string& rows) { return Read(MatchHeader() + rows).doubts; };
   EXPECT_TRUE(doubts("10,20,30,40\n11,20,30,40\n").empty());
   EXPECT_TRUE(doubts("x1,y1,x2,y2,ratio\n10,20,30,40,0.5\n10,20,30,40\n").empty());
-  const std::vector<CameraDoubt> unnamed = doubts("10,20,30,40\n1,10,20,30,40\n2,10,20,30,40\n");
+  const std::vector<InputDoubt> unnamed = doubts("10,20,30,40\n1,10,20,30,40\n2,10,20,30,40\n");
   ASSERT_EQ(unnamed.size(), 1U);
   EXPECT_THAT(unnamed[0].place, testing::EndsWith(":6"));
   EXPECT_THAT(unnamed[0].what, testing::HasSubstr("columns without names"));
-  const std::vector<CameraDoubt> named = doubts("x1,y1,x2,y2\n10,20,30,40,50,60,70,80\n");
+  const std::vector<InputDoubt> named = doubts("x1,y1,x2,y2\n10,20,30,40,50,60,70,80\n");
   ASSERT_EQ(named.size(), 1U);
   EXPECT_THAT(named[0].what, testing::HasSubstr("more columns than there are names"));
   EXPECT_TRUE(Refuses(MatchHeader() + "x1,y1,x2,y2,x1\n1,2,3,4,5\n", {"column x1 stands twice"}));
