@@ -165,7 +165,13 @@ struct Posed {
   MotionEstimate estimate;
   MotionPosterior posterior;
 };
-std::vector<Posed> ComputePosteriors(Kind kind, const CalibratedOptions& options = {}) {
+// With errors of the calibration, so that each mode within the bounds has two components.
+CalibratedOptions WithUnstatedErrors() {
+  CalibratedOptions options;
+  options.unstated_errors = 0.01;
+  return options;
+}
+std::vector<Posed> ComputePosteriors(Kind kind, const CalibratedOptions& options = WithUnstatedErrors()) {
   const std::unique_ptr<MotionEstimator> estimator = MakeRcmeCalibrated(options);
   std::vector<Posed> all;
   for (std::uint32_t trial = 0; trial < (kind == Kind::kTen ? 1u : 4u); ++trial) {

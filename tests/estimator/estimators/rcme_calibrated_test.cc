@@ -100,7 +100,8 @@ MotionProblem Distorted(MotionProblem problem, double k1) {
 // Errors that 300 matches show are probable, and widen the covariance; a right calibration is not doubted.
 // Nothing is added if the option says so, or if errors are stated.
 TEST_F(RcmeCalibratedOf, CovarianceCountsErrorsOfTheCalibrationThatTheMatchesShow) {
-  CalibratedOptions never, stated, stated_never;
+  CalibratedOptions counting, never, stated, stated_never;
+  counting.unstated_errors = stated.unstated_errors = 0.01;
   never.unstated_errors = stated_never.unstated_errors = 0.0;
   stated.calibration.focal_sd = stated_never.calibration.focal_sd = 0.01;
   const auto log_det = [](const MotionEstimate& e) { return std::log(e.pose_cov.determinant()); };
@@ -109,9 +110,9 @@ TEST_F(RcmeCalibratedOf, CovarianceCountsErrorsOfTheCalibrationThatTheMatchesSho
     const Scene scene = TwoCameraScene(300, trial);
     const MotionProblem right{ObserveTwoCameraScene(scene, 0.3, 0.2, trial).matches, scene.camera1,
                               scene.camera2, 0.3};
-    num_doubted += RunOn(right, trial).calibration_error_probability > 0.1;
+    num_doubted += RunOn(right, trial, counting).calibration_error_probability > 0.1;
     const MotionProblem wrong = Distorted(right, 0.1);
-    const MotionEstimate counted = RunOn(wrong, trial), exact = RunOn(wrong, trial, never);
+    const MotionEstimate counted = RunOn(wrong, trial, counting), exact = RunOn(wrong, trial, never);
     num_seen += counted.calibration_error_probability > 0.9 && log_det(counted) > log_det(exact) + 5.0;
     EXPECT_EQ(exact.calibration_error_probability, 0.0);
     EXPECT_EQ(RunOn(wrong, trial, stated).pose_cov, RunOn(wrong, trial, stated_never).pose_cov);
