@@ -132,6 +132,9 @@ struct MotionEstimate {
   // Probability that the calibration has errors that nobody stated (unstated_errors.h), which pose_cov
   // counts; 0: they are not counted.
   double calibration_error_probability = std::numeric_limits<double>::quiet_NaN();
+  // The covariance if it has them. pose_cov is the mean of the covariances with and without them, weighed by
+  // their probabilities.
+  Matrix5d pose_cov_with_errors = Matrix5d::Zero();
 
   PriorUse prior = PriorUse::kNone;
   // Probability that a correct prior is at least this far from the motion of the matches alone; NaN: not

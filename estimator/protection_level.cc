@@ -26,9 +26,30 @@ void RequireCovariance(const Matrix5d& covariance) {
     throw std::invalid_argument("protection level: the covariance is not positive semidefinite");
 }
 
-// The level of a block with these eigenvalues; negative ones (rounding) count as 0.
-double ComputeLevel(const Eigen::Vector3d& eigenvalues, double tail) {
-  return std::min(std::numbers::pi, GaussianNormQuantile(eigenvalues.cwiseMax(0.0), tail));
+// Of a block of a covariance, padded with 0; negative ones (rounding) count as 0.
+template <int kSize>
+Eigen::Vector3d FindEigenvalues(const Eigen::Matrix<double, kSize, kSize>& block) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, kSize, kSize>> solver(block,
+                                                                                  Eigen::EigenvaluesOnly);
+  Eigen::Vector3d eigenvalues = Eigen::Vector3d::Zero();
+  eigenvalues.head<kSize>() = solver.eigenvalues().cwiseMax(0.0);
+  return eigenvalues;
+}
+
+// The level of a mixture of two normal laws, `weight` that of the second. It lies between their levels.
+double ComputeLevel(const Eigen::Vector3d& first, const Eigen::Vector3d& second, double weight, double tail) {
+  constexpr int kHalvings = 60;
+  const double of_first = GaussianNormQuantile(first, tail);
+  if (weight == 0.0) return std::min(std::numbers::pi, of_first);
+  const double of_second = GaussianNormQuantile(second, tail);
+  double low = std::min(of_first, of_second), high = std::max(of_first, of_second);
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    const double beyond =
+        (1.0 - weight) * GaussianNormTail(first, middle) + weight * GaussianNormTail(second, middle);
+    (beyond > tail ? low : high) = middle;
+  }
+  return std::min(std::numbers::pi, high);
 }
 
 }  // namespace
@@ -48,13 +69,15 @@ ProtectionLevels ComputeProtectionLevels(const MotionEstimate& estimate, double 
   RequireCovariance(covariance);
   if (risk <= p) return {std::numbers::pi, std::numbers::pi};
   const double tail = (risk - p) / (1.0 - p);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> rotation(
-      Eigen::Matrix3d(covariance.topLeftCorner<3, 3>()), Eigen::EigenvaluesOnly);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> direction(
-      Eigen::Matrix2d(covariance.bottomRightCorner<2, 2>()), Eigen::EigenvaluesOnly);
-  const Eigen::Vector2d of_direction = direction.eigenvalues();
-  return {ComputeLevel(rotation.eigenvalues(), tail),
-          ComputeLevel({of_direction(0), of_direction(1), 0.0}, tail)};
+  const double errors = estimate.calibration_error_probability,
+               weight = errors > 0.0 ? std::min(errors, 1.0) : 0.0;
+  const Matrix5d& second = estimate.pose_cov_with_errors;
+  const Matrix5d first =
+      weight > 0.0 && weight < 1.0 ? Matrix5d((covariance - weight * second) / (1.0 - weight)) : covariance;
+  return {ComputeLevel(FindEigenvalues<3>(first.topLeftCorner<3, 3>()),
+                       FindEigenvalues<3>(second.topLeftCorner<3, 3>()), weight, tail),
+          ComputeLevel(FindEigenvalues<2>(first.bottomRightCorner<2, 2>()),
+                       FindEigenvalues<2>(second.bottomRightCorner<2, 2>()), weight, tail)};
 }
 
 }  // namespace rcme

@@ -1,11 +1,13 @@
 // Protection levels of an answer at an integrity risk q: the smallest angle that the error of the rotation,
 // or of the direction, exceeds with probability at most q, according to the answer itself.
 //
-// An answer states that with probability 1 - P its errors are normal with covariance `pose_cov`. With
+// An answer states that with probability 1 - P its errors are normal with covariance `pose_cov`, or, if the
+// calibration may have errors that nobody stated, a mixture of two normal laws: with the covariance
+// `pose_cov_with_errors` and `calibration_error_probability` as its weight, and without them. With
 // probability P, the failure probability, it is a wrong motion with an arbitrary error. So
 //   P(error > r) <= P + (1 - P) P(|e| > r),  e normal with the 3x3 block of the rotation (2x2: direction),
-// where |e| is the error angle: |w| of the rotation vector w, |b| of the tangent coordinates b of the
-// direction (geometry/pose.h). The level is
+// (the tails of a mixture add up), where |e| is the error angle: |w| of the rotation vector w, |b| of the
+// tangent coordinates b of the direction (geometry/pose.h). The level is
 //   pi                                     if q <= P: nothing is protected
 //   the r with P(|e| > r) = (q - P) / (1 - P), at most pi                               otherwise
 // with the exact law of |e| (stats/gaussian_norm.h, which states its accuracy). An estimator that states no P

@@ -14,6 +14,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from common import sheet, style
 from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
+from common.regular_file import read_bytes
 from common.text_size import fill
 
 LOOKS = {  # the second part of a case's name, or its group
@@ -49,9 +50,8 @@ draws build/benchmarks.png and build/benchmarks.pdf. scripts/benchmark does both
 
 def read(path):
     try:
-        with open(path, encoding="utf-8") as file:
-            content = json.load(file)
-    except (OSError, ValueError) as error:
+        content = json.loads(read_bytes(path).decode())
+    except (ValueError, RecursionError) as error:
         raise PlotError(f"{path}: cannot be read as JSON ({error}).") from error
     missing = [key for key in ("run", "ratios", "cases", "series") if key not in content]
     if missing:

@@ -17,6 +17,7 @@ from matplotlib.transforms import ScaledTranslation
 
 from common import direct_labels, sheet, style
 from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
+from common.regular_file import read_bytes
 
 EXAMPLE = """
 example:
@@ -203,16 +204,21 @@ def draw(validation):
 
 
 def read_validation(path):
+    content = read_bytes(path)
     try:
-        with open(path, encoding="utf-8") as file:
-            validation = json.load(file)
-    except OSError as error:
-        raise PlotError(f"{path}: cannot be read: {error.strerror}.") from error
-    except ValueError as error:
+        validation = json.loads(content.decode())
+    except (ValueError, RecursionError) as error:
         raise PlotError(f"{path}: is no JSON: {error}.") from error
     if not isinstance(validation, dict) or validation.get("format") != FORMAT or not validation.get("sets"):
         raise PlotError(f"{path}: is not what `rcme validate --out` writes (format '{FORMAT}', at least one set).")
     return validation
+
+
+def draw_file(options):
+    try:
+        return draw(read_validation(options.validation))
+    except (KeyError, TypeError, IndexError, AttributeError) as error:
+        raise PlotError(f"{options.validation}: is not a whole file of `rcme validate --out` ({error!r}).") from error
 
 
 def parse(arguments):
@@ -225,7 +231,7 @@ def parse(arguments):
 
 
 def main(arguments=None):
-    return draw_figure("validation.py", parse, lambda options: draw(read_validation(options.validation)), arguments)
+    return draw_figure("validation.py", parse, draw_file, arguments)
 
 
 if __name__ == "__main__":

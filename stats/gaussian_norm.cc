@@ -78,4 +78,10 @@ double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, double tail) {
   return std::sqrt(sorted(0)) * (0.5 * (lower + upper));
 }
 
+double GaussianNormTail(const Eigen::Vector3d& eigenvalues, double r) {
+  const Eigen::Vector3d sorted = SortEigenvalues(eigenvalues);
+  if (sorted(0) == 0.0) return r > 0.0 ? 0.0 : 1.0;
+  return NormTail(sorted / sorted(0), r / std::sqrt(sorted(0)));
+}
+
 }  // namespace rcme

@@ -25,4 +25,7 @@ namespace rcme {
 // not finite or negative, or tail is outside of [1e-300, 1).
 double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, double tail);
 
+// P(|e| > r), r >= 0. Throws for such eigenvalues likewise.
+double GaussianNormTail(const Eigen::Vector3d& eigenvalues, double r);
+
 }  // namespace rcme

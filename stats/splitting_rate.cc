@@ -65,7 +65,13 @@ SplittingRate EstimateSplittingRate(const SplittingPilot& pilot,
   rate.least_acceptance = LeastAcceptance(replicates);
   rate.unseen_up_to = ExactBinomialInterval(num_drawn_events, num_drawn).upper;
   const bool is_lost = logarithms.n() < estimates.n();
-  rate.interval = is_lost ? Interval{0.0, 1.0} : LognormalMeanInterval(logarithms);
+  // Without levels the replicates are shares of initial particles, which scatter less than the logarithms can
+  // show if all or nearly all are events.
+  const bool has_levels = std::ranges::any_of(
+      replicates, [](const SplittingReplicate& replicate) { return !replicate.acceptance.empty(); });
+  rate.interval = is_lost       ? Interval{0.0, 1.0}
+                  : !has_levels ? ExactBinomialInterval(num_drawn_events, num_drawn)
+                                : LognormalMeanInterval(logarithms);
   rate.interval.upper = std::min(1.0, rate.interval.upper);
   const Interval drawn = ExactBinomialInterval(num_drawn_events, num_drawn, 1.0 - kDrawsSignificanceLevel);
   if (is_lost) rate.doubts.push_back(SplittingDoubt::kReplicateLost);

@@ -32,7 +32,9 @@ struct SplittingRate {
   double estimate = 0.0;  // mean of the replicates: unbiased; NaN without levels
   double standard_error = 0.0;
   double relative_spread = 0.0;  // standard deviation of the replicates over their mean
-  Interval interval;             // 95 % (stats/lognormal_mean.h); [0, 1] if undefined
+  // 95 % (stats/lognormal_mean.h), without levels the exact one of the initial particles; [0, 1] if
+  // undefined.
+  Interval interval;
   // The upper end of the exact 95 % interval from the initial particles alone. Failures of a kind to which no
   // level leads may have any rate up to this and be missed.
   double unseen_up_to = 1.0;

@@ -54,7 +54,7 @@ WeightedRate EstimateWeightedRate(const WeightedEvents& events) {
     rate.num_effective_events = events.sum_weights * events.sum_weights / events.sum_squared_weights;
   }
   constexpr double kTail = 0.025;
-  const double m = events.sum_weights > 0.0 ? events.max_event_weight : 1.0;
+  const double m = events.sum_weights > 0.0 ? events.max_event_weight : std::max(events.max_weight, 1.0);
   rate.interval = {LowerEnd(events, kTail) / n, UpperEnd(events, m, kTail) / n};
   rate.cautious_upper = UpperEnd(events, std::max(m, events.max_weight), kTail) / n;
   return rate;

@@ -38,11 +38,12 @@ struct WeightedRate {
 // It also assumes that m bounds the weights of events. Fay & Feuer take the greatest possible weight;
 // cautious_upper takes the greatest of any trial. That is never below 3.7 m / n, and therefore useless for
 // rates far below 1 / n, the reason for weighting in the first place. `interval` takes the greatest weight of
-// an event (1, the mean weight, if no event was seen). It thereby assumes that weights without an observed
-// event contribute little to the rate. The sample itself cannot show whether this is true: an event that is
-// rare at its typical weight and frequent only at small ones gives an estimate that looks settled and is
-// orders of magnitude too low. For Binomial(100, p), p = 0.2 tilted to 0.5, 2,000 trials, and an event whose
-// odds grow by a factor e^s with every unit of K, the 95 % interval covers a rate of
+// an event (of a trial, at least 1, if no event was seen: then both are equal). It thereby assumes that
+// weights without an observed event contribute little to the rate. The sample itself cannot show whether this
+// is true: an event that is rare at its typical weight and frequent only at small ones gives an estimate that
+// looks settled and is orders of magnitude too low. For Binomial(100, p), p = 0.2 tilted to 0.5, 2,000
+// trials, and an event whose odds grow by a factor e^s with every unit of K, the 95 % interval covers a rate
+// of
 //   1e-2 in 96 %, 1e-4 in 96 %, 1e-6 in 95 % of the samples at s = 2,
 //   1e-2 in 96 %, 1e-4 in 88 %, 1e-6 in 66 % at s = 1,
 //   1e-2 in 95 %, 1e-4 in 56 %, 1e-6 in 13 % at s = 0.5:

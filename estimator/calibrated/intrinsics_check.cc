@@ -1,8 +1,10 @@
 #include "estimator/calibrated/intrinsics_check.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "estimator/geometry/essential_matrix.h"
 #include "estimator/noise_scale.h"
@@ -24,11 +26,63 @@ OfCamera MoveAlong(const Eigen::Vector2d& line, const Eigen::Vector2d& x, const 
           -kPrincipalPointSdPx * per_focal.y() * line.y(), -kDistortionSd * x.squaredNorm() * along};
 }
 
-// The derivatives of the residuals by the errors of either camera.
+// How a point x of the image plane z = 1 moves with each error of usual size of one camera.
+class PointMoves {
+ public:
+  PointMoves(const MotionProblem& problem, Camera MotionProblem::*camera, Lens Undistortion::*lens,
+             const Eigen::Matrix2d& of_pixels, const CalibrationPrior& stated)
+      : per_focal_of_pixels_(
+            Eigen::Vector2d(1.0 / (problem.*camera).fx, 1.0 / (problem.*camera).fy).asDiagonal() * of_pixels),
+        counts_(stated.focal_sd == 0.0, stated.principal_point_sd_px == 0.0,
+                stated.principal_point_sd_px == 0.0, stated.distortion_sd == 0.0) {
+    if (!problem.undistortion) return;
+    lens_ = (*problem.undistortion).*lens;
+    turn_ = per_focal_of_pixels_ * Eigen::Vector2d(lens_->camera.fx, lens_->camera.fy).asDiagonal();
+  }
+
+  bool CountsFocal() const { return counts_(0) != 0.0; }
+
+  Eigen::Matrix<double, 2, kOfCamera> At(const Eigen::Vector2d& x) const {
+    Eigen::Matrix<double, 2, kOfCamera> moves;
+    if (lens_) {
+      moves = MoveThroughLens(x);
+    } else {
+      moves << -kFocalSd * x, -kPrincipalPointSdPx * per_focal_of_pixels_,
+          -kDistortionSd * x.squaredNorm() * x;
+    }
+    return moves * counts_.asDiagonal();
+  }
+
+ private:
+  // The pixel u(x; lens) stays: dx = -(du/dx)^-1 du/dlens dlens. u is linear in k1. Turned pixels have a
+  // turned x.
+  Eigen::Matrix<double, 2, kOfCamera> MoveThroughLens(const Eigen::Vector2d& x) const {
+    const Eigen::Vector2d ray = turn_.transpose() * x, u_px = ProjectThrough(*lens_, ray);
+    Lens other = *lens_;
+    if (other.model == LensModel::kPinhole) other.model = LensModel::kRadtan;
+    other.k[0] += kDistortionSd;
+    Eigen::Matrix<double, 2, kOfCamera> of_pixel;
+    of_pixel << kFocalSd * (u_px - Eigen::Vector2d(lens_->camera.cx, lens_->camera.cy)),
+        kPrincipalPointSdPx * Eigen::Matrix2d::Identity(), ProjectThrough(other, ray) - u_px;
+    return -turn_ * ProjectThroughJacobian(*lens_, ray).inverse() * of_pixel;
+  }
+
+  Eigen::Matrix2d per_focal_of_pixels_;
+  Eigen::Vector4d counts_;  // 1 or, if errors of this kind are stated, 0
+  std::optional<Lens> lens_;
+  Eigen::Matrix2d turn_ = Eigen::Matrix2d::Identity();  // from rays of the lens to those of the problem
+};
+
+struct ExactMoves {
+  PointMoves image1, image2;
+};
+
+// The derivatives of the residuals by the errors of either camera. `exact`: null for CheckIntrinsics.
 class ResidualErrors {
  public:
-  ResidualErrors(const MotionProblem& problem, const RelativePose& pose)
+  ResidualErrors(const MotionProblem& problem, const RelativePose& pose, const ExactMoves* exact)
       : problem_(problem),
+        exact_(exact),
         E_(EssentialFromPose(pose)),
         per_focal1_(1.0 / problem.camera1.fx, 1.0 / problem.camera1.fy),
         per_focal2_(1.0 / problem.camera2.fx, 1.0 / problem.camera2.fy) {}
@@ -52,7 +106,14 @@ class ResidualErrors {
     const Eigen::Matrix2d E = E_.topLeftCorner<2, 2>();
     const Eigen::Vector2d by_x1 = per_root * (line1 - g_over_variance * (E.transpose() * by_line2)),
                           by_x2 = per_root * (line2 - g_over_variance * (E * by_line1));
-    OfMatch of{MoveAlong(by_x1, ray1.head<2>(), per_focal1_), MoveAlong(by_x2, ray2.head<2>(), per_focal2_)};
+    OfMatch of;
+    if (exact_ != nullptr) {
+      of = {by_x1.transpose() * exact_->image1.At(ray1.head<2>()),
+            by_x2.transpose() * exact_->image2.At(ray2.head<2>())};
+      if (!exact_->image1.CountsFocal()) return of;
+    } else {
+      of = {MoveAlong(by_x1, ray1.head<2>(), per_focal1_), MoveAlong(by_x2, ray2.head<2>(), per_focal2_)};
+    }
     of.by_camera1(0) += per_root * g_over_variance * kFocalSd * variance1;
     of.by_camera2(0) += per_root * g_over_variance * kFocalSd * variance2;
     return of;
@@ -60,6 +121,7 @@ class ResidualErrors {
 
  private:
   const MotionProblem& problem_;
+  const ExactMoves* exact_;
   Eigen::Matrix3d E_;
   Eigen::Array2d per_focal1_, per_focal2_;  // 1 / px
 };
@@ -67,8 +129,8 @@ class ResidualErrors {
 // [J, G, r]' W [J, G, r], summed over the matches that the answer explains.
 template <Eigen::Index kErrors>
 Eigen::Matrix<double, 6 + kErrors, 6 + kErrors> SumProducts(const MotionProblem& problem, const Mode& answer,
-                                                            const Explanation& e) {
-  const ResidualErrors errors(problem, answer.pose);
+                                                            const Explanation& e, const ExactMoves* exact) {
+  const ResidualErrors errors(problem, answer.pose, exact);
   const MixtureParameters& m = answer.mixture;
   Eigen::Matrix<double, 6 + kErrors, 6 + kErrors> sums;
   sums.setZero();
@@ -95,9 +157,16 @@ constexpr double kLeastInformation = 0.7;  // U, 1 / rad^2
 constexpr double kLeastRad = 1e-5, kMostRad = 3.0, kMostGain = 30.0;
 
 template <Eigen::Index kErrors>
-IntrinsicsCheck Check(const MotionProblem& problem, const Mode& answer, const Explanation& e) {
-  using Square = Eigen::Matrix<double, kErrors, kErrors>;
-  const auto sums = SumProducts<kErrors>(problem, answer, e);
+struct Evidence {
+  Eigen::Matrix<double, kErrors, kErrors> information;  // I_theta
+  Eigen::Matrix<double, kErrors, 1> score;              // q
+  Eigen::Matrix<double, 5, kErrors> M;
+};
+
+template <Eigen::Index kErrors>
+Evidence<kErrors> FindEvidence(const MotionProblem& problem, const Mode& answer, const Explanation& e,
+                               const ExactMoves* exact) {
+  const auto sums = SumProducts<kErrors>(problem, answer, e, exact);
   const Matrix5d of_motion = sums.template topLeftCorner<5, 5>();
   const auto across = sums.template block<kErrors, 5>(5, 0);
   const auto of_errors = sums.template block<kErrors, kErrors>(5, 5);
@@ -105,9 +174,15 @@ IntrinsicsCheck Check(const MotionProblem& problem, const Mode& answer, const Ex
   const Eigen::Matrix<double, 5, kErrors> M =
       Eigen::LLT<Matrix5d>(Matrix5d(of_motion + kLeastInformation * Matrix5d::Identity()))
           .solve(Eigen::Matrix<double, 5, kErrors>(across.transpose()));
-  const Square information = of_errors - across * M;
-  const Eigen::Matrix<double, kErrors, 1> score =
-      M.transpose() * last.template head<5>().transpose() - last.template segment<kErrors>(5).transpose();
+  return {of_errors - across * M,
+          M.transpose() * last.template head<5>().transpose() - last.template segment<kErrors>(5).transpose(),
+          M};
+}
+
+template <Eigen::Index kErrors>
+IntrinsicsCheck Check(const MotionProblem& problem, const Mode& answer, const Explanation& e) {
+  using Square = Eigen::Matrix<double, kErrors, kErrors>;
+  const auto [information, score, M] = FindEvidence<kErrors>(problem, answer, e, nullptr);
   const Square V = (information + Square::Identity()).llt().solve(Square::Identity());
   const Eigen::Matrix<double, kErrors, 1> theta = V * score;
   const Eigen::Matrix<double, 2, kErrors> D = -M.template bottomRows<2>();
@@ -117,10 +192,7 @@ IntrinsicsCheck Check(const MotionProblem& problem, const Mode& answer, const Ex
   };
   return {.reach_rad = root_within(D.squaredNorm(), kLeastRad, kMostRad),
           .root_gain = root_within(score.dot(theta), 0.0, kMostGain),
-          .shift_rad = root_within((D * theta).squaredNorm(), kLeastRad, kMostRad),
-          .information = information,
-          .score = score,
-          .of_motion = -M};
+          .shift_rad = root_within((D * theta).squaredNorm(), kLeastRad, kMostRad)};
 }
 
 }  // namespace
@@ -129,6 +201,18 @@ IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer
                                 const Explanation& explanation) {
   if (problem.camera1.K() == problem.camera2.K()) return Check<kOfCamera>(problem, answer, explanation);
   return Check<2 * kOfCamera>(problem, answer, explanation);
+}
+
+IntrinsicsEvidence FindIntrinsicsEvidence(const MotionProblem& problem, const Mode& answer,
+                                          const Explanation& explanation, const CalibrationPrior& stated) {
+  const ExactMoves exact{{problem, &MotionProblem::camera1, &Undistortion::lens1, stated.of_pixels1, stated},
+                         {problem, &MotionProblem::camera2, &Undistortion::lens2, stated.of_pixels2, stated}};
+  const auto find = [&]<Eigen::Index kErrors>() -> IntrinsicsEvidence {
+    const Evidence<kErrors> evidence = FindEvidence<kErrors>(problem, answer, explanation, &exact);
+    return {evidence.information, evidence.score, -evidence.M};
+  };
+  return problem.camera1.K() == problem.camera2.K() ? find.template operator()<kOfCamera>()
+                                                    : find.template operator()<2 * kOfCamera>();
 }
 
 CalibrationPrior ExceedUsualErrors(CalibrationPrior stated) {

@@ -25,20 +25,32 @@
 
 namespace rcme {
 
-// I_theta, q and -M for the errors over their usual standard deviations. The direction of the translation
-// moves by D theta, where D are the last two rows of -M. Angles are clipped to [1e-5, 3] rad.
+// The direction of the translation moves by D theta, where D are the last two rows of -M. Angles are clipped
+// to [1e-5, 3] rad.
 struct IntrinsicsCheck {
-  static constexpr int kMostErrors = 8;
   double reach_rad = 1e-5;  // sqrt(tr D D'): the direction's standard deviation by errors of usual size
   double root_gain = 0.0;   // sqrt(q'Vq), at most 30: how clearly the matches show an error
   double shift_rad = 1e-5;  // |D V q|: how far the direction moves if the most likely errors are corrected
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostErrors, kMostErrors> information = {};
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostErrors, 1> score = {};
-  Eigen::Matrix<double, 5, Eigen::Dynamic, 0, 5, kMostErrors> of_motion = {};  // -M, rad
 };
 
+// Takes undistorted points as those of pinhole images, and turned pixels (whitened_problem.h) as those of the
+// images: the probability of failure was fitted to this.
 IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer,
                                 const Explanation& explanation);
+
+struct IntrinsicsEvidence {
+  static constexpr int kMostErrors = 8;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostErrors, kMostErrors> information;  // I_theta
+  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostErrors, 1> score;                               // q
+  Eigen::Matrix<double, 5, Eigen::Dynamic, 0, 5, kMostErrors> of_motion;                           // -M, rad
+};
+
+// The evidence about errors of the kinds whose standard deviation in `stated` is 0; the others are not errors
+// of theta here, their rows are zero. Exact to first order: errors are those of the lenses that the matches
+// were undistorted by (MotionProblem::undistortion), and those of the principal point are in the pixels of
+// the images (CalibrationPrior::of_pixels1, 2).
+IntrinsicsEvidence FindIntrinsicsEvidence(const MotionProblem& problem, const Mode& answer,
+                                          const Explanation& explanation, const CalibrationPrior& stated);
 
 // What stated errors of the calibration add to the usual ones: the root of the excess of each variance, or 0.
 // The check knows the usual errors: of the 9,000 draws that it was fitted to, 3,000 are of a population that

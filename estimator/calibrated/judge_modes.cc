@@ -41,24 +41,37 @@ double ComputeLeftByIntrinsics(const JudgedModes& judged, const Mode& mode, cons
 // The errors that the covariance counts.
 UnstatedErrors FindUnstatedErrors(const JudgedModes& judged) {
   const CalibratedOptions& options = judged.options;
-  const bool is_wanted = options.calibration.IsNone() && options.covariance != CovarianceKind::kInformation &&
-                         options.leave_out != CalibratedStep::kModelCheck;
-  if (!is_wanted) return {};
-  UnstatedErrors errors =
-      WeighUnstatedErrors(judged.check.calibration, options.unstated_errors, CovarianceFactor(judged.check));
-  if (judged.prior.motion == nullptr) return errors;
+  const CalibrationPrior& stated = options.calibration;
+  const bool are_all_stated =
+      stated.focal_sd > 0.0 && stated.principal_point_sd_px > 0.0 && stated.distortion_sd > 0.0;
+  if (options.unstated_errors == 0.0 || are_all_stated) return {};
   const Mode& mode = judged.modes[judged.weights.answer].mode;
+  const Explanation& explanation = judged.modes[judged.weights.answer].explanation;
+  UnstatedErrors errors = WeighUnstatedErrors(
+      FindIntrinsicsEvidence(judged.problem, mode, explanation, stated), options.unstated_errors);
+  if (judged.prior.motion == nullptr) return errors;
   const Matrix5d to_both = mode.inverse_hessian * FindMatchInformation(judged.prior.motion, mode);
   errors.moment = to_both * errors.moment * to_both.transpose();
   return errors;
 }
 
-// The covariance of an answer whose direction is weak. Near the optimum the likelihood does not show how far
-// the direction may be away: without parallax it seems well determined (direction_posterior.h).
-Matrix5d WidenWeakDirection(const JudgedModes& judged, const Matrix5d& of_intrinsics) {
-  const Matrix5d& covariance = judged.weak_direction->covariance;
-  if (judged.options.covariance == CovarianceKind::kRobust) return covariance;
-  return BoundByUniformMotion(FindCheckFactor(judged.check, judged.options) * covariance + of_intrinsics);
+// MakeCovarianceRobust comes before the errors and the bound.
+ModeSpread MakeSpread(const Matrix5d& covariance, const UnstatedErrors& errors,
+                      const CalibratedOptions& options) {
+  if (options.covariance == CovarianceKind::kRobust) return {covariance, covariance, covariance};
+  return {BoundByUniformMotion(covariance), errors.AddTo(covariance), errors.MixInto(covariance)};
+}
+
+// The spread of an answer whose direction is weak. Near the optimum the likelihood does not show how far the
+// direction may be away: without parallax it seems well determined (direction_posterior.h).
+ModeSpread SpreadWeakDirection(const JudgedModes& judged, const UnstatedErrors& errors,
+                               const Matrix5d& of_intrinsics) {
+  const auto& covariance = judged.weak_direction->covariance;
+  const bool is_robust = judged.options.covariance == CovarianceKind::kRobust;
+  return MakeSpread(
+      is_robust ? covariance
+                : Matrix5d(FindCheckFactor(judged.check, judged.options) * covariance + of_intrinsics),
+      errors, judged.options);
 }
 
 }  // namespace
@@ -67,18 +80,15 @@ MotionBounds MakeMotionBounds(const CalibratedOptions& options) {
   return {kRadPerDeg * options.max_rotation_error_deg, kRadPerDeg * options.max_direction_error_deg};
 }
 
-ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads) {
+ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<ModeSpread>* spreads) {
   const auto& [problem, matches, prior, modes, weights, weak_direction, check, options] = judged;
   const MotionBounds bounds = MakeMotionBounds(options);
   const Mode& answer = modes[weights.answer].mode;
   double within = 0.0, success = 0.0;
-  Matrix5d of_weak = Matrix5d::Zero();
   ModesVerdict verdict;
   verdict.unstated_errors = FindUnstatedErrors(judged);
-  // MakeCovarianceRobust comes before them.
-  const UnstatedErrors unstated =
-      options.covariance == CovarianceKind::kRobust ? UnstatedErrors{} : verdict.unstated_errors;
-  if (spreads != nullptr) spreads->assign(modes.size(), Matrix5d::Zero());
+  std::optional<ModeSpread> of_weak;
+  if (spreads != nullptr) spreads->assign(modes.size(), {});
   for (size_t i = 0; i < modes.size(); ++i) {
     const double weight = weights.of_modes[i];
     const Mode& mode = modes[i].mode;
@@ -95,20 +105,29 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
     if (i == weights.answer) {
       const Matrix5d exact = weak_direction ? Matrix5d(Matrix5d::Zero()) : reach;
       verdict.left_by_intrinsics = ComputeLeftByIntrinsics(judged, mode, curvature, exact, rng);
-      if (weak_direction) of_weak = unstated.MixInto(WidenWeakDirection(judged, of_intrinsics));
+      if (weak_direction) of_weak = SpreadWeakDirection(judged, verdict.unstated_errors, of_intrinsics);
     }
-    if (spreads != nullptr) (*spreads)[i] = reach + of_intrinsics;
+    if (spreads != nullptr) (*spreads)[i].exact = reach + of_intrinsics;
     if (!IsWithin(answer.pose, bounds, mode.pose)) continue;
     const Vector5d away = LocalCoordinates(answer.pose, mode.pose);
-    const Matrix5d exact = ComputeModeCovariance(modes[i], curvature, of_intrinsics, check, prior, options);
-    if (spreads != nullptr) (*spreads)[i] = exact;
-    const Matrix5d covariance = unstated.MixInto(exact);
+    const ModeSpread spread =
+        MakeSpread(ComputeModeCovariance(modes[i], curvature, of_intrinsics, check, prior, options),
+                   verdict.unstated_errors, options);
+    if (spreads != nullptr) (*spreads)[i] = spread;
     const Matrix5d to_answer = TransportTangent(mode.pose, answer.pose);
-    verdict.pose_cov += weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
+    const auto second_moment = [&](const Matrix5d& covariance) -> Matrix5d {
+      return weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
+    };
+    verdict.pose_cov += second_moment(spread.mixed);
+    verdict.pose_cov_with_errors += second_moment(spread.with_errors);
     within += weight;
   }
   verdict.pose_cov /= within;
-  if (weak_direction) verdict.pose_cov = of_weak;
+  verdict.pose_cov_with_errors /= within;
+  if (of_weak) {
+    verdict.pose_cov = of_weak->mixed;
+    verdict.pose_cov_with_errors = of_weak->with_errors;
+  }
   verdict.mass_beyond = std::max(within - success, 0.0);
   verdict.by_modes = verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
   return verdict;
@@ -126,7 +145,7 @@ Matrix5d ComputeModeCovariance(const ExplainedMode& mode, const Matrix5d& curvat
   if (options.covariance == CovarianceKind::kRobust)
     return of_matches + of_prior;  // MakeCovarianceRobust adds the shared errors
   of_matches *= FindCheckFactor(check, options);
-  return BoundByUniformMotion(of_matches + of_prior + of_intrinsics);
+  return of_matches + of_prior + of_intrinsics;
 }
 
 }  // namespace rcme

@@ -26,17 +26,23 @@ struct JudgedModes {
   const CalibratedOptions& options;
 };
 
+// Covariances of a mode: if the calibration has no errors that nobody stated, if it has, and the second
+// moment of both cases.
+struct ModeSpread {
+  Matrix5d exact = Matrix5d::Zero(), with_errors = Matrix5d::Zero(), mixed = Matrix5d::Zero();
+};
+
 MotionBounds MakeMotionBounds(const CalibratedOptions& options);
 
 // The verdict before the model check corrects the probability. The covariance is the second moment, about the
 // answer, of the modes within the bounds or, if the direction is weak, of the directions within 90 deg of the
-// answer's (settle_direction.h). `spreads`, if not null, receives one matrix per
-// mode: its covariance within the bounds, the reach of its likelihood beyond them, zero if the weight is
-// negligible.
-ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<Matrix5d>* spreads);
+// answer's (settle_direction.h). `spreads`, if not null, receives one element per mode. Beyond the bounds
+// only `exact` is set, to the reach of the mode's likelihood; all are zero if the weight is negligible.
+ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vector<ModeSpread>* spreads);
 
-// The covariance of a mode by the option `covariance`, widened by the check and by uncertain intrinsics.
-// `curvature`: InverseOfObserved. `of_intrinsics`: IntrinsicsCovariance.
+// The covariance of a mode by the option `covariance`, widened by the check and by uncertain intrinsics,
+// before it is bounded by a uniform motion. `curvature`: InverseOfObserved. `of_intrinsics`:
+// IntrinsicsCovariance.
 Matrix5d ComputeModeCovariance(const ExplainedMode& mode, const Matrix5d& curvature,
                                const Matrix5d& of_intrinsics, const ModelCheck& check,
                                const MixturePrior& prior, const CalibratedOptions& options);

@@ -15,6 +15,7 @@ struct ModesVerdict {
   double left_by_intrinsics = 1.0;
   UnstatedErrors unstated_errors = {};  // of the calibration; in pose_cov unless CovarianceKind::kRobust
   Matrix5d pose_cov = Matrix5d::Zero();
+  Matrix5d pose_cov_with_errors = Matrix5d::Zero();  // if the calibration has these errors
 };
 
 // Applies the check to the weights. A probability of failure that it adds becomes weight of no motion. One

@@ -11,8 +11,12 @@
 // N(p - M V q, C + M V M'), C the covariance without errors. About the answer p it has the second moment
 // C + A, where A = M (V + V q q' V) M'.
 //
-// Errors that the residuals show could also be noise that is not independent. Where the check finds that the
-// variance of the motion is f times that by independent noise, q and I_theta are divided by f.
+// C and A are bounded by a uniform motion (BoundByUniformMotion) once they are added.
+//
+// Residuals that seem to show errors may also be noise that is not independent, which the covariance then
+// counts twice. Dividing q and I_theta by the factor by which the check widens the covariance was tried: as
+// the errors raise this factor themselves, it covers less where the calibration is wrong, and costs as much
+// where it is right.
 #pragma once
 
 #include "estimator/calibrated/intrinsics_check.h"
@@ -23,14 +27,13 @@ struct UnstatedErrors {
   double probability = 0.0;            // w
   Matrix5d moment = Matrix5d::Zero();  // A, 5x5 [rotation, direction], rad^2
 
-  // C + A, bounded by the covariance of a uniform motion (mode_covariance.h).
+  // C + A, bounded; `covariance`: C before it is bounded.
   Matrix5d AddTo(const Matrix5d& covariance) const;
-  // The second moment if there may be errors or not: (1 - w) C + w AddTo(C).
+  // The second moment if there may be errors or not: 1 - w parts of C, bounded, and w of AddTo(C).
   Matrix5d MixInto(const Matrix5d& covariance) const;
 };
 
-// `prior_probability`: pi. `variance_factor`: f. No errors if the check is not finite.
-UnstatedErrors WeighUnstatedErrors(const IntrinsicsCheck& check, double prior_probability,
-                                   double variance_factor);
+// `prior_probability`: pi. No errors if the evidence is not finite.
+UnstatedErrors WeighUnstatedErrors(const IntrinsicsEvidence& evidence, double prior_probability);
 
 }  // namespace rcme

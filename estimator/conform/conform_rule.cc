@@ -149,6 +149,8 @@ MotionEstimate ConformJudge::Apply(const MotionProblem& problem, MotionEstimate 
   }
   const bool has_region = std::isfinite(verdict.factor);
   estimate.pose_cov = has_region ? verdict.factor * estimate.pose_cov : CovarianceOfAllMotions();
+  estimate.pose_cov_with_errors =
+      has_region ? verdict.factor * estimate.pose_cov_with_errors : CovarianceOfAllMotions();
   for (MotionMode& mode : estimate.other_modes)
     mode.pose_cov = has_region ? verdict.factor * mode.pose_cov : CovarianceOfAllMotions();
   estimate.failure_probability = verdict.failure_probability;

@@ -56,6 +56,7 @@ struct Workings {
   std::vector<ExplainedMode> modes;
   ModeWeights weights;
   std::optional<WeakDirection> weak_direction;
+  UnstatedErrors unstated_errors;
   CheckedVerdict checked;
 };
 
@@ -93,6 +94,7 @@ void FillMotion(const ExplainedMode& answer, const ModesVerdict& verdict, double
   estimate->status = MotionStatus::kOk;
   estimate->cam2_from_cam1 = estimate->initial_pose = answer.mode.pose;
   estimate->pose_cov = verdict.pose_cov;
+  estimate->pose_cov_with_errors = verdict.pose_cov_with_errors;
   estimate->failure_probability = verdict.failure_probability;
   estimate->calibration_error_probability = verdict.unstated_errors.probability;
   estimate->sigma_estimated_px = assumed_sigma_px * mixture.scale / mixture.noise.scale_of_gaussian;
@@ -270,7 +272,12 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
           of_matches.checked.check, prior, options_);
       if (of_matches.weak_direction && !weights.is_second_motion[i])
         covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
-      beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i]});
+      else if (options_.covariance != CovarianceKind::kRobust)
+        covariance = BoundByUniformMotion(covariance);
+      const UnstatedErrors& errors = of_matches.unstated_errors;
+      const double of_errors = weights.of_modes[i] * errors.probability;
+      beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i] - of_errors});
+      if (of_errors > 0.0) beliefs.push_back({modes[i].mode.pose, covariance + errors.moment, of_errors});
     }
     return beliefs;
   }
@@ -306,11 +313,12 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     }
     const bool is_checked = options_.leave_out != CalibratedStep::kModelCheck;
     const ModelCheck check = CheckModel(shuffled, modes, weights);
-    std::vector<Matrix5d> spreads;
+    std::vector<ModeSpread> spreads;
     ModesVerdict verdict =
         JudgeModes({shuffled, matches, prior, modes, weights, weak_direction, check, options_}, rng,
                    posterior != nullptr ? &spreads : nullptr);
     workings->checked = {check, verdict.by_modes};
+    workings->unstated_errors = verdict.unstated_errors;
     if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
     verdict.failure_probability += (1.0 - verdict.left_by_intrinsics) * (1.0 - verdict.failure_probability);
     if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check, prior);
@@ -338,8 +346,9 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
             factor * (ratio > 1.0 && std::isfinite(ratio) ? ratio : 1.0) * estimate.pose_cov;
         UnstatedErrors errors = verdict.unstated_errors;
         errors.moment *= factor;
-        estimate.pose_cov =
-            errors.MixInto(BoundByUniformMotion(CovarianceWithPrior(of_matches, answer, prior)));
+        const Matrix5d of_both = CovarianceWithPrior(of_matches, answer, prior);
+        estimate.pose_cov = errors.MixInto(of_both);
+        estimate.pose_cov_with_errors = errors.AddTo(of_both);
       }
     }
     if (posterior != nullptr)
@@ -387,7 +396,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   // `spreads` of each mode: see Judge. With CovarianceKind::kRobust the covariance is not computed per mode:
   // the estimate's is used for the whole answer.
   MotionPosterior BuildPosterior(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
-                                 const ModeWeights& weights, const std::vector<Matrix5d>& spreads,
+                                 const ModeWeights& weights, const std::vector<ModeSpread>& spreads,
                                  const UnstatedErrors& unstated, bool is_direction_weak,
                                  const MotionEstimate& estimate) const {
     const bool is_whole = options_.covariance == CovarianceKind::kRobust;
@@ -398,11 +407,11 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (is_direction_weak && (is_answer || !weights.is_second_motion[i])) continue;
       if (weight < kNegligibleWeight && i != weights.answer) continue;
       if (is_whole && is_answer && i != weights.answer) continue;
-      const Matrix5d& spread = is_whole && is_answer ? estimate.pose_cov : spreads[i];
+      const Matrix5d& spread = is_whole && is_answer ? estimate.pose_cov : spreads[i].exact;
       const double of_errors = is_answer && !is_whole ? weight * unstated.probability : 0.0;
       components.push_back({modes[i].mode.pose, spread, weight - of_errors, is_answer});
       if (of_errors > 0.0)
-        components.push_back({modes[i].mode.pose, unstated.AddTo(spread), of_errors, true});
+        components.push_back({modes[i].mode.pose, spreads[i].with_errors, of_errors, true});
     }
     std::vector<DirectionCell> cells;
     if (is_direction_weak)

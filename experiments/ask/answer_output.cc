@@ -124,17 +124,20 @@ std::int64_t RoundTrials(std::int64_t trials) {
   return std::llround(step * std::round(number / step));
 }
 
-// The numbers of trials that tell the first two apart, and that show a difference of kPlainDifference.
+// The numbers of trials that tell the first two apart, and that show a difference of kPlainDifference. More
+// trials of the same seed would be a second look at the first ones, of which the p value knows nothing.
 std::string DescribeTrialsToTell(const Answer& a) {
   if (!a.difference) return "";
   const AskedDifference& d = *a.difference;
   const bool is_known = d.trials_to_tell <= 10'000'000;
   if (is_known && d.p_value < 0.05)
-    return fmt::format("; about {} tell the first two apart", RoundTrials(d.trials_to_tell));
+    return fmt::format("; about {} of another --seed tell the first two apart",
+                       RoundTrials(d.trials_to_tell));
   const std::string plain = fmt::format("to tell a {:g} % difference in success takes about {}",
                                         100.0 * kPlainDifference, RoundTrials(d.trials_of_plain_difference));
   return "; " +
-         (is_known ? fmt::format("about {} tell the first two apart, ", RoundTrials(d.trials_to_tell))
+         (is_known ? fmt::format("about {} of another --seed tell the first two apart, ",
+                                 RoundTrials(d.trials_to_tell))
                    : std::string()) +
          plain;
 }

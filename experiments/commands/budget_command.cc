@@ -10,6 +10,7 @@
 #include "experiments/core/table/table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/find_effort.h"
@@ -99,7 +100,7 @@ void RunBudget(const BudgetArguments& arguments) {
                              arguments.time_ms, arguments.study, arguments.time_ms, ToYaml(study)));
   PrintResult(MakeBudgetResult(arguments, study.name, rows, fresh.size()), arguments.format);
   PrintMessage("{}: the study with these efforts; next: rcme run {} --out run.sqlite\n", arguments.out,
-               arguments.out);
+               QuoteForShell(arguments.out));
 }
 
 }  // namespace

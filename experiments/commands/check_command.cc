@@ -178,6 +178,9 @@ void ReportDamage(const CheckArguments& arguments) {
 }
 
 void CheckCounts(const CheckArguments& arguments) {
+  if (!arguments.save_good.empty())
+    throw InputError(
+        fmt::format("--save-good: {} holds counts, of which nothing can be saved apart", arguments.run));
   const RunCounts counts = OpenCounts(arguments.run);
   FileCheck check;
   check.kept = "counts";
@@ -185,6 +188,16 @@ void CheckCounts(const CheckArguments& arguments) {
   check.origin = counts.run.origin;
   check.text = fmt::format("{}: sound: the counts of {} trials\n", arguments.run, check.num_trials);
   PrintCheckWithLock(arguments, counts.run, check);
+}
+
+// A sound file is copied, so that a script goes on with the same file in either case.
+std::string CopySound(const CheckArguments& arguments) {
+  if (arguments.save_good.empty()) return "";
+  Salvage salvage(arguments.run, std::nullopt);
+  std::int64_t num_saved = 0;
+  for (const SalvagedCondition& condition : SaveGood(&salvage, arguments.save_good))
+    num_saved += condition.num_sound;
+  return fmt::format("{}: all {} trials saved\n", arguments.save_good, num_saved);
 }
 
 void CheckTrials(const CheckArguments& arguments) {
@@ -198,6 +211,7 @@ void CheckTrials(const CheckArguments& arguments) {
       "{}: sound: {} trials, every checksum is right; of {} ({})\n", arguments.run, check.num_trials,
       run.origin.program.empty() ? "a program not noted" : run.origin.program,
       run.origin.instruction_set.empty() ? "instruction set not noted" : run.origin.instruction_set);
+  check.text += CopySound(arguments);
   PrintCheckWithLock(arguments, run, check);
 }
 

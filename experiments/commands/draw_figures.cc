@@ -10,6 +10,7 @@
 
 #include "experiments/core/files/shared_files.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/shell_word.h"
 #include "parameters/input_error.h"
 
 extern char** environ;
@@ -86,7 +87,9 @@ void DrawFigures(const std::string& kind, const std::vector<std::string>& argume
     if (end == ScriptEnd::kDone) return;
     const char* way =
         end == ScriptEnd::kNoPython ? "with matplotlib and pandas installed" : "see above; again";
-    PrintMessage("the figures were not drawn; {}: rcme plot {} {}\n", way, kind, fmt::join(arguments, " "));
+    std::string command = "rcme plot " + kind;
+    for (const std::string& argument : arguments) command += " " + QuoteForShell(argument);
+    PrintMessage("the figures were not drawn; {}: {}\n", way, command);
   } catch (const InputError& error) {
     PrintMessage("the figures were not drawn: {}\n", error.what());
   }

@@ -14,6 +14,7 @@
 #include "experiments/commands/study_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
@@ -162,7 +163,7 @@ void Export(const ExportArguments& arguments) {
       std::ssize(ids) < plan.NumTrials()
           ? fmt::format(" ({} trials cannot be simulated)", plan.NumTrials() - std::ssize(ids))
           : "",
-      (folder / "study.yaml").string());
+      QuoteForShell((folder / "study.yaml").string()));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "experiments/commands/common_options.h"
 #include "experiments/commands/lock_option.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/core/work/for_each_index.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
@@ -115,7 +116,7 @@ void Import(const ImportArguments& arguments) {
                    arguments.answers[i], num_missing, report.num_trials);
     }
   }
-  PrintMessage("done: {} trials; next: rcme compare {}\n", report.num_trials, arguments.out);
+  PrintMessage("done: {} trials; next: rcme compare {}\n", report.num_trials, QuoteForShell(arguments.out));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/data/match_file.h"
 #include "experiments/real/images/match_images.h"
 
@@ -52,7 +53,8 @@ Examples:
     if (file.matches.empty()) {
       PrintMessage("no match was kept -> {}\n", *out);
     } else {
-      PrintMessage("{} matches -> {}; next: rcme estimate {}\n", file.matches.size(), *out, *out);
+      PrintMessage("{} matches -> {}; next: rcme estimate {}\n", file.matches.size(), *out,
+                   QuoteForShell(*out));
     }
     Table table{
         {Column::Text("image1"), Column::Text("image2"), Column::Count("matches"), Column::Text("file")}};

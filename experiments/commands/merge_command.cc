@@ -8,6 +8,7 @@
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/core/work/runner.h"
 #include "experiments/core/work/shard.h"
 #include "experiments/core/work/stop_request.h"
@@ -98,7 +99,7 @@ void MergeResultFiles(const MergeArguments& arguments) {
   PrintMessage("{} parts, {} trials{} -> {}; next: rcme summarize {}\n", arguments.parts.size(),
                report.num_trials,
                report.num_twice > 0 ? fmt::format(" ({} read twice, and equal)", report.num_twice) : "",
-               arguments.out, arguments.out);
+               arguments.out, QuoteForShell(arguments.out));
   if (report.num_missing > 0) PrintMessage("{}\n", DescribeMissing(report));
   PrintResult(MakeMergeResult(arguments, report, ""), arguments.format);
 }

@@ -40,6 +40,8 @@ std::string PageFrom(const std::string& folder) {
 
 void WriteReport(const ReportArguments& arguments) {
   CheckReportFolder(arguments.out);
+  CheckIsNoInput(arguments.out, arguments.runs);
+  CheckCanBeWritten(arguments.out);
   const ScratchFolder folder;
   for (size_t i = 0; i < arguments.runs.size(); ++i) {
     const std::string run_folder = fmt::format("{}/run_{:04}", folder.path(), i + 1);

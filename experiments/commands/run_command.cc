@@ -14,6 +14,7 @@
 #include "experiments/core/table/table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/run_until.h"
@@ -174,11 +175,11 @@ void Run(const RunArguments& arguments) {
   const RunReport report = keeps_counts ? CountStudy(plan, arguments.threads, arguments.out, shard)
                                         : RunStudy(plan, arguments.threads, &*store, shard);
   const bool is_of_real_pairs = plan.conditions.front().source->SharedScene().has_value();
-  const std::string next =
-      shard.count > 1 ? "rcme merge " + arguments.out
-      : is_of_real_pairs && !keeps_counts
-          ? fmt::format("rcme summarize {0} (or, by scene, rcme paper-table {0})", arguments.out)
-          : "rcme summarize " + arguments.out;
+  const std::string next = shard.count > 1 ? "rcme merge " + QuoteForShell(arguments.out)
+                           : is_of_real_pairs && !keeps_counts
+                               ? fmt::format("rcme summarize {0} (or, by scene, rcme paper-table {0})",
+                                             QuoteForShell(arguments.out))
+                               : "rcme summarize " + QuoteForShell(arguments.out);
   PrintMessage("done: {} trials ({} were there already) in {}; next: {}\n", report.num_trials,
                report.num_trials - report.num_run_now, DescribeDuration(report.seconds), next);
   PrintResult(MakeRunResult(plan, report, arguments.out), arguments.format);

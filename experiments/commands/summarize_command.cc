@@ -74,6 +74,8 @@ void WarnOfRefusals(const Summary& summary) {
 
 std::string RenderSummary(const Summary& summary, const std::vector<std::string>& quantities,
                           const Arguments& arguments) {
+  if (!arguments.labels.empty() && arguments.format != "latex")
+    throw InputError("--labels: is for --format latex; other formats keep the names of the study");
   if (arguments.format == "latex") return SummaryAsLatex(summary, quantities, ParseLabels(arguments.labels));
   if (arguments.format == "markdown") return RenderMarkdown(MakeQuantityTable(summary, quantities));
   return quantities.empty() ? SummaryAsTable(summary) : QuantitiesAsTable(summary, quantities);

@@ -10,6 +10,7 @@
 #include "experiments/commands/tuning_source.h"
 #include "experiments/core/files/file_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/shell_word.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/study/estimator_file.h"
 #include "experiments/tuning/tune_json.h"
@@ -63,7 +64,7 @@ void WriteEstimator(const TuneArguments& arguments, const StudyPlan& plan, const
   WriteFileWhole(path, EstimatorFileText(spec, provenance));
   // With its own seed the study would repeat the trials on which the estimator was tuned.
   PrintMessage("{}: estimator {}; next: rcme run STUDY --seed {} --add-estimator {} --out run.sqlite\n", path,
-               spec.label, plan.study.seed + 1, path);
+               spec.label, plan.study.seed + 1, QuoteForShell(path));
 }
 
 // The checkpoint lies beside the file of the table; without such a file there is none.

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -115,16 +116,21 @@ void ReadPiece(const StudyPlan& plan, const TrialGrouping& grouping, const ItemP
     Require(trial >= trials.first && trial < trials.end);
     return grouping.FindGroup(condition, static_cast<std::uint32_t>(trial));
   };
-  for (const Json& trial : piece[0])
-    all->problems.push_back({group_of(static_cast<double>(CountFrom(trial, trials.end))), true});
+  std::map<std::int64_t, AskedProblem> by_trial;
+  for (const Json& entry : piece[0]) {
+    const std::int64_t trial = CountFrom(entry, trials.end);
+    by_trial[trial] = {group_of(static_cast<double>(trial)), true};
+  }
   all->num_unscored += CountFrom(piece[1], most);
   for (const Json& entry : piece[2]) {
     RequireSize(entry, kNumbersOfRow);
     const std::vector<double> numbers = NumbersFrom(entry);
     AnswerRow& row = all->rows.emplace_back(RowFrom(numbers));
     row.group = group_of(numbers[0]);
-    all->problems.push_back({row.group, false});
+    by_trial[static_cast<std::int64_t>(numbers[0])] = {row.group, false};
   }
+  // In the order of the trials: the first problem of a group is then refused as often as any other.
+  for (const auto& [trial, problem] : by_trial) all->problems.push_back(problem);
 }
 
 }  // namespace

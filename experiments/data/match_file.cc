@@ -159,6 +159,9 @@ double FindNoiseGrowth(const MatchFile& file) {
   return file.undistortion ? file.undistortion->noise_growth : 1.0;
 }
 
+// Twice the matches that are allowed: a small packed file may hold millions of empty lines.
+constexpr int kMaxLines = 2 * static_cast<int>(kMaxMatchesPerFile);
+
 MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCameras& given) {
   MatchFile file;
   file.path = path;
@@ -173,6 +176,8 @@ MatchFile ReadMatches(const std::string& path, GzipLines lines, const GivenCamer
           fmt::format("{}: is a zip or npz archive; a match file is text, and `rcme pairs "
                       "--layout npz` makes such files of archives",
                       path));
+    if (lines.line_number() > kMaxLines)
+      lines.Fail(fmt::format("too many lines; at most {} are allowed", kMaxLines));
     line = Trim(line);
     if (line.empty()) continue;
     if (line.front() == '#') {

@@ -72,23 +72,27 @@ TallyClusters ListTallyClusters(const ConditionIntegrity& condition) {
   return ClustersFrom(condition.scenes);
 }
 
+// One cluster per draw of a population or real scene.
+TallyClusters ListGroups(const std::vector<ConditionIntegrity>& conditions) {
+  std::map<std::int64_t, IntegrityTally> groups;
+  for (const ConditionIntegrity& condition : conditions) groups[condition.group].Add(condition.counts.tally);
+  TallyClusters clusters = ClustersFrom(groups);
+  clusters.by_trial = false;
+  return clusters;
+}
+
 TallyClusters ListTallyClusters(const IntegrityReport& report) {
+  if (report.new_problem == NewProblem::kCondition) return ListGroups(report.conditions);
   TallyClusters all;
   std::map<std::int64_t, IntegrityTally> common;
-  all.by_trial = report.new_problem == NewProblem::kTrial;
+  all.by_trial = true;
   for (const ConditionIntegrity& condition : report.conditions) {
-    if (report.new_problem == NewProblem::kCondition) {
-      all.tallies.push_back(condition.counts.tally);
-      continue;
-    }
     for (const auto& [number, tally] : condition.scenes) common[number].Add(tally);
     const TallyClusters of = ListTallyClusters(condition);
     all.by_trial = all.by_trial && of.by_trial;
     all.tallies.insert(all.tallies.end(), of.tallies.begin(), of.tallies.end());
   }
-  return report.has_common_scenes && !common.empty() && report.new_problem == NewProblem::kTrial
-             ? ClustersFrom(common)
-             : all;
+  return report.has_common_scenes && !common.empty() ? ClustersFrom(common) : all;
 }
 
 struct IntegrityRow {

@@ -37,8 +37,8 @@ struct IntegrityRates {
 IntegrityRates MeasureIntegrity(const std::vector<IntegrityTally>& clusters, bool by_trial, size_t quantity,
                                 double risk);
 
-// Over all conditions, each trial with the same weight. The clusters are conditions with
-// NewProblem::kCondition, otherwise scenes or trials.
+// Over all conditions, each trial with the same weight. The clusters are draws of the population or
+// real scenes with NewProblem::kCondition, otherwise scenes or trials.
 IntegrityRates MeasureIntegrity(const IntegrityReport& report, size_t quantity);
 
 // The verdict over all conditions: exceeded in rotation or in direction, kept in both, or undecided. If the

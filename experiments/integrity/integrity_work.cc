@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/trial/trial_grouping.h"
 #include "experiments/trial/trial_items.h"
 
 namespace rcme {
@@ -51,7 +52,11 @@ std::vector<ConditionIntegrity> ReadIntegrity(const StudyPlan& plan, const Runne
                 conditions[place.group].counts.Add(
                     ReadIntegrityCounts(text, trials.end - trials.first, &conditions[place.group].scenes));
               });
-  for (size_t c = 0; c < conditions.size(); ++c) conditions[c].levels = plan.conditions[c].levels;
+  const TrialGrouping grouping(plan, UsualNewProblem(plan));
+  for (size_t c = 0; c < conditions.size(); ++c) {
+    conditions[c].levels = plan.conditions[c].levels;
+    conditions[c].group = grouping.FindGroup(plan.conditions[c], 0);
+  }
   return conditions;
 }
 

@@ -1,6 +1,7 @@
 // Integrity counts of one estimator over the trials of a study, as work for the runner (core/work/runner.h).
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <vector>
 
@@ -16,6 +17,9 @@ void GetIntegrity(const StudyPlan& plan, const IntegrityTerms& terms, Runner* ru
 
 struct ConditionIntegrity {
   std::vector<std::string> levels;
+  // Conditions of one draw of a population, or of one real scene, have the same number; with
+  // NewProblem::kCondition (trial_grouping.h) they depend on each other.
+  std::int64_t group = 0;
   IntegrityCounts counts;
   // By scene number; empty if every trial has its own scene. Trials of a scene depend on each other, also
   // across conditions if the study has common scenes.

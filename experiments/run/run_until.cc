@@ -6,6 +6,7 @@
 
 #include "experiments/core/text/key_value.h"
 #include "experiments/core/text/message.h"
+#include "experiments/data/make_data.h"
 #include "parameters/input_error.h"
 #include "parameters/parameter.h"
 #include "stats/confidence_sequence.h"
@@ -89,6 +90,11 @@ void Begin(const StudyPlan& plan, ResultStore* store) {
     throw InputError(
         "--until: repeats of a scene (repeats_per_scene) are not independent, as its intervals require; "
         "give --trials instead");
+  }
+  if (FindSetting(plan.study.data, "scene") == kMatchFilesScene) {
+    throw InputError(
+        "--until: the trials of match files repeat the same pairs with other random numbers, so that they are not "
+        "independent, as its intervals require; give --trials instead");
   }
   store->NoteStoppingRule(kUntilRule);
 }

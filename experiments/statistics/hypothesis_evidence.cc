@@ -45,7 +45,7 @@ HypothesisEvidence::HypothesisEvidence(const RunDescription& run, const StatedHy
       against_(FindIfPresent(run, stated.against)),
       is_paired_(!stated.against.empty()),
       is_of_means_(run.repeats_per_scene > 1 || quantity_.kind == SummaryRow::Kind::kScore),
-      shares_scenes_(HasCommonScenes(run) && !IsSampleOfPopulation(run.identity)),
+      shares_scenes_(HasCommonScenes(run)),
       repeats_per_scene_(run.repeats_per_scene),
       bounds_(run.failure),
       has_(ConditionsWhere(run, stated.where)),

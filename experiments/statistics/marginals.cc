@@ -237,9 +237,9 @@ Marginal Measure(const std::vector<ConditionValues>& conditions, MarginalQuantit
 // sample of a population, conditions that do not depend on each other. Those for chosen draws are of these
 // very conditions, so their trials must not depend on each other either.
 void CheckTrialsAreIndependent(const RunDescription& run) {
-  const bool are_chosen = HasChosenDraws(run.identity), are_random = IsSampleOfPopulation(run.identity);
+  const bool are_chosen = HasChosenDraws(run.identity);
   const char* why = !run.stopping_rule.empty()                 ? "ended by a stopping rule (--until)"
-                    : HasCommonScenes(run) && !are_random      ? "share their scenes (common_scenes: true)"
+                    : HasCommonScenes(run)                     ? "share their scenes (common_scenes: true)"
                     : are_chosen && run.repeats_per_scene != 1 ? "repeat their scenes (repeats_per_scene)"
                                                                : nullptr;
   if (why == nullptr) return;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "experiments/core/text/columns.h"
@@ -53,12 +54,14 @@ std::string PreregistrationAsText(const Preregistration& preregistration) {
     text += SharpnessLine(decided.stated.estimator, decided.sharpness) +
             SharpnessLine(decided.stated.against, decided.sharpness_against);
   }
-  if (number > 0) {
+  const bool is_measured = std::ranges::any_of(
+      preregistration.hypotheses, [](const DecidedHypothesis& decided) { return decided.n > 0; });
+  if (is_measured) {
     text += fmt::format(
         "\nAll {} intervals together hold with {:.0f} %, each with {:.2f} %. They are of the\n"
         "trials that were asked for beforehand.\n",
         number, 100.0 * preregistration.confidence, 100.0 * preregistration.confidence_each);
-  } else if (preregistration.is_locked) {
+  } else if (preregistration.is_locked && number == 0) {
     text += "It states no hypothesis.\n";
   }
   if (!preregistration.deviations.empty()) text += "\nDecided after: the run departs from its lock\n";

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "experiments/study/population.h"
 #include "parameters/input_error.h"
 
 namespace rcme {
@@ -24,7 +23,7 @@ void CheckMayBePooled(const RunDescription& run) {
     throw InputError(
         "the outcomes decided how many trials each condition has (--until), so a rate over all conditions would depend "
         "on that; leave --pooled and --fifths-of out, or run the study with a fixed number of trials");
-  if (!HasCommonScenes(run) || IsSampleOfPopulation(run.identity)) return;
+  if (!HasCommonScenes(run)) return;
   throw InputError(
       "the conditions share their scenes (common_scenes: true), so their trials are not independent and an interval "
       "over all of them would be too short; leave --pooled and --fifths-of out");

@@ -183,6 +183,10 @@ StudyPlan BeginPlan(const Study& given, PlanEstimators estimators) {
   if (study.common_scenes && FindSetting(study.data, "scene") == kMatchFilesScene) {
     throw InputError("common_scenes: pairs of match files have no scenes to share; leave it out");
   }
+  if (study.common_scenes && study.population)
+    throw InputError(
+        "common_scenes: every draw of a population (conditions) has scenes of its own, or its rates would say "
+        "nothing of other draws; leave it out");
   StudyPlan plan;
   plan.study = study;
   plan.factor_names = FactorNames(study);

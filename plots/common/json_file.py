@@ -5,6 +5,7 @@ import json
 import math
 
 from common.command_line import PlotError
+from common.regular_file import read_bytes
 
 
 class Node:
@@ -101,11 +102,9 @@ def refuse_constant(name):
 def read_object(path, origin, stamp):
     """The Node of the whole file `path`, which the command `origin` wrote in the format `stamp`; a cut-off or foreign
     file is an error, and so is one of another format."""
+    content = read_bytes(path)
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            value = json.load(file, parse_constant=refuse_constant)
-    except OSError as error:
-        raise PlotError(f"{path}: cannot be read ({error.strerror}).")
+        value = json.loads(content.decode("utf-8-sig"), parse_constant=refuse_constant)
     except (ValueError, RecursionError) as error:
         raise PlotError(f"{path}: is not a whole JSON file ({error}); is it cut off?")
     file = Node(path, "the file", value, origin)

@@ -14,6 +14,7 @@ import re
 import tomllib
 
 from common.plot_error import PlotError
+from common.regular_file import MIB, read_bytes
 
 
 def is_texts(value):
@@ -45,12 +46,10 @@ def read_style(path):
     """{key: value} of the file; none without a path."""
     if path is None:
         return {}
+    content = read_bytes(path, MIB)
     try:
-        with open(path, "rb") as file:
-            settings = tomllib.load(file)
-    except OSError as error:
-        raise PlotError(f"--style {path}: cannot be read: {error.strerror}.") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        settings = tomllib.loads(content.decode())
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, RecursionError) as error:
         raise PlotError(f"--style {path}: is no TOML: {error}.") from error
     for key, value in settings.items():
         if key not in KEYS:

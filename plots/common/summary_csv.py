@@ -6,12 +6,14 @@ One row per (condition, estimator, quantity):
 """
 
 import csv
+import io
 import math
 import re
 
 import pandas
 
 from common.command_line import PlotError
+from common.regular_file import read_bytes
 
 MARKED = re.compile("^'(?=[' ]*[=+\\-@\t\r\uff1d\uff0b\uff0d\uff20])")
 COLUMNS = ("study", "condition", "estimator", "quantity", "kind", "value", "lower", "upper", "standard_error", "n")
@@ -47,13 +49,11 @@ class Summary(Table):
 def read_table(path, columns, origin):
     """The Table in the file `path`, which the command `origin` wrote and which has at least these columns; a cut-off or
     foreign file is an error, never a shorter table."""
+    content = read_bytes(path)
     try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file, strict=True)
-            header = next(reader, [])
-            lines = [(row, reader.line_num) for row in reader if row]
-    except OSError as error:
-        raise PlotError(f"{path}: cannot be read ({error.strerror}).")
+        reader = csv.reader(io.StringIO(content.decode("utf-8-sig"), newline=""), strict=True)
+        header = next(reader, [])
+        lines = [(row, reader.line_num) for row in reader if row]
     except (csv.Error, UnicodeDecodeError) as error:
         raise PlotError(f"{path}: is not a CSV file ({error}).")
     missing = [column for column in columns if column not in header]

@@ -94,9 +94,14 @@ def draw(summaries):
         draw_panel(panel, looks, by_estimator)
         if len(panels) > 1:
             panel.set_title(style.title_lines(letter + style.in_words(study), min(len(panels), 2)))
-    handles = [axes[0].plot([], [], **look.line())[0] for look in looks.values()]
+    has_lines = any(len(points) > 1 for by_estimator in panels.values() for points in by_estimator.values())
+    width = {"linewidth": 0.9} if has_lines else {"linestyle": "none"}
+    handles = [axes[0].plot([], [], **{**look.line(), **width})[0] for look in looks.values()]
+    trials = sorted(int(n) for summary in summaries for n in summary.rows[summary.rows.quantity == "success"].n)
+    number = f"n = {trials[0]:,}" + (f" to {trials[-1]:,}" if trials[-1] > trials[0] else "")
     which = "A panel per study" if len(panels) > 1 else f"Study {next(iter(panels))}"
     style.add_legend_and_caption(figure, handles, f"{which}; success: neither failed nor refused, over all conditions, "
-                                 "with its 95 % interval; time: median with its 95 % interval; a line joins one estimator's "
-                                 "budgets; broad grey: the points that no other beats in both.")
+                                 f"with its 95 % interval ({number} for a point); time: median with its 95 % interval; " +
+                                 ("a line joins one estimator's budgets, a file each; " if has_lines else "") +
+                                 "broad grey: the points that no other beats in both.")
     return figure

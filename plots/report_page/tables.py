@@ -42,11 +42,13 @@ def mean_cell(row):
 
 
 def median_cell(row):
-    """Without an interval where few trials, or looking again and again, leave none."""
+    """Without an interval where few trials, or looking again and again, leave none. Where refusals may be more than half, it
+    has no upper end."""
     value = f"{float(row['value']):.3g}"
-    if not row["lower"] or not row["upper"]:
+    if not row["lower"]:
         return joined([value])
-    return joined([value, Html("<br>"), small(f"[{float(row['lower']):.3g}, {float(row['upper']):.3g}]")])
+    upper = f"{float(row['upper']):.3g}" if row["upper"] else "\u221e"
+    return joined([value, Html("<br>"), small(f"[{float(row['lower']):.3g}, {upper}]")])
 
 
 def cell(row, num_trials):

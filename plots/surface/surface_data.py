@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from common.command_line import PlotError
+from common.regular_file import read_bytes
 from surface.condition_encoder import ConditionEncoder
 from surface.condition_model import ConditionModel
 from surface.memory import check_memory
@@ -77,13 +78,20 @@ class SurfaceData:
 
 def read_surface_data(path):
     """Raises PlotError for what is no such file, and for too few conditions or too many for this machine's memory."""
+    content = read_bytes(path)
     try:
-        with open(path, encoding="utf-8") as file:
-            data = json.load(file)
-    except (OSError, ValueError) as error:
-        raise PlotError(f"{path}: cannot be read ({error}).")
+        data = json.loads(content.decode())
+    except (ValueError, RecursionError) as error:
+        raise PlotError(f"{path}: cannot be read ({error}).") from error
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise PlotError(f"{path}: is not of format '{FORMAT}'; `rcme surface` makes it.")
+    try:
+        return surface_data_of(data)
+    except (KeyError, TypeError, IndexError, AttributeError) as error:
+        raise PlotError(f"{path}: is not a whole file of `rcme surface` ({error!r}).") from error
+
+
+def surface_data_of(data):
     names = [factor["name"] for factor in data["factors"]]
     conditions = pd.DataFrame(data["conditions"])
     levels = table_of(names, conditions.pop("levels"))

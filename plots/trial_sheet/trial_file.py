@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from common.command_line import PlotError
+from common.regular_file import read_bytes
 
 FORMAT = "rcme trial 2"
 KINDS = ("inlier", "outlier", "undetectable")
@@ -93,11 +94,9 @@ def trial_of(value):
 
 def read_trial(path):
     """The Trial in the file `path`; a cut-off or foreign file is an error."""
+    content = read_bytes(path)
     try:
-        with open(path, encoding="utf-8") as file:
-            return trial_of(json.load(file))
-    except OSError as error:
-        raise PlotError(f"{path}: cannot be read ({error.strerror}).")
+        return trial_of(json.loads(content.decode()))
     except KeyError as error:
         raise PlotError(f"{path}: has no key {error}; expected what 'rcme show --json' writes.")
     except (ValueError, TypeError, IndexError, RecursionError) as error:

@@ -142,6 +142,11 @@ TEST_F(BadInput, NumbersOnTheCommandLine) {
   EXPECT_TRUE(refuses({"run", study_, "--out", out_, "--until", "ci=2"}, "--until: 'ci=2' is not allowed"));
   EXPECT_TRUE(refuses({"run", study_, "--out", out_, "--until", "ci=0.1", "--max-trials", "99"},
                       "--max-trials: '99' is not allowed; give a whole number in [100, 2000000000]"));
+  folder_.Write("pairs.csv", MatchHeader() + MatchRows(20));
+  const std::string pairs =
+      folder_.Write("pairs.yaml", "data: {scene: match_files, folder: .}\nestimators: [{name: standard}]\n");
+  EXPECT_TRUE(refuses({"run", pairs, "--out", out_, "--until", "ci=0.1"},
+                      "--until: the trials of match files repeat the same pairs"));
   for (const std::string command : {"show", "replay"}) {
     EXPECT_TRUE(refuses({command, study_, "--condition", "", "--trial", "0"}, "--condition: '" + whole));
     EXPECT_TRUE(refuses({command, study_, "--condition", "-1", "--trial", "0"}, "--condition: '-1" + whole));

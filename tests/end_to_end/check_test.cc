@@ -32,6 +32,14 @@ class Check : public testing::Test {
   std::string run_ = folder_.Path("run.sqlite"), saved_ = folder_.Path("saved.sqlite"), csv_;
 };
 
+TEST_F(Check, ASoundFileIsSavedAsAWhole) {
+  const ProgramResult saved = RunRcme({"check", run_, "--save-good", saved_});
+  EXPECT_EQ(saved.exit_code, 0) << saved.err;
+  EXPECT_THAT(saved.out, HasSubstr("all 80 trials saved"));
+  EXPECT_EQ(Csv(saved_), csv_);
+  EXPECT_EQ(RunRcme({"check", run_, "--save-good", run_}).exit_code, 2) << "replaced the file itself";
+}
+
 TEST_F(Check, EveryCommandRefusesADamagedFile) {
   std::string bytes = ReadBytes(run_);
   bytes[bytes.size() - 100] = static_cast<char>(bytes[bytes.size() - 100] ^ 1);  // in the last record written

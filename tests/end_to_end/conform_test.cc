@@ -45,6 +45,22 @@ TEST_F(Conform, WritesAFileAndSaysWhatItPromises) {
                      "regions");
 }
 
+// A tenth of the problems is refused. The first problem of a draw is refused as often as any: in
+// a binomial number of 40 draws (above 20 in 1e-6), where the first refused one would be in all.
+TEST_F(Conform, TheFirstProblemOfADrawIsRefusedAsOftenAsAny) {
+  folder_.Write("small.yaml",
+                "name: draws\ntrials: 50\nconditions: {number: 40, ranges: {outlier_ratio: [0.1, 0.5], "
+                "sigma_px: [0.3, 1.5]}}\ndata: {scene: uniform_volume, num_matches: 60}\n"
+                "estimators: [{name: standard}]\n");
+  EXPECT_EQ(RunConform({"--estimator", "standard", "--out", file_}).exit_code, 0);
+  const ConformRule rule = ReadConformFile(file_).rule;
+  const double refused = static_cast<double>(rule.origin.num_refusals) / (40.0 * 50.0);
+  EXPECT_GT(refused, 0.05);
+  EXPECT_LT(refused, 0.2);
+  EXPECT_EQ(rule.origin.num_groups, 40);
+  EXPECT_LE(rule.origin.num_refused_groups, 20);
+}
+
 TEST_F(Conform, GivesTheSameBytesForThreadsAndShards) {
   Make();
   const std::string bytes = ReadBytes(file_), other = folder_.Path("other.json");

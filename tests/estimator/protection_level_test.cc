@@ -50,6 +50,25 @@ TEST(ProtectionLevels, OfRankOneAreNormalQuantiles) {
   EXPECT_NEAR(levels.direction_rad, 0.05 * z, 1e-8);
 }
 
+// A tenth of the errors are five times as wide. In two dimensions the tail of a normal length is exp(-r^2 / 2
+// sd^2). A normal law of the second moment would promise too little.
+TEST(ProtectionLevels, OfAMixtureCountBothLaws) {
+  const double sd = 0.01, wide = 0.05, weight = 0.1, risk = 1e-3;
+  MotionEstimate answer =
+      AnswerWith(((1.0 - weight) * sd * sd + weight * wide * wide) * Matrix5d::Identity());
+  const double normal = ComputeProtectionLevels(answer, risk).direction_rad;
+  answer.calibration_error_probability = weight;
+  answer.pose_cov_with_errors = wide * wide * Matrix5d::Identity();
+  const ProtectionLevels levels = ComputeProtectionLevels(answer, risk);
+  const auto beyond = [&](double r) {
+    return (1.0 - weight) * std::exp(-0.5 * std::pow(r / sd, 2)) +
+           weight * std::exp(-0.5 * std::pow(r / wide, 2));
+  };
+  EXPECT_NEAR(beyond(levels.direction_rad), risk, 1e-9);
+  EXPECT_GT(beyond(normal), 3.0 * risk);
+  EXPECT_GT(levels.rotation_rad, levels.direction_rad);
+}
+
 TEST(ProtectionLevels, AFailureProbabilityTakesItsShareOfTheRisk) {
   const double risk = 1e-2, p = 4e-3;
   const ProtectionLevels levels = ComputeProtectionLevels(RoundAnswer(p), risk);

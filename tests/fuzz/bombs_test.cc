@@ -69,6 +69,12 @@ TEST_F(MatchFileBomb, BlankLinesAndCommentsTakeNoMemory) {
   EXPECT_TRUE(IsRefused(keys, {"size1", "is missing"}));
 }
 
+// 256 MiB of empty lines would take minutes.
+TEST_F(MatchFileBomb, TooManyLines) {
+  EXPECT_TRUE(IsRefused(Gzip(Repeated("\n", 2'000'001)),
+                        {"bomb.csv:2000001: too many lines; at most 2000000 are allowed"}));
+}
+
 TEST_F(MatchFileBomb, GzipOfALongLineOrALongText) {
   EXPECT_TRUE(IsRefused(Gzip(std::string(64 << 20, ',')), {"bomb.csv:1: the line is too long"}));
   const std::string lines = Gzip(Repeated(std::string(999, ' ') + "\n", 16 << 10));  // 16 MiB in 64 kB

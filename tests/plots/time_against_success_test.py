@@ -2,6 +2,8 @@
 
 import unittest
 
+from matplotlib.text import Text
+
 from plot_test_case import PlotTestCase
 
 import time_against_success
@@ -32,6 +34,17 @@ class TimeAgainstSuccess(PlotTestCase):
         axes = draw([read_summary(self.summary(ROWS))]).axes[0]
         drawn = {tuple(line.get_xydata()[0]) for line in axes.lines if len(line.get_xydata()) == 1}
         self.assertLessEqual({(0.1, 0.5), (10.0, 0.9)}, drawn)
+
+    def test_says_how_many_trials_a_point_has_and_what_lines_there_are(self):
+        def words(figure):
+            return " ".join(" ".join(text.get_text() for text in figure.findobj(match=Text)).split())
+        one = draw([read_summary(self.summary(ROWS))])
+        self.assertIn("(n = 100 for a point)", words(one))
+        self.assertNotIn("a line joins", words(one))
+        more = [row.replace(",100,", ",2500,") for row in ROWS]
+        both = draw([read_summary(self.summary(ROWS)), read_summary(self.summary(more, "more.csv"))])
+        self.assertIn("(n = 100 to 2,500 for a point)", words(both))
+        self.assertIn("a line joins one estimator's budgets", words(both))
 
     def test_a_panel_per_study(self):
         other = self.summary([row.replace("peers,", "others,") for row in ROWS], "other.csv")

@@ -45,6 +45,10 @@ class Validation(PlotTestCase):
         for suffix in ("png", "pdf"):
             self.assertGreater((self.folder / f"figure.{suffix}").stat().st_size, 1000)
 
+    def test_a_file_that_is_not_whole_is_refused(self):
+        for content in ({"sets": [1]}, {"sets": [{"set": "hall"}]}):
+            self.assert_refused(self.run_on({"format": script.FORMAT} | content), "validation.json", "not a whole file")
+
     def test_every_test_with_a_ratio_stands_at_it(self):
         ratios = script.draw(fake()).axes[0]
         markers = [line.get_xdata()[0] for line in ratios.lines if line.get_marker() not in ("None", "_") and len(line.get_xdata()) == 1]

@@ -102,7 +102,7 @@ TEST(WeightedRate, WithoutTrialsAndWithEventsOfWeightZero) {
   EXPECT_EQ(rate.estimate, 0.0);
   EXPECT_EQ(rate.num_effective_events, 0.0);
   EXPECT_EQ(rate.interval.lower, 0.0);
-  EXPECT_NEAR(rate.interval.upper, 3.688879 / 2.0, 1e-6);
+  EXPECT_NEAR(rate.interval.upper, 1.5 * 3.688879 / 2.0, 1e-6);  // no event: of the greatest weight
   EXPECT_NEAR(rate.cautious_upper, 1.5 * 3.688879 / 2.0, 1e-6);
 }
 

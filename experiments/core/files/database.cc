@@ -58,6 +58,8 @@ SQLite::Database OpenDatabase(const std::string& path, int flags, FileLocks lock
 
 void ThrowForFile(const std::string& path, const SQLite::Exception& error) {
   if (error.getErrorCode() == SQLITE_CORRUPT) ThrowForFile(path, Damage(error.what()));
+  if (error.getErrorCode() == SQLITE_TOOBIG)
+    ThrowForFile(path, Damage(fmt::format("a value of more than {} MiB", kMaxValueBytes >> 20)));
   throw InputError(fmt::format("{}: {}", path, DescribeFileError(error)));
 }
 

@@ -71,7 +71,9 @@ void WriteFileWhole(const std::string& path, const std::string& text) {
 }
 
 void CheckCanBeWritten(const std::string& path) {
-  if (std::filesystem::is_directory(path)) ThrowCannotWrite(path, EISDIR);
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) ThrowCannotWrite(path, EISDIR);
+  if (error && error != std::errc::no_such_file_or_directory) ThrowCannotWrite(path, error.value());
   if (IsSpecial(path)) return;  // opening a pipe may wait for a reader
   CheckIsNoResultStore(path);
   const FileInPieces opened(path);

@@ -109,6 +109,8 @@ constexpr size_t kMaxNameBytes = 200;
 void CheckIsUtf8(std::string_view text, const std::string& path) {
   for (int line = 1; !text.empty();) {
     const size_t length = Utf8Length(text);
+    if (text.front() == '\0')
+      throw InputError(fmt::format("{}:{}: byte 0x00 is no text; save the file as UTF-8", path, line));
     if (length == 0) {
       throw InputError(fmt::format("{}:{}: byte 0x{:02X} is not UTF-8; save the file as UTF-8", path, line,
                                    static_cast<unsigned char>(text.front())));

@@ -137,8 +137,8 @@ std::string NarrowedText(const std::optional<PosteriorSummary>& posterior) {
   const auto& [rotation_rad, direction_rad] = posterior->quantile_95;
   if (std::isfinite(rotation_rad + direction_rad))
     text += fmt::format(
-        " In that\n             distribution 95 % of the rotations lie within {:.2g} deg of the answer, and 95 %\n"
-        "             of the directions within {:.2g} deg.",
+        " 95 % of that distribution's rotations\n             are within {:.2g} deg of the answer, 95 % of its "
+        "directions within {:.2g} deg.",
         kDegPerRad * rotation_rad, kDegPerRad * direction_rad);
   return text + "\n";
 }

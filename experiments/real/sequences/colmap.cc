@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "experiments/core/files/database.h"
+#include "experiments/core/files/regular_file.h"
 #include "experiments/data/colmap_camera.h"
 #include "experiments/real/images/features.h"
 #include "experiments/real/sequences/colmap_model.h"
@@ -69,10 +70,15 @@ struct ColmapKeyPoints {
   std::vector<KeyPoint> key_points;  // for their sizes; 0: not known
 };
 
+SQLite::Database OpenColmap(const std::string& path) {
+  RegularFile(path, {"database of COLMAP", "a database of COLMAP"});
+  return OpenDatabase(path, SQLite::OPEN_READONLY);
+}
+
 class ColmapPairs : public ListedPairs {
  public:
   ColmapPairs(const fs::path& path, const DatasetOptions& options)
-      : path_(path.string()), database_(OpenDatabase(path_, SQLite::OPEN_READONLY)) {
+      : path_(path.string()), database_(OpenColmap(path_)) {
     const std::string folder = FolderName(fs::absolute(path).parent_path());
     scene_ = options.name.empty() ? folder : options.name;
     ReadCameras();

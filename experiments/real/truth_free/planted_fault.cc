@@ -19,6 +19,7 @@ class ScaledCovariance : public MotionEstimator {
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
     MotionEstimate estimate = estimator_->Estimate(problem, rng);
     estimate.pose_cov *= factor_;
+    estimate.pose_cov_with_errors *= factor_;
     return estimate;
   }
 

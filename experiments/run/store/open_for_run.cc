@@ -93,9 +93,13 @@ std::string WithName(const std::string& names, const std::string& name) {
 void CheckPathToWrite(const std::string& path) {
   if (path.empty()) throw InputError("--out: '' is not allowed; give the path of a result file");
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
-  if (std::filesystem::is_directory(path))
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (error && status.type() != std::filesystem::file_type::not_found)
+    throw InputError(fmt::format("{}: cannot be written: {}", path, error.message()));
+  if (std::filesystem::is_directory(status))
     throw InputError(fmt::format("{}: is a folder, not a result file", path));
-  if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
     throw InputError(fmt::format("{}: cannot be written as a result file: it is a device or a pipe", path));
   if (!parent.empty() && !std::filesystem::is_directory(parent))
     throw InputError(fmt::format("{}: folder '{}' does not exist", path, parent.string()));

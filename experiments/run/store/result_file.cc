@@ -7,15 +7,17 @@
 #include <map>
 
 #include "experiments/core/files/checksum.h"
+#include "experiments/core/files/regular_file.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/run/store/schema.h"
 
 namespace rcme {
 
 void RequireResultFile(const std::string& path) {
-  if (std::filesystem::is_directory(path))
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
     throw InputError(fmt::format("{}: is a folder, not a result file; give one in it", path));
-  if (!std::filesystem::is_regular_file(path)) throw InputError(fmt::format("{}: no such result file", path));
+  RegularFile(path, {"result file", "a result file"});
 }
 
 ResultFile::ResultFile(const std::string& file, int sqlite_flags, FileLocks locks)

@@ -90,13 +90,33 @@ TEST(MotionPriorUse, AnExactRotationIsKept) {
   for (std::uint32_t trial = 0; trial < 10; ++trial) {
     Measured made = MakeMeasured(100, 0.3, 1e-3, trial);
     made.problem.prior->rotation->R = made.pose_true.R;
-    const MotionEstimate e = EstimateFrom(made.problem, trial, {.unstated_errors = 0.01});
+    CalibratedOptions with_errors;
+    with_errors.unstated_errors = 0.01;
+    const MotionEstimate e = EstimateFrom(made.problem, trial, with_errors);
     ASSERT_EQ(e.status, MotionStatus::kOk);
     EXPECT_EQ(e.prior, PriorUse::kUsed);
     EXPECT_LT(RotationAngleBetween(e.cam2_from_cam1.R, made.pose_true.R), 3e-3 * kRadPerDeg) << trial;
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(std::sqrt(e.pose_cov(k, k)) * kDegPerRad, 1e-3, 1e-4);
     EXPECT_FALSE(IsBeyondBounds(e, made.pose_true));
   }
+}
+
+// A principal point that is 10 px off turns the motion of the matches away from a right rotation. If errors of
+// the calibration are counted, the matches do not contradict it.
+TEST(MotionPriorUse, ARightRotationIsKeptThoughTheCalibrationIsWrong) {
+  constexpr int kTrials = 12;
+  CalibratedOptions counting;
+  counting.unstated_errors = 1.0;
+  int num_without = 0, num_counting = 0;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    Measured made = MakeMeasured(300, 0.3, 0.01, trial);
+    made.problem.camera1.cx += 10.0;
+    made.problem.camera1.cy -= 10.0;
+    num_without += EstimateFrom(made.problem, trial).prior == PriorUse::kContradicted;
+    num_counting += EstimateFrom(made.problem, trial, counting).prior == PriorUse::kContradicted;
+  }
+  EXPECT_GE(num_without, 6);
+  EXPECT_LE(num_counting, 1);
 }
 
 // A prior that says next to nothing leaves the answer where it is: of standard deviations of a million

@@ -103,7 +103,8 @@ TEST_F(RcmeCalibratedOf, CovarianceCountsErrorsOfTheCalibrationThatTheMatchesSho
   CalibratedOptions counting, never, stated, stated_never;
   counting.unstated_errors = stated.unstated_errors = 0.01;
   never.unstated_errors = stated_never.unstated_errors = 0.0;
-  stated.calibration.focal_sd = stated_never.calibration.focal_sd = 0.01;
+  stated.calibration =
+      stated_never.calibration = {.focal_sd = 0.01, .principal_point_sd_px = 3.0, .distortion_sd = 0.02};
   const auto log_det = [](const MotionEstimate& e) { return std::log(e.pose_cov.determinant()); };
   int num_seen = 0, num_doubted = 0;
   for (std::uint32_t trial = 0; trial < 20; ++trial) {

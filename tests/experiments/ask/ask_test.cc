@@ -467,7 +467,7 @@ TEST_F(AnswerOfRun, OneFailureMoreMayBeChance) {
         "no bound on the P of standard keeps failures below 5 % yet: that takes at least 123 answers without "
         "a failure",
         "standard states 20.00 % on average, 0.00 % [0.00, 11.28] (n 40) fail: too pessimistic ",
-        "40; about 310 tell the first two apart"})
+        "40; about 310 of another --seed tell the first two apart"})
     EXPECT_NE(words.find(part), std::string::npos) << part << "\n" << words;
 }
 

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <stdexcept>
 
 #include "estimator/protection_level.h"
@@ -259,8 +261,37 @@ TEST(RiskVerdict, OfNewConditionsCountsConditions) {
   for (RegionCounts& of : report.conditions[0].counts.tally.regions) of = {900, 100, 0, 0, 0};
   EXPECT_EQ(JudgeRisk(report), RiskVerdict::kExceeded);
   report.new_problem = NewProblem::kCondition;
+  const auto misleading_if_draws_have = [&](std::int64_t num_levels) {
+    for (size_t c = 0; c < 40; ++c) report.conditions[c].group = static_cast<std::int64_t>(c) / num_levels;
+    return MeasureIntegrity(report, 0).misleading;
+  };
+  const Estimate of_forty = misleading_if_draws_have(1), of_four = misleading_if_draws_have(10);
   EXPECT_NE(JudgeRisk(report), RiskVerdict::kExceeded);
-  EXPECT_EQ(MeasureIntegrity(report, 0).misleading.value, 0.0025);
+  EXPECT_EQ(of_forty.value, 0.0025);
+  // The ten levels of a factor make one draw, not ten.
+  EXPECT_EQ(of_four.value, 0.0025);
+  EXPECT_GT(of_four.interval.upper, 3.0 * of_forty.interval.upper);
+}
+
+// The conditions of a draw have its number, whatever the levels of the factors.
+TEST(IntegrityWork, LevelsOfADrawAreOneGroup) {
+  const Study study = ParseStudy(R"(
+name: draws
+trials: 1
+data: {scene: uniform_volume, num_matches: 60}
+conditions: {number: 3, ranges: {outlier_ratio: [0.1, 0.3]}}
+factors: {sigma_px: [0.3, 0.5]}
+estimators: [{name: standard}]
+)",
+                                 "draws.yaml");
+  const StudyPlan plan = MakePlan(study);
+  const std::vector<ConditionIntegrity> conditions = CountPlan(plan, {0.05, 0.4, 2.0});
+  ASSERT_EQ(conditions.size(), 6u);
+  std::map<std::int64_t, std::set<std::string>> draws_of;
+  for (const ConditionIntegrity& condition : conditions)
+    draws_of[condition.group].insert(condition.levels[0]);
+  EXPECT_EQ(draws_of.size(), 3u);
+  for (const auto& [group, draws] : draws_of) EXPECT_EQ(draws.size(), 1u) << group;
 }
 
 // Both conditions look at the same 200 scenes, and mislead in the same: what seems 400 trials is 200.

@@ -32,15 +32,15 @@ Study WideStudy() {
 }
 
 // The draws 0, ..., 23 of a population, as a sample or as chosen draws.
-Study StudyOfDraws(bool are_chosen, const std::string& more = "") {
+Study StudyOfDraws(bool are_chosen) {
   std::string numbers = "0";
   for (int i = 1; i < 24; ++i) numbers += fmt::format(", {}", i);
-  return ParseStudy("name: drawn\nseed: 1\ntrials: 40\n" + more +
-                        "data: {scene: uniform_volume, sigma_px: 0.5}\n"
-                        "conditions:\n  number: 24\n  ranges: {outlier_ratio: [0, 0.5]}\n" +
-                        (are_chosen ? "  draws: [" + numbers + "]\n" : "") +
-                        "estimators:\n  - {name: standard}\n",
-                    "drawn.yaml");
+  return ParseStudy(
+      "name: drawn\nseed: 1\ntrials: 40\n"
+      "data: {scene: uniform_volume, sigma_px: 0.5}\n"
+      "conditions:\n  number: 24\n  ranges: {outlier_ratio: [0, 0.5]}\n" +
+          (are_chosen ? "  draws: [" + numbers + "]\n" : "") + "estimators:\n  - {name: standard}\n",
+      "drawn.yaml");
 }
 
 // Answers with a stated probability of .2 that fail as often as `rate` says, in each condition.
@@ -170,12 +170,6 @@ TEST_F(MarginalsOfRun, ChosenDrawsAllowForFailuresThatWereNotSeen) {
   EXPECT_EQ(one.excess, 0.0);
   EXPECT_GT(one.interval.upper, 0.003);
   EXPECT_LT(one.interval.upper, 0.02);
-}
-
-TEST_F(MarginalsOfRun, ChosenDrawsThatShareScenesAreRefused) {
-  study_ = StudyOfDraws(true, "common_scenes: true\n");
-  EXPECT_TRUE(ThrowsInputError([&] { Measure([](const Condition&) { return 0.0; }); },
-                               {"the conditions share their scenes", "common_scenes"}));
 }
 
 TEST_F(MarginalsOfRun, AGridThatSharesScenesIsRefused) {

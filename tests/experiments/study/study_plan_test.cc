@@ -8,6 +8,7 @@
 
 #include "experiments/study/study_file.h"
 #include "parameters/input_error.h"
+#include "tests/test_support/expect_input_error.h"
 
 namespace rcme {
 namespace {
@@ -101,6 +102,16 @@ TEST(CommonScenes, AreRefusedWhereThereAreNone) {
   } catch (const InputError& error) {
     EXPECT_TRUE(std::string(error.what()).starts_with("common_scenes: ")) << error.what();
   }
+}
+
+TEST(CommonScenes, AreNoneOfTheDrawsOfAPopulation) {
+  EXPECT_TRUE(ThrowsInputError(
+      [] {
+        PlanOfText(
+            "common_scenes: true\ndata: {scene: uniform_volume}\n"
+            "conditions: {number: 2, ranges: {sigma_px: [0.3, 0.5]}}\n");
+      },
+      {"common_scenes: ", "population", "leave it out"}));
 }
 
 TEST(CommonScenes, SurviveTheStudysOwnText) {

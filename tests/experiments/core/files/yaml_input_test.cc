@@ -31,6 +31,11 @@ TEST(ParseYaml, RefusesWhatIsNotUtf8) {
   }
 }
 
+TEST(ParseYaml, RefusesTheByteZero) {
+  EXPECT_TRUE(ThrowsInputError([] { Parse(std::string("a: 1\nb: 2\n\0garbage: 3\n", 23)); },
+                               {"a.yaml:3: byte 0x00 is no text"}));
+}
+
 TEST(Entries, AMissingValueIsNamedWithTheLineOfItsKey) {
   const auto refuses = [](const std::string& yaml, const std::string& what) {
     return ThrowsInputError([&] { ParseStudy(yaml, "a.yaml"); }, {what});

@@ -60,7 +60,7 @@ TEST(EstimateOutput, ACovarianceThatIsWiderThanTheDistributionSaysByHowMuch) {
   // P(chi_3 > q / sd) = 0.04 for q = 3 deg, the bound: 95 % of the rotations are within 0.967 of it.
   EXPECT_NEAR(kDegPerRad * answer.posterior->quantile_95.rotation_rad, 2.9, 0.06);
   EXPECT_THAT(AnswerAsText(answer, spec),
-              AllOf(HasSubstr("standard deviations are 2.9 times"), HasSubstr("rotation within 2.9 deg")));
+              AllOf(HasSubstr("standard deviations are 2.9 times"), HasSubstr("are within 2.9 deg of the answer")));
   EXPECT_NEAR(AnswerAsJson(answer, spec)["posterior"]["narrowed"].get<double>(), answer.posterior->narrowed,
               1e-12);
   answer.posterior = summary(3.0, 0.2);

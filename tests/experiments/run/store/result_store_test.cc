@@ -379,6 +379,7 @@ TEST_F(ResultStoreTest, NothingToRead) {
   EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading(path_); }, {path_, "no such result file"}));
   EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading(folder_.path()); },
                                {"is a folder, not a result file"}));
+  EXPECT_TRUE(ThrowsInputError([&] { ResultStore::OpenForReading("/dev/zero"); }, {"is a device"}));
   EXPECT_EQ(folder_.NumEntries(), 0) << "looking for a file made one";
 }
 
