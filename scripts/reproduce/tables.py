@@ -147,9 +147,11 @@ FORMATS = {
 
 
 def shown(row, form):
-    """A row in one of the formats above, or one of its columns as it stands ("column NAME")."""
+    """A row in one of the formats above, or one of its columns, as it stands ("column NAME") or with so many digits
+    ("column NAME .3g")."""
     if form.startswith("column "):
-        return row[form[len("column "):]]
+        _, name, *digits = form.split()
+        return f"{float(row[name]):{digits[0]}}" if digits else row[name]
     if form not in FORMATS:
         raise ResultError(f"no format '{form}'; there are: {', '.join(FORMATS)}, column NAME")
     return FORMATS[form](row)
