@@ -40,7 +40,6 @@ std::string PageFrom(const std::string& folder) {
 
 void WriteReport(const ReportArguments& arguments) {
   CheckReportFolder(arguments.out);
-  CheckIsNoInput(arguments.out, arguments.runs);
   CheckCanBeWritten(arguments.out);
   const ScratchFolder folder;
   for (size_t i = 0; i < arguments.runs.size(); ++i) {

@@ -162,6 +162,7 @@ void Run(const RunArguments& arguments) {
   if (keeps_counts && !arguments.retry.empty())
     throw InputError(
         "--retry does not work with --keep counts: counts do not tell which trials to run again");
+  if (!arguments.until.empty()) CheckTrialsAreNew(plan);
   std::optional<ResultStore> store;
   if (!keeps_counts) store.emplace(ResultStore::OpenForRun(arguments.out, plan, shard));
   if (!arguments.retry.empty()) RemoveForRetry(plan, arguments, &*store);

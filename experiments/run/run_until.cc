@@ -83,9 +83,7 @@ PrecisionTarget PrecisionTarget::Parse(const std::string& text) {
   return target;
 }
 
-namespace {
-
-void Begin(const StudyPlan& plan, ResultStore* store) {
+void CheckTrialsAreNew(const StudyPlan& plan) {
   if (plan.study.repeats_per_scene > 1) {
     throw InputError(
         "--until: repeats of a scene (repeats_per_scene) are not independent, as its intervals require; "
@@ -96,6 +94,12 @@ void Begin(const StudyPlan& plan, ResultStore* store) {
         "--until: the trials of match files repeat the same pairs with other random numbers, so that they are not "
         "independent, as its intervals require; give --trials instead");
   }
+}
+
+namespace {
+
+void Begin(const StudyPlan& plan, ResultStore* store) {
+  CheckTrialsAreNew(plan);
   store->NoteStoppingRule(kUntilRule);
 }
 

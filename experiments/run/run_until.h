@@ -41,6 +41,10 @@ struct UntilOptions {
   int num_threads = 0;
 };
 
+// Throws InputError if scenes are repeated or the trials are passes over the same real pairs, which the
+// intervals do not allow.
+void CheckTrialsAreNew(const StudyPlan& plan);
+
 // Runs one round of one shard. A round looks at the merged trials that all shards computed in earlier
 // rounds, and adds this shard's part of the trials that every condition needs for its next look. `merged` is
 // null in the first round. Returns false if nothing was missing: every condition has reached the target or
@@ -52,7 +56,7 @@ bool RunRoundUntil(const StudyPlan& plan, const UntilOptions& options, const Sha
 
 // Runs until every estimator of every condition reaches the target or max_trials. Notes in the store that
 // the number of trials depends on the outcomes. Throws InputError if trials are weighted, because their
-// intervals hold for one look only, and if scenes are repeated.
+// intervals hold for one look only, and as CheckTrialsAreNew does.
 std::vector<CellPrecision> RunUntil(const StudyPlan& plan, const UntilOptions& options, ResultStore* store);
 
 }  // namespace rcme
