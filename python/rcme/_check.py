@@ -69,11 +69,12 @@ def rotation(name: str, matrix: np.ndarray) -> np.ndarray:
 
 
 def covariance(name: str, matrix: np.ndarray) -> np.ndarray:
-    """Symmetric, with standard deviations in [1e-6, 1e6]."""
+    """Symmetric, with standard deviations in [1e-6, 1e6]. Of a ratio above 3e6 rounding leaves nothing of the least."""
     is_symmetric = np.allclose(matrix, matrix.T, rtol=0.0, atol=1e-10 * np.abs(matrix).max())
-    if not is_symmetric or not 1e-12 <= np.linalg.eigvalsh(matrix).min() <= np.linalg.eigvalsh(matrix).max() <= 1e12:
+    least, greatest = np.linalg.eigvalsh(matrix)[[0, -1]]
+    if not is_symmetric or not 1e-12 <= least <= greatest <= 1e12 or not least >= 1e-13 * greatest:
         raise ValueError(f"{name}: {matrix.tolist()} is not allowed; expected a symmetric matrix with standard deviations in "
-                         "[1e-6, 1e6]")
+                         "[1e-6, 1e6], the greatest at most 3e6 times the least")
     return matrix
 
 

@@ -16,6 +16,7 @@ matplotlib.use("Agg")
 from matplotlib.figure import Figure  # noqa: E402
 
 X = np.arange(40.0).reshape(20, 2)
+TURN = np.linalg.qr(np.arange(9.0).reshape(3, 3) + np.eye(3))[0]
 K = [[700.0, 0, 320], [0, 700, 240], [0, 0, 1]]
 CAMERA = {"model": "PINHOLE", "width": 640, "height": 480, "params": [700, 700, 320, 240]}
 
@@ -75,6 +76,7 @@ WRONG = {
         ("rotation_sd_deg", dict(prior={"rotation": np.eye(3)})), ("rotation", dict(prior={"rotation": K, "rotation_sd_deg": 1})),
         ("rotation_sd_deg", dict(prior={"rotation": np.eye(3), "rotation_sd_deg": 0})),
         ("rotation_cov", dict(prior={"rotation": np.eye(3), "rotation_cov": np.zeros((3, 3))})),
+        ("3e6 times the least", dict(prior={"rotation": np.eye(3), "rotation_cov": TURN @ np.diag([1e-10, 1e-4, 1e4]) @ TURN.T})),
         ("gravity2", dict(prior={"gravity1": [0, 1, 0], "gravity_sd_deg": 1})),
         ("gravity1", dict(prior={"gravity1": [0, 0, 0], "gravity2": [0, 1, 0], "gravity_sd_deg": 1})),
         ("direction", dict(prior={"direction": [1, 2], "direction_sd_deg": 1})),
