@@ -53,8 +53,8 @@ std::vector<Parameter> Parameters(CalibratedOptions& o) {
       PrincipalPointParameter(&o.calibration.principal_point_sd_px),
       DistortionParameter(&o.calibration.distortion_sd),
       P::Real("unstated_errors", &o.unstated_errors, {0.0, 1.0}, "",
-              "prior probability that the calibration has errors of usual size (1.4 %, 4.7 px, k1 .023), if "
-              "none are stated; widens the covariance where the matches show them; 0: never"),
+              "prior probability that the calibration has errors of usual size (1.4 %, 4.7 px, k1 .023), of "
+              "the kinds that are not stated; widens the covariance where the matches show them; 0: never"),
   };
   for (P& parameter : Parameters(o.robust)) all.push_back(std::move(parameter));
   return all;

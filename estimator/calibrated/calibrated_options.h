@@ -54,8 +54,8 @@ struct CalibratedOptions {
   double second_motion_odds = 0.6;
   CalibratedStep leave_out = CalibratedStep::kNone;
   CalibrationPrior calibration;  // uncertainty of the intrinsics, added to the covariance
-  // Prior probability that the calibration has errors of usual size, if `calibration` states none
-  // (unstated_errors.h).
+  // Prior probability that the calibration has errors of usual size, of the kinds that `calibration` does not
+  // state (unstated_errors.h).
   double unstated_errors = 0.0;
   RobustCovarianceOptions robust;  // for kRobust; its calibration is taken from the field above
 };
