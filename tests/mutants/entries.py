@@ -10,6 +10,7 @@ original. A mutant belongs to the innermost room that its file is in, whichever 
 
 import dataclasses
 import pathlib
+import re
 import tomllib
 
 FOLDER = pathlib.Path(__file__).resolve().parent
@@ -42,6 +43,24 @@ class Mutant:
         return self.begin + len(self.was)
 
 
+def is_whole(code):
+    """Whether a piece of C++ can be an expression or statements: brackets that close, and for an expression no word that begins
+    a statement and no operator at an end that lacks its operand. Not exact; what it lets pass, the build of the mutants shows."""
+    code = re.sub(r'"(\\.|[^"\\])*"|\'(\\.|[^\'\\])\'', "_", code)
+    opened = []
+    for character in code:
+        if character in "([{":
+            opened.append(")]}"["([{".index(character)])
+        elif character in ")]}" and (not opened or opened.pop() != character):
+            return False
+    if opened:
+        return False
+    if code.endswith(";"):
+        return not re.match(r"(const|constexpr|auto|static|double|int)\b", code)
+    return not re.match(r"(if|else|for|while|return|case|const|constexpr|auto)\b|[/<>|?:,=]|[-*+] ", code) \
+        and not re.search(r"[-+*/=<>&|?:,]$", code)
+
+
 def find_once(text, part, where):
     """Where `part` begins in `text`."""
     count = text.count(part)
@@ -66,6 +85,8 @@ def read_entry(list_name, file, source, name, entry):
         raise EntryError(f"{where}: was is empty, begins or ends with a blank, or is what it becomes")
     if entry["was"].endswith(";") != entry["now"].endswith(";") and entry["now"] and file.endswith((".cc", ".h")):
         raise EntryError(f"{where}: was and now must both be expressions or both be statements")
+    if file.endswith((".cc", ".h")) and not (is_whole(entry["was"]) and is_whole(entry["now"])):
+        raise EntryError(f"{where}: was and now must be whole expressions, or whole statements that declare nothing")
     around = entry.get("in", entry["was"])
     begin = find_once(source, around, where) + find_once(around, entry["was"], where)
     return Mutant(room_of(file), file, name, entry["was"], entry["now"], begin, entry.get("equivalent", ""))

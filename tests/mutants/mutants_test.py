@@ -49,6 +49,13 @@ class Entries(unittest.TestCase):
         self.assert_refused("odd = { was = 'sum *= 0.5;', now = 'sum' }", "odd", "statements")
         self.assert_refused("open = { was = 'a", "stats.toml")
 
+    def test_a_piece_of_code_that_is_not_whole_is_refused(self):
+        for was, now in (("+ b", "- b"), ("a +", "a -"), ("Half(double a,", "Half(float a,"), ("return sum", "return a"),
+                         ("double sum = a + b;", "double sum = a - b;")):
+            self.assert_refused(f"half = {{ was = '{was}', now = '{now}' }}", "half", "whole")
+        self.assertTrue(entries.is_whole("*given"))
+        self.assertTrue(entries.is_whole("f(\"(\", '{')"))
+
     def test_the_room_is_the_innermost_that_the_file_is_in(self):
         self.assertEqual(entries.room_of("estimator/ransac_loop.h"), "estimator")
         self.assertEqual(entries.room_of("estimator/calibrated/influence.cc"), "calibrated")
