@@ -25,8 +25,14 @@ Eigen::Matrix3d InverseLeftJacobian(const Eigen::Vector3d& w) {
   return Eigen::Matrix3d::Identity() - 0.5 * cross + factor * cross * cross;
 }
 
-// T(a, b) of the header and its derivative with respect to a. For opposite vectors the turn is not unique;
-// this one is about an axis of DirectionBasis(a).
+// T(a, b) of the header and its derivative with respect to a. With the unit axis n of the turn it is
+//
+//   dT = -n (n x a)' da - f (b x n) n' da,
+//
+// a change of the angle and a turn of the axis. Beyond a right angle f keeps the value it has there: towards
+// the opposite of a it grows without bound, but the angle, and so the cost, does not depend on the turn of
+// the axis, and J' J would be information that the measurement does not have. For opposite vectors n is not
+// unique; this one is an axis of DirectionBasis(a).
 struct Turn {
   Eigen::Vector3d vector;
   Eigen::Matrix3d by_from;
@@ -37,9 +43,13 @@ Turn ComputeTurn(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   if (sin < 1e-9 && cos < 0.0) {
     return {std::numbers::pi * DirectionBasis(a).col(0), Eigen::Matrix3d::Zero()};
   }
-  const double f = sin < 1e-4 && cos > 0.0 ? 1.0 + angle * angle / 6.0 : angle / sin;
+  if (cos < 0.0) {
+    const Eigen::Vector3d n = axis / sin;
+    return {angle * n, -n * n.cross(a).transpose() - 0.5 * std::numbers::pi * b.cross(n) * n.transpose()};
+  }
+  const double f = sin < 1e-4 ? 1.0 + angle * angle / 6.0 : angle / sin;
   const double derivative =
-      sin < 1e-3 && cos > 0.0 ? -1.0 / 3.0 - 2.0 / 15.0 * angle * angle : (cos * f - 1.0) / (sin * sin);
+      sin < 1e-3 ? -1.0 / 3.0 - 2.0 / 15.0 * angle * angle : (cos * f - 1.0) / (sin * sin);
   return {f * axis, derivative * axis * b.transpose() - f * CrossMatrix(b)};
 }
 
@@ -144,6 +154,14 @@ double ComputePriorTail(const MotionPrior& prior, const RelativePose& pose, cons
   const double chi_square = r.residual.dot(llt.solve(r.residual));
   if (llt.info() != Eigen::Success || !std::isfinite(chi_square)) return 1.0;  // it contradicts nothing
   return 1.0 - ChiSquareCdf(CountPriorFreedom(prior), chi_square);
+}
+
+double ComputePriorAgreement(const MotionPrior& prior) {
+  if (!prior.rotation || !prior.gravity) return 1.0;
+  Matrix5d measured_cov = Matrix5d::Zero();
+  measured_cov.topLeftCorner<3, 3>() = prior.rotation->cov;
+  return ComputePriorTail({.gravity = prior.gravity}, {prior.rotation->R, Eigen::Vector3d::UnitZ()},
+                          measured_cov);
 }
 
 std::vector<double> ListPriorNumbers(const MotionPrior& prior) {

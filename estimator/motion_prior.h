@@ -84,6 +84,10 @@ double LogPeakOverUniform(const MotionPrior& prior);
 // the upper tail of chi-square at r' (I + J pose_cov J')^-1 r, with CountPriorFreedom degrees of freedom.
 double ComputePriorTail(const MotionPrior& prior, const RelativePose& pose, const Matrix5d& pose_cov);
 
+// The probability that measurements of one motion, its rotation and the direction of gravity, depart from
+// each other at least as far as these; 1 unless the prior has both. (No other parts measure the same.)
+double ComputePriorAgreement(const MotionPrior& prior);
+
 // All numbers of a prior; two lists are equal only if the priors are.
 std::vector<double> ListPriorNumbers(const MotionPrior& prior);
 

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <vector>
 
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 #include "stats/fnv1a.h"
 
 namespace rcme {
@@ -17,6 +19,17 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kProblemFormat = "rcme problem 1";
 constexpr int kMaxDepth = 4;  // nesting of an answer: a matrix is a list of lists in an object
+const std::vector<std::string> kAnswerKeys = {"id",
+                                              "R",
+                                              "t",
+                                              "status",
+                                              "message",
+                                              "pose_cov",
+                                              "inliers",
+                                              "sigma",
+                                              "seconds",
+                                              "p_failure",
+                                              "inlier_probabilities"};
 
 [[noreturn]] void Fail(const std::string& what) {
   throw NoOutsideAnswer(MotionStatus::kUnreadableAnswer, what);
@@ -36,6 +49,13 @@ Json CameraAsJson(const Camera& c) {
 double NumberIn(const Json& value, const std::string& key) {
   if (!value.is_number()) Fail(fmt::format("{}: {} is no number", key, Quoted(value.dump())));
   return value.get<double>();
+}
+
+// Other keys than those of an answer are skipped, but not one that was probably meant to be one of them.
+void CheckKey(const std::string& key) {
+  if (std::ranges::find(kAnswerKeys, key) != kAnswerKeys.end()) return;
+  const std::string meant = DidYouMean(key, kAnswerKeys);
+  if (!meant.empty()) Fail(fmt::format("unknown key {}{}", Quoted(key), meant));
 }
 
 // A list of `count` numbers, or a matrix with as many, row by row.
@@ -142,9 +162,10 @@ AnswerLine AnswerFromJson(std::string_view line) {
   std::set<std::string> keys;
   const auto is_allowed = [&](int depth, Json::parse_event_t event, Json& parsed) {
     if (depth > kMaxDepth) Fail("lists within lists within lists; expected one JSON object");
-    const bool is_key = depth == 1 && event == Json::parse_event_t::key;
-    if (is_key && !keys.insert(parsed.get<std::string>()).second)
-      Fail(fmt::format("key {} stands twice", Quoted(parsed.get<std::string>())));
+    if (depth != 1 || event != Json::parse_event_t::key) return true;
+    const auto key = parsed.get<std::string>();
+    if (!keys.insert(key).second) Fail(fmt::format("key {} stands twice", Quoted(key)));
+    CheckKey(key);
     return true;
   };
   AnswerLine read;

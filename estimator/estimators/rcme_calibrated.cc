@@ -242,8 +242,15 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
     const bool is_contradicted = p_value < kPriorLevel;
     if (is_contradicted) {
       estimate = std::move(alone);
-      estimate.message += fmt::format("; the prior contradicts the matches (probability {}) and is not used",
-                                      ProbabilityText(p_value));
+      const double agreement = ComputePriorAgreement(*problem.prior);
+      estimate.message +=
+          agreement < kPriorLevel
+              ? fmt::format(
+                    "; the prior's rotation and gravity contradict each other (probability {}); "
+                    "neither is used",
+                    ProbabilityText(agreement))
+              : fmt::format("; the prior contradicts the matches (probability {}) and is not used",
+                            ProbabilityText(p_value));
       if (posterior != nullptr) *posterior = std::move(posterior_of_matches);
     }
     estimate.prior = is_contradicted ? PriorUse::kContradicted : PriorUse::kUsed;

@@ -102,6 +102,28 @@ TEST(MotionPrior, CostsOfMotionsByHand) {
   EXPECT_EQ(CountPriorFreedom(rotation) + CountPriorFreedom(gravity) + CountPriorFreedom(direction), 7);
 }
 
+// The squared angle to a measurement has no curvature across the way to it that is greater than 1 (by hand,
+// angle / tan(angle)). Where the measurement is nearly opposite, the information of the residuals may not be
+// far more; the gradient is still that of the cost.
+TEST(MotionPrior, NearlyOppositeMeasurementsHaveNoMoreInformation) {
+  RandomStream rng({.seed = 1, .purpose = 2851});
+  const double sd = 0.5, right_angle = 0.5 * std::numbers::pi;
+  for (const double from_opposite_rad : {1e-7, 1e-4, 0.01, 0.3, 1.4}) {
+    const RelativePose pose = RandomPose(rng, 60.0);
+    const double angle = std::numbers::pi - from_opposite_rad;
+    const Eigen::Vector3d opposite = RotationFromVector(angle * DirectionBasis(pose.t).col(0)) * pose.t;
+    const MotionPrior prior{{}, {}, DirectionPrior{opposite, sd}};
+    const PriorTerms terms = EvaluatePrior(prior, pose);
+    const Eigen::Matrix2d information = terms.hessian.bottomRightCorner<2, 2>() * sd * sd;
+    EXPECT_NEAR(information.determinant(), right_angle * right_angle, 1e-3) << from_opposite_rad;
+    EXPECT_NEAR(information.trace(), 1.0 + right_angle * right_angle, 1e-3) << from_opposite_rad;
+    EXPECT_NEAR(terms.gradient.tail<2>().norm() * sd * sd, angle, 1e-5) << from_opposite_rad;
+    const Eigen::Vector3d below = pose.R.transpose() * opposite;  // seen by camera 1, and its opposite by 2
+    const MotionPrior gravity{{}, GravityPrior{below, pose.t, 0.6 * sd, 0.8 * sd}};
+    EXPECT_LE(EvaluatePrior(gravity, pose).hessian.trace() * sd * sd, 1.001 + right_angle * right_angle);
+  }
+}
+
 // The rotation that the documentation states: true R = Exp(w) R_measured.
 TEST(MotionPrior, CovarianceIsOnTheSideOfPoseCov) {
   const Eigen::Matrix3d R = RotationFromVector({0.3, -1.1, 0.4});
@@ -115,7 +137,7 @@ TEST(MotionPrior, CovarianceIsOnTheSideOfPoseCov) {
 // more than a tenth.
 TEST(MotionPrior, TailIsUniformForRightMeasurements) {
   RandomStream rng({.seed = 1, .purpose = 4103});
-  CoverageCount below;
+  CoverageCount below, disagreeing;
   for (int trial = 0; trial < 4000; ++trial) {
     const RelativePose truth = RandomPose(rng, 60.0);
     const MotionPrior prior = MeasureMotion(truth, 0.01, rng);
@@ -123,8 +145,11 @@ TEST(MotionPrior, TailIsUniformForRightMeasurements) {
     const Vector5d error = root * Vector5d::NullaryExpr([&] { return rng.Normal(); });
     const RelativePose pose = Retract(truth, error);
     below.Add(ComputePriorTail(prior, pose, root * root.transpose()) < 0.05);
+    disagreeing.Add(ComputePriorAgreement(prior) < 0.05);
   }
   EXPECT_TRUE(below.Admits(0.05)) << below;
+  EXPECT_TRUE(disagreeing.Admits(0.05)) << disagreeing;
+  EXPECT_EQ(ComputePriorAgreement({{}, GravityPrior{}, DirectionPrior{}}), 1.0);
 }
 
 // By integration of the density over random rotations and directions.

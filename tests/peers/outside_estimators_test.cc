@@ -127,6 +127,7 @@ TEST(AnswerJson, WhatIsNoAnswerHasAFault) {
     return text;
   };
   EXPECT_EQ(AnswerFromJson(line("")).fault, "");
+  EXPECT_EQ(AnswerFromJson(line(R"(, "iterations": 3)")).fault, "");  // skipped
   for (const std::string& text : {std::string(""),
                                   std::string("hello"),
                                   std::string("[1, 2]"),
@@ -153,6 +154,8 @@ TEST(AnswerJson, WhatIsNoAnswerHasAFault) {
                                   line(R"(, "status": "truth_in_doubt")"),
                                   line(R"(, "message": 3)"),
                                   line(R"(, "t": [1,0,0])"),
+                                  line(R"(, "pose_covv": [1])"),
+                                  line(R"(, "p_failures": 0.1)"),
                                   line(R"(, "id": 3)")}) {
     EXPECT_NE(AnswerFromJson(text).fault, "") << text.substr(0, 60);
   }

@@ -101,18 +101,19 @@ TEST(MotionPriorUse, AnExactRotationIsKept) {
   }
 }
 
-// A principal point that is 10 px off turns the motion of the matches away from a right rotation. If errors of
-// the calibration are counted, the matches do not contradict it.
+// A principal point that is 10 px off turns the motion of the matches away from a right rotation. If errors
+// of the calibration are counted, the matches do not contradict it.
 TEST(MotionPriorUse, ARightRotationIsKeptThoughTheCalibrationIsWrong) {
   constexpr int kTrials = 12;
-  CalibratedOptions counting;
+  CalibratedOptions without, counting;
+  without.unstated_errors = 0.0;
   counting.unstated_errors = 1.0;
   int num_without = 0, num_counting = 0;
   for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
     Measured made = MakeMeasured(300, 0.3, 0.01, trial);
     made.problem.camera1.cx += 10.0;
     made.problem.camera1.cy -= 10.0;
-    num_without += EstimateFrom(made.problem, trial).prior == PriorUse::kContradicted;
+    num_without += EstimateFrom(made.problem, trial, without).prior == PriorUse::kContradicted;
     num_counting += EstimateFrom(made.problem, trial, counting).prior == PriorUse::kContradicted;
   }
   EXPECT_GE(num_without, 6);
@@ -179,6 +180,17 @@ TEST(MotionPriorUse, AWrongPriorIsNoticed) {
     ExpectSameAnswer(e, EstimateFrom(made.problem, trial));
   }
   EXPECT_GE(num_noticed, kTrials - 2);
+}
+
+// A right rotation and a gravity 5 deg off: it is not the matches that they are in conflict with.
+TEST(MotionPriorUse, ARotationAndGravityThatContradictEachOtherAreNamed) {
+  Measured made = MakeMeasured(150, 0.3, 0.1, 1);
+  const Eigen::Vector3d down1 = Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d down2 = RotationFromVector({5.0 * kRadPerDeg, 0.0, 0.0}) * made.pose_true.R * down1;
+  made.problem.prior->gravity = GravityPrior{down1, down2, 0.1 * kRadPerDeg, 0.1 * kRadPerDeg};
+  const MotionEstimate e = EstimateFrom(made.problem, 1);
+  EXPECT_EQ(e.prior, PriorUse::kContradicted);
+  EXPECT_NE(e.message.find("rotation and gravity contradict each other"), std::string::npos) << e.message;
 }
 
 // Right priors: at the level of 1e-3 more than six of 1,000 have probability 1e-4 (Poisson). A covariance of
