@@ -1,5 +1,7 @@
 #include "estimator/motion_estimate.h"
 
+#include <utility>
+
 namespace rcme {
 
 const std::string& StatusName(MotionStatus status) {
@@ -28,27 +30,12 @@ const std::string& StatusName(MotionStatus status) {
 }
 
 const std::vector<MotionStatus>& AllStatuses() {
-  static const std::vector<MotionStatus> all = {MotionStatus::kOk,
-                                                MotionStatus::kNoCandidate,
-                                                MotionStatus::kTooFewMatches,
-                                                MotionStatus::kDegenerateMatches,
-                                                MotionStatus::kRefinementDiverged,
-                                                MotionStatus::kTooFewExplained,
-                                                MotionStatus::kDirectionNotObservable,
-                                                MotionStatus::kNotBetterThanChance,
-                                                MotionStatus::kTooUncertain,
-                                                MotionStatus::kPlanarScene,
-                                                MotionStatus::kRotationOnly,
-                                                MotionStatus::kTooLittleParallax,
-                                                MotionStatus::kLibraryError,
-                                                MotionStatus::kTimedOut,
-                                                MotionStatus::kNoAnswer,
-                                                MotionStatus::kUnreadableAnswer,
-                                                MotionStatus::kInvalidInput,
-                                                MotionStatus::kInvalidMotion,
-                                                MotionStatus::kInvalidCovariance,
-                                                MotionStatus::kNotSimulated,
-                                                MotionStatus::kTruthInDoubt};
+  static const std::vector<MotionStatus> all = [] {
+    std::vector<MotionStatus> statuses;
+    for (int i = 0; i <= static_cast<int>(MotionStatus::kTruthInDoubt); ++i)
+      statuses.push_back(static_cast<MotionStatus>(i));
+    return statuses;
+  }();
   return all;
 }
 
@@ -74,6 +61,14 @@ const char* Name(PriorUse use) {
       return "contradicted";
   }
   return "none";
+}
+
+MotionEstimate MakeRefusal(MotionStatus status, std::string message, const LoopCounts& counts) {
+  MotionEstimate refusal;
+  refusal.status = status;
+  refusal.message = std::move(message);
+  refusal.counts = counts;
+  return refusal;
 }
 
 }  // namespace rcme

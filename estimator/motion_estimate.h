@@ -145,4 +145,7 @@ struct MotionEstimate {
   double seconds_elsewhere = std::numeric_limits<double>::quiet_NaN();
 };
 
+// No motion, and why.
+MotionEstimate MakeRefusal(MotionStatus status, std::string message, const LoopCounts& counts = {});
+
 }  // namespace rcme

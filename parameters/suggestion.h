@@ -17,4 +17,12 @@ size_t EditDistance(std::string_view a, std::string_view b);
 // letters, between underscores ("magsac": "opencv_magsac"). Case, - and _ are ignored. Otherwise empty.
 std::string DidYouMean(std::string_view given, const std::vector<std::string>& names);
 
+// The member `name` of each entry.
+template <typename Entries>
+std::vector<std::string> ListNames(const Entries& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.emplace_back(entry.name);
+  return names;
+}
+
 }  // namespace rcme

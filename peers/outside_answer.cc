@@ -19,13 +19,6 @@ bool IsOfTheJudge(MotionStatus status) {
          status == MotionStatus::kNotSimulated || status == MotionStatus::kTruthInDoubt;
 }
 
-MotionEstimate Refusal(MotionStatus status, const std::string& message) {
-  MotionEstimate estimate;
-  estimate.status = status;
-  estimate.message = message;
-  return estimate;
-}
-
 // Whether these are valid indices of matches, each at most once.
 bool AreInliers(std::vector<int> inliers, size_t num_matches) {
   std::ranges::sort(inliers);
@@ -72,7 +65,7 @@ std::string MakeMessage(const OutsideAnswer& answer) {
 
 // A refusal; with direction_not_observable it keeps the rotation and its covariance if given.
 MotionEstimate RefusalFrom(const OutsideAnswer& answer) {
-  MotionEstimate estimate = Refusal(answer.status, answer.message);
+  MotionEstimate estimate = MakeRefusal(answer.status, answer.message);
   estimate.failure_probability = answer.failure_probability;
   if (answer.status != MotionStatus::kDirectionNotObservable) return estimate;
   estimate.cam2_from_cam1.R = answer.R;
@@ -120,7 +113,7 @@ MotionEstimate CallOutside(const MotionProblem& problem, const std::function<Out
     estimate.seconds_elsewhere = answer.seconds;
     return estimate;
   } catch (const NoOutsideAnswer& none) {
-    return Refusal(none.status(), Printable(none.what(), 1000));
+    return MakeRefusal(none.status(), Printable(none.what(), 1000));
   }
 }
 

@@ -19,22 +19,15 @@ namespace {
 // The default of the RANSAC family.
 constexpr double kSignificanceLevel = 0.05;
 
-MotionEstimate RefuseBecause(MotionStatus status, std::string message) {
-  MotionEstimate estimate;
-  estimate.status = status;
-  estimate.message = std::move(message);
-  return estimate;
-}
-
 MotionEstimate EstimateFrom(const MotionProblem& problem, const std::string& library, PeerAnswer answer) {
   const RelativePose& pose = answer.cam2_from_cam1;
   if (!pose.R.allFinite() || !(std::abs(pose.t.norm() - 1.0) < 1e-6))
-    return RefuseBecause(MotionStatus::kLibraryError,
-                         library + ": its motion is not finite, or has no direction");
+    return MakeRefusal(MotionStatus::kLibraryError,
+                       library + ": its motion is not finite, or has no direction");
   std::ranges::sort(answer.inliers);
   const std::optional<Matrix5d> pose_cov = CovarianceOfInliers(problem, pose, answer.inliers);
   if (!pose_cov) {
-    return RefuseBecause(
+    return MakeRefusal(
         MotionStatus::kDegenerateMatches,
         fmt::format("the {} inliers of {} do not determine a motion", answer.inliers.size(), library));
   }
@@ -74,10 +67,10 @@ MotionEstimate CallPeer(const MotionProblem& problem, int sample_size, const std
   if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, sample_size)) return *refusal;
   try {
     std::optional<PeerAnswer> answer = ask();
-    if (!answer) return RefuseBecause(MotionStatus::kNoCandidate, library + " found no motion");
+    if (!answer) return MakeRefusal(MotionStatus::kNoCandidate, library + " found no motion");
     return EstimateFrom(problem, library, std::move(*answer));
   } catch (const std::exception& error) {
-    return RefuseBecause(MotionStatus::kLibraryError, fmt::format("{}: {}", library, error.what()));
+    return MakeRefusal(MotionStatus::kLibraryError, fmt::format("{}: {}", library, error.what()));
   }
 }
 

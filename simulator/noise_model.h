@@ -21,7 +21,7 @@ class NoiseModel {
   virtual ~NoiseModel() = default;
   // The parameters by name, sigma_px among them; valid as long as the model lives.
   virtual std::vector<Parameter> Parameters() = 0;
-  virtual double sigma_px() const = 0;
+  double sigma_px() const { return sigma_px_; }
   // Assigns a scene point to each match. `points` holds 0, 1, ..., one point per match; a law that detects
   // some points several times changes it, so that other points are not matched.
   virtual void DrawPoints(std::span<std::uint32_t>, RandomStream&) const {}
@@ -33,6 +33,9 @@ class NoiseModel {
     AddTo(matches, rng);
     return {};
   }
+
+ protected:
+  double sigma_px_ = 0.5;
 };
 
 // The key sigma_px that every law has.

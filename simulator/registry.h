@@ -21,13 +21,6 @@ struct RegistryEntry {
   std::function<std::unique_ptr<Model>()> make;  // with default parameters
 };
 
-template <typename Entry>
-std::vector<std::string> ListNames(const std::vector<Entry>& registry) {
-  std::vector<std::string> names;
-  for (const Entry& entry : registry) names.push_back(entry.name);
-  return names;
-}
-
 // The entry called `name`. Throws InputError that names `key` and lists the known names.
 template <typename Entry>
 const Entry& FindEntry(const std::vector<Entry>& registry, const std::string& key, const std::string& name) {

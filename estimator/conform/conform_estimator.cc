@@ -34,10 +34,7 @@ class Unconformed : public MotionEstimator {
  public:
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream&) const override {
     if (std::optional<MotionEstimate> refusal = RefuseUnsolvable(problem, 5)) return *std::move(refusal);
-    MotionEstimate refusal;
-    refusal.status = MotionStatus::kNoAnswer;
-    refusal.message = "no file is given; make one with `rcme conform`";
-    return refusal;
+    return MakeRefusal(MotionStatus::kNoAnswer, "no file is given; make one with `rcme conform`");
   }
 };
 

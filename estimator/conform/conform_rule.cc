@@ -134,16 +134,14 @@ MotionEstimate ConformJudge::Apply(const MotionProblem& problem, MotionEstimate 
   const bool is_strange = verdict.familiarity <= kStrangeLevel;
   const bool is_valid = !std::isnan(features[static_cast<size_t>(VisibleFeature::kAgreeing)]);
   if (refuses && (!verdict.is_accepted || is_strange || !is_valid)) {
-    MotionEstimate refusal;
-    refusal.status = MotionStatus::kTooUncertain;
-    refusal.message =
+    const std::string message =
         is_strange ? fmt::format("unlike the problems of the calibration ({}), so that nothing is promised",
                                  VisibleFeatureNames()[verdict.strangest_feature])
                    : fmt::format(
                          "the accept rule refuses it (wrong with a probability of {:.2g}), so that at "
                          "most {:.3g} % of all problems are answered wrongly",
                          verdict.failure_probability, 100.0 * rule_.wrong_and_accepted);
-    refusal.counts = estimate.counts;
+    MotionEstimate refusal = MakeRefusal(MotionStatus::kTooUncertain, message, estimate.counts);
     refusal.seconds_elsewhere = estimate.seconds_elsewhere;
     return refusal;
   }

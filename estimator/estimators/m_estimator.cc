@@ -76,10 +76,8 @@ class MEstimator : public MotionEstimator {
   }
 
   static MotionEstimate EstimateWithoutMotion(const MotionEstimate& start) {
-    MotionEstimate refusal;
-    refusal.status = MotionStatus::kRefinementDiverged;
-    refusal.message = "the M-estimation found no optimum with a covariance";
-    refusal.counts = start.counts;
+    MotionEstimate refusal = MakeRefusal(MotionStatus::kRefinementDiverged,
+                                         "the M-estimation found no optimum with a covariance", start.counts);
     refusal.hypothesis = start.hypothesis;
     refusal.num_support = start.num_support;
     return refusal;

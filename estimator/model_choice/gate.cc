@@ -50,11 +50,7 @@ class GatedEstimator : public MotionEstimator {
     const ModelChoice choice = ChooseModel(problem, options_.choice, rng);
     const MotionStatus status = FindStatus(choice, options_.refuses_planes);
     if (status == MotionStatus::kOk) return estimate;
-    MotionEstimate refusal;
-    refusal.status = status;
-    refusal.message = choice.message;
-    refusal.counts = estimate.counts;
-    return refusal;
+    return MakeRefusal(status, choice.message, estimate.counts);
   }
 
  private:

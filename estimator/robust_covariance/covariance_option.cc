@@ -107,12 +107,10 @@ void MakeCovarianceRobust(const MotionProblem& problem, const RobustCovarianceOp
     estimate->pose_cov = *robust;
     return;
   }
-  MotionEstimate refusal;
-  refusal.status = MotionStatus::kDegenerateMatches;
-  refusal.message =
-      fmt::format("the {} inliers do not determine the covariance of a motion", estimate->inliers.size());
-  refusal.counts = estimate->counts;
-  *estimate = std::move(refusal);
+  *estimate = MakeRefusal(
+      MotionStatus::kDegenerateMatches,
+      fmt::format("the {} inliers do not determine the covariance of a motion", estimate->inliers.size()),
+      estimate->counts);
 }
 
 std::unique_ptr<EstimatorModel> WithRobustCovariance(std::unique_ptr<EstimatorModel> model,

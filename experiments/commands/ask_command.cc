@@ -19,6 +19,7 @@
 #include "experiments/study/study_file.h"
 #include "experiments/study/study_plan.h"
 #include "parameters/input_error.h"
+#include "parameters/suggestion.h"
 #include "simulator/motion_registry.h"
 #include "simulator/outlier_registry.h"
 

@@ -12,6 +12,7 @@
 #include "experiments/core/text/shell_word.h"
 #include "parameters/input_error.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -24,12 +25,6 @@ struct EstimatorCheckArguments {
   double seconds_per_call = ContractOptions{}.seconds_per_call;
   bool is_in_process = false;
 };
-
-std::vector<std::string> CheckNames() {
-  std::vector<std::string> names;
-  for (const ContractCheck& check : ContractChecks()) names.push_back(check.name);
-  return names;
-}
 
 // The command that repeats this check, to be pasted into a shell.
 std::string FormatRepeatCommand(const EstimatorCheckArguments& arguments, const std::string& check,
@@ -109,7 +104,7 @@ Examples:
   CLI::Option* only = command->add_option("--only", arguments->only, "checks a,b,...")
                           ->delimiter(',')
                           ->allow_extra_args(false)
-                          ->check(MakeChoiceValidator(CheckNames()));
+                          ->check(MakeChoiceValidator(ListNames(ContractChecks())));
   command
       ->add_option("--problem", arguments->problem,
                    "only the problem with this name, as printed by a failed check")

@@ -40,12 +40,6 @@ std::vector<std::string> WordsIn(const std::string& allowed) {
   return words;
 }
 
-std::vector<std::string> EstimatorNames() {
-  std::vector<std::string> names;
-  for (const EstimatorEntry& entry : EstimatorRegistry()) names.push_back(entry.name);
-  return names;
-}
-
 template <typename Entry>
 void AddParameterNames(const std::vector<Entry>& registry, std::set<std::string>* names) {
   for (const Entry& entry : registry) {
@@ -70,22 +64,10 @@ std::vector<std::string> SettingNames() {
   return {names.begin(), names.end()};
 }
 
-std::vector<std::string> QuantityNames() {
-  std::vector<std::string> names;
-  for (const QuantityHelp& quantity : SummaryQuantities()) names.push_back(quantity.name);
-  return names;
-}
-
 // What `solve --over` takes: a key of --set without its "=".
 std::vector<std::string> KeyNames() {
   std::vector<std::string> names = SettingNames();
   for (std::string& name : names) name.pop_back();
-  return names;
-}
-
-std::vector<std::string> SceneNames() {
-  std::vector<std::string> names;
-  for (const SceneEntry& entry : SceneRegistry()) names.push_back(entry.name);
   return names;
 }
 
@@ -103,14 +85,14 @@ bool TakesLabels(const CLI::App& command, const CLI::Option& option) {
 
 std::vector<std::string> ListOptionValues(const CLI::App& command, const CLI::Option& option) {
   const std::string name = option.get_single_name();
-  if (command.get_name() == "ask" && name == "scene") return SceneNames();
+  if (command.get_name() == "ask" && name == "scene") return ListNames(SceneRegistry());
   if (command.get_name() == "solve" && name == "over") return KeyNames();
-  if (TakesLabels(command, option)) return EstimatorNames();
+  if (TakesLabels(command, option)) return ListNames(EstimatorRegistry());
   if (name == "set") return SettingNames();
   if (name == "shard") return {"1/2", "auto", "auto/8"};
-  if (name == "estimators") return EstimatorNames();
-  if (name == "quantities") return QuantityNames();
-  if (name == "estimator") return EstimatorNames();
+  if (name == "estimators") return ListNames(EstimatorRegistry());
+  if (name == "quantities") return ListNames(SummaryQuantities());
+  if (name == "estimator") return ListNames(EstimatorRegistry());
   if (name == "estimator-file" || name == "add-estimator") return NamesIn(SharedFolder::kEstimators);
   if (name == "study") return NamesIn(SharedFolder::kStudies);
   for (const std::string& part : {option.get_type_name()}) {
@@ -136,15 +118,15 @@ DescribedOption DescribeOption(const CLI::App& command, const CLI::Option& optio
   return described;
 }
 
-std::vector<std::string> OptionNames(const CLI::App& command) {
+}  // namespace
+
+std::vector<std::string> OptionNames(const DescribedCommand& command) {
   std::vector<std::string> names;
-  for (const DescribedOption& option : Described(command).options) {
+  for (const DescribedOption& option : command.options) {
     if (!option.is_positional) names.insert(names.end(), option.names.begin(), option.names.end());
   }
   return names;
 }
-
-}  // namespace
 
 DescribedCommand Described(const CLI::App& command) {
   DescribedCommand described{
@@ -177,7 +159,7 @@ std::string SuggestionsFor(const CLI::App& app) {
       const bool is_option = word.starts_with('-');
       const std::string bare = word.substr(0, word.find('='));
       const std::string suggestion =
-          is_option ? DidYouMean(bare, OptionNames(command)) : DidYouMean(word, CommandNames(app));
+          is_option ? DidYouMean(bare, OptionNames(Described(command))) : DidYouMean(word, CommandNames(app));
       if (!suggestion.empty() && (is_option || app.get_subcommands().empty()))
         sentences += Quoted(word) + suggestion + "\n";
     }

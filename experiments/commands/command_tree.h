@@ -29,6 +29,8 @@ DescribedCommand Described(const CLI::App& command);
 // The program, then its commands in the order of their names.
 std::vector<DescribedCommand> DescribedTree(const CLI::App& app);
 std::vector<std::string> CommandNames(const CLI::App& app);
+// "-o", "--out": of all options but positional ones.
+std::vector<std::string> OptionNames(const DescribedCommand& command);
 
 // Suggests a command or option for each word that the parser did not expect; one sentence each.
 std::string SuggestionsFor(const CLI::App& app);

@@ -28,14 +28,6 @@ std::string InShort(const std::string& text) {
   return words;
 }
 
-std::vector<std::string> NamesOfOptions(const DescribedCommand& command) {
-  std::vector<std::string> names;
-  for (const DescribedOption& option : command.options) {
-    if (!option.is_positional) names.insert(names.end(), option.names.begin(), option.names.end());
-  }
-  return names;
-}
-
 bool TakesPositionalFiles(const DescribedCommand& command) {
   return std::ranges::any_of(command.options,
                              [](const DescribedOption& o) { return o.is_positional && o.takes_files; });
@@ -112,7 +104,7 @@ std::string Bash(const CLI::App& app) {
     const std::vector<std::string> values =
         command.name.empty() ? CommandNames(app) : PositionalValues(command);
     text += fmt::format("    {})\n      options='{}'\n      values='{}'{}\n      case $previous in\n",
-                        command.name.empty() ? "''" : command.name, Joined(NamesOfOptions(command)),
+                        command.name.empty() ? "''" : command.name, Joined(OptionNames(command)),
                         Joined(values), TakesPositionalFiles(command) ? " files=yes" : "");
     for (const DescribedOption& option : command.options) {
       if (option.is_positional || !option.takes_value) continue;

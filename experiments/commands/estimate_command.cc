@@ -20,6 +20,7 @@
 #include "experiments/data/colmap_camera.h"
 #include "experiments/data/match_file.h"
 #include "experiments/data/match_folder.h"
+#include "experiments/data/match_header.h"
 #include "experiments/real/answer/answer_report.h"
 #include "experiments/real/camera_noise/apply_noise.h"
 #include "experiments/trial/trial.h"
@@ -54,29 +55,18 @@ std::vector<FailureBounds> ParseAllBounds(const std::vector<std::string>& texts)
 
 Lens ParseIntrinsics(const std::string& text) {
   std::array<double, 4> k{};
-  size_t count = 0;
-  bool are_numbers = true;
-  for (size_t begin = 0; begin <= text.size(); ++count) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    are_numbers &= count < k.size() && ParseReal(text.substr(begin, end - begin), &k[count]);
-    begin = end + 1;
-    if (!are_numbers) break;
-  }
+  const std::vector<std::string> words = SplitAtCommas(text);
+  bool are_numbers = words.size() == k.size();
+  for (size_t i = 0; are_numbers && i < k.size(); ++i) are_numbers = ParseReal(words[i], &k[i]);
   const Camera camera{k[0], k[1], k[2], k[3], 1, 1};
-  if (are_numbers && count == k.size() && camera.IsValid()) return {camera};
+  if (are_numbers && camera.IsValid()) return {camera};
   throw InputError(
       fmt::format("--K: {} is not allowed; give fx,fy,cx,cy in px, fx and fy > 0", Quoted(text)));
 }
 
 // "OPENCV,fx,fy,cx,cy,k1,k2,p1,p2".
 Lens ParseNamedCamera(const std::string& text) {
-  std::vector<std::string> words;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    words.push_back(text.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  return LensWithoutSizeFromWords(words, fmt::format("--camera {}", Quoted(text)));
+  return LensWithoutSizeFromWords(SplitAtCommas(text), fmt::format("--camera {}", Quoted(text)));
 }
 
 // One camera for both images, or one for each.

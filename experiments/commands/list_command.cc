@@ -17,7 +17,9 @@
 #include "experiments/data/calibration_file.h"
 #include "experiments/data/make_data.h"
 #include "experiments/statistics/summarize.h"
+#include "experiments/study/estimator_entry.h"
 #include "experiments/study/study_keys.h"
+#include "parameters/suggestion.h"
 #include "simulator/camera_registry.h"
 #include "simulator/motion_registry.h"
 #include "simulator/noise_registry.h"
@@ -212,8 +214,6 @@ void PrintLists() {
 }  // namespace
 
 void AddListCommand(CLI::App& app) {
-  std::vector<std::string> names;
-  for (const List& list : Lists()) names.push_back(list.name);
   CLI::App* command = app.add_subcommand(
       "list",
       "List what you can name: estimators, options, scenes, study keys, quantities, claims, studies, ...");
@@ -223,7 +223,7 @@ void AddListCommand(CLI::App& app) {
       ->add_option("what", *what,
                    "which list; default: what lists there are; as markdown or json: all of them except "
                    "studies, populations and estimator_files")
-      ->check(MakeChoiceValidator(names));
+      ->check(MakeChoiceValidator(ListNames(Lists())));
   command->footer(R"(Examples:
   rcme list                             what lists there are
   rcme list studies

@@ -15,6 +15,7 @@
 #include "experiments/real/sequences/listed_pairs.h"
 #include "experiments/real/sequences/make_pairs.h"
 #include "parameters/input_error.h"
+#include "parameters/suggestion.h"
 
 namespace rcme {
 namespace {
@@ -40,12 +41,6 @@ constexpr std::array<Layout, 8> kLayouts = {{{"kitti", ReadKitti, nullptr},
                                              {"posebench", nullptr, OpenPosebench},
                                              {"npz", nullptr, OpenNpzPairs},
                                              {"matches", nullptr, OpenMatchFiles}}};
-
-std::vector<std::string> LayoutNames() {
-  std::vector<std::string> names;
-  for (const Layout& layout : kLayouts) names.emplace_back(layout.name);
-  return names;
-}
 
 std::vector<std::string> GateNames() {
   std::vector<std::string> names = {"off"};
@@ -158,7 +153,7 @@ void AddDatasetOptions(CLI::App* command, PairsArguments* arguments) {
                    "the data set's folder (colmap: or its database; posebench: a file)")
       ->required();
   command->add_option("--layout", arguments->layout, "layout of the data set, see below")
-      ->check(MakeChoiceValidator(LayoutNames()))
+      ->check(MakeChoiceValidator(ListNames(kLayouts)))
       ->required();
   command
       ->add_option("-o,--out", arguments->pairs.out,

@@ -61,11 +61,7 @@ void RunPlot(const std::vector<std::string>& words) {
 
 }  // namespace
 
-std::vector<std::string> PlotKinds() {
-  std::vector<std::string> names;
-  for (const Kind& kind : Kinds()) names.push_back(kind.name);
-  return names;
-}
+std::vector<std::string> PlotKinds() { return ListNames(Kinds()); }
 
 const std::vector<PlotOption>& PlotOptions() {
   static const std::vector<PlotOption> options = {

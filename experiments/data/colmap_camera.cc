@@ -45,8 +45,7 @@ constexpr const char* kOtherNames =
     "radtan and plumb_bob are OPENCV, equidistant, fisheye and KANNALA_BRANDT OPENCV_FISHEYE";
 
 [[noreturn]] void RefuseModel(const std::string& model, const std::string& place) {
-  std::vector<std::string> names;
-  for (const ColmapModel& each : ColmapModels()) names.push_back(each.name);
+  const std::vector<std::string> names = ListNames(ColmapModels());
   throw InputError(fmt::format("{}: model {} is not supported{}; allowed are {} ({})", place, Quoted(model),
                                DidYouMean(model, names), fmt::join(names, ", "), kOtherNames));
 }

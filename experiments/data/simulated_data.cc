@@ -23,9 +23,8 @@ Choices WithDefaults(Choices choices) {
 // Normal noise from given numbers.
 class GivenNoise : public NoiseModel {
  public:
-  GivenNoise(double sigma_px, std::span<const double> normals) : sigma_px_(sigma_px), normals_(normals) {}
+  GivenNoise(double sigma_px, std::span<const double> normals) : normals_(normals) { sigma_px_ = sigma_px; }
   std::vector<Parameter> Parameters() override { return {}; }
-  double sigma_px() const override { return sigma_px_; }
   void AddTo(std::span<Correspondence> matches, RandomStream&) const override {
     for (size_t i = 0; i < matches.size(); ++i) {
       const double* e = &normals_[4 * i];
@@ -35,7 +34,6 @@ class GivenNoise : public NoiseModel {
   }
 
  private:
-  double sigma_px_;
   std::span<const double> normals_;
 };
 

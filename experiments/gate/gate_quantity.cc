@@ -66,11 +66,7 @@ const std::vector<GateQuantity>& GateQuantities() {
   return all;
 }
 
-std::vector<std::string> GateQuantityNames() {
-  std::vector<std::string> names;
-  for (const GateQuantity& quantity : GateQuantities()) names.push_back(quantity.name);
-  return names;
-}
+std::vector<std::string> GateQuantityNames() { return ListNames(GateQuantities()); }
 
 namespace {
 

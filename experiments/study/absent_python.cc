@@ -13,10 +13,8 @@ namespace {
 class AbsentFunction : public MotionEstimator {
  public:
   MotionEstimate Estimate(const MotionProblem&, RandomStream&) const override {
-    MotionEstimate estimate;
-    estimate.status = MotionStatus::kNoAnswer;
-    estimate.message = "a function of Python, which this program cannot call (rcme.replay in Python can)";
-    return estimate;
+    return MakeRefusal(MotionStatus::kNoAnswer,
+                       "a function of Python, which this program cannot call (rcme.replay in Python can)");
   }
 };
 

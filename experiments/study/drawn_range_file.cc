@@ -8,6 +8,7 @@
 #include "experiments/data/make_data.h"
 #include "parameters/parameter.h"
 #include "parameters/plain_text.h"
+#include "parameters/suggestion.h"
 #include "simulator/camera_registry.h"
 #include "simulator/motion_registry.h"
 #include "simulator/noise_registry.h"

@@ -20,7 +20,6 @@ class AnisotropicNoise : public NoiseModel {
             Parameter::Real("image_correlation", &image_correlation_, {-1.0, 1.0}, "",
                             "correlation between the images along each axis")};
   }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     const double minor_px = sigma_px_ * std::sqrt(2.0 / (1.0 + axis_ratio_ * axis_ratio_));
@@ -38,7 +37,6 @@ class AnisotropicNoise : public NoiseModel {
   }
 
  private:
-  double sigma_px_ = 0.5;
   double axis_ratio_ = 3.0, axis_deg_ = 45.0, image_correlation_ = 0.0;
 };
 

@@ -18,7 +18,6 @@ class ContaminatedNoise : public NoiseModel {
             Parameter::Real("contaminated_scale", &scale_, {1.0, 1000.0}, "",
                             "larger over smaller standard deviation")};
   }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     const double good_px = sigma_px_ / std::sqrt(1.0 - share_ + share_ * scale_ * scale_);
@@ -29,7 +28,6 @@ class ContaminatedNoise : public NoiseModel {
   }
 
  private:
-  double sigma_px_ = 0.5;
   double share_ = 0.1, scale_ = 5.0;
 };
 

@@ -62,7 +62,6 @@ class CorrelatedNoise : public NoiseModel {
                 "noise_student_dof", &student_dof_, {0.0, 1000.0}, "",
                 "degrees of freedom of Student's t in 32 steps, common to a match's errors; 0: normal")};
   }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     Mosaic in_image1(length_px_, rng), in_image2(length_px_, rng);
@@ -84,7 +83,6 @@ class CorrelatedNoise : public NoiseModel {
   }
 
  private:
-  double sigma_px_ = 0.5;
   double correlation_ = 0.5, length_px_ = 20.0;
   double student_dof_ = 0.0;
 };

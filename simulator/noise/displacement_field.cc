@@ -44,7 +44,6 @@ class DisplacementFieldNoise : public NoiseModel {
             Parameter::Real("displacement_reach_px", &reach_px_, {0.1, 1e5}, "px",
                             "reach of the field's correlation exp(-d / reach)")};
   }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     const DisplacementField in_image1(reach_px_, rng), in_image2(reach_px_, rng);
@@ -59,7 +58,7 @@ class DisplacementFieldNoise : public NoiseModel {
   }
 
  private:
-  double sigma_px_ = 0.5, share_ = 0.2, reach_px_ = 100.0;
+  double share_ = 0.2, reach_px_ = 100.0;
 };
 
 }  // namespace

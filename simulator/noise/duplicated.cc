@@ -20,7 +20,6 @@ class DuplicatedNoise : public NoiseModel {
             Parameter::Real("duplicated_correlation", &correlation_, {0.0, 1.0}, "",
                             "correlation of errors between matches of one point")};
   }
-  double sigma_px() const override { return sigma_px_; }
 
   void DrawPoints(std::span<std::uint32_t> points, RandomStream& rng) const override {
     for (std::uint32_t i = 1; i < points.size(); ++i) {
@@ -44,7 +43,6 @@ class DuplicatedNoise : public NoiseModel {
   }
 
  private:
-  double sigma_px_ = 0.5;
   double share_ = 0.3, correlation_ = 0.8;
 };
 

@@ -8,9 +8,8 @@ namespace {
 
 class GaussianNoise : public NoiseModel {
  public:
-  explicit GaussianNoise(double sigma_px) : sigma_px_(sigma_px) {}
+  explicit GaussianNoise(double sigma_px) { sigma_px_ = sigma_px; }
   std::vector<Parameter> Parameters() override { return {SigmaParameter(&sigma_px_)}; }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     constexpr size_t kBlock = 64;  // matches
@@ -27,9 +26,6 @@ class GaussianNoise : public NoiseModel {
       }
     }
   }
-
- private:
-  double sigma_px_;
 };
 
 }  // namespace

@@ -11,7 +11,6 @@ namespace {
 class LaplaceNoise : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override { return {SigmaParameter(&sigma_px_)}; }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     const double b_px = sigma_px_ / std::numbers::sqrt2;
@@ -23,9 +22,6 @@ class LaplaceNoise : public NoiseModel {
       }
     }
   }
-
- private:
-  double sigma_px_ = 0.5;
 };
 
 }  // namespace

@@ -28,7 +28,6 @@ class OctaveNoise : public NoiseModel {
             Parameter::Real("stated_growth", &stated_growth_, {0.0, 4.0}, "",
                             "power that estimators are told, per match relative to the median; 0: nothing")};
   }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     AddAndTell(matches, rng);
@@ -72,7 +71,6 @@ class OctaveNoise : public NoiseModel {
     return pyramid;
   }
 
-  double sigma_px_ = 0.5;
   int num_levels_ = 8;  // with factor 1.2: ORB's pyramid
   double factor_ = 1.2;
   double growth_ = 1.0, stated_growth_ = 0.0;

@@ -19,7 +19,6 @@ class QuantisedNoise : public NoiseModel {
             Parameter::Real("quantisation_step_px", &step_px_, {1e-6, 1000.0}, "px",
                             "detector's grid step; adds variance step^2 / 12 to that of sigma_px")};
   }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     for (Correspondence& match : matches) {
@@ -30,7 +29,6 @@ class QuantisedNoise : public NoiseModel {
   }
 
  private:
-  double sigma_px_ = 0.5;
   double step_px_ = 1.0;
 };
 

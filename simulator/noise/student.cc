@@ -30,7 +30,6 @@ class StudentNoise : public NoiseModel {
     return {SigmaParameter(&sigma_px_), Parameter::Real("student_dof", &dof_, {2.01, 1e6}, "",
                                                         "degrees of freedom; 2: infinite variance")};
   }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     const double scale_px = sigma_px_ * std::sqrt((dof_ - 2.0) / dof_);
@@ -43,7 +42,6 @@ class StudentNoise : public NoiseModel {
   }
 
  private:
-  double sigma_px_ = 0.5;
   double dof_ = 5.0;
 };
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "experiments/core/files/regular_file.h"
+#include "experiments/data/match_header.h"
 #include "experiments/real/images/grey_image.h"
 #include "experiments/real/images/image_header.h"
 #include "parameters/input_error.h"
@@ -20,31 +21,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kSpaces = " \t\r";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some editors write it first
-
-std::vector<std::string> SplitWords(std::string_view line) {
-  std::vector<std::string> words;
-  while (true) {
-    const size_t begin = line.find_first_not_of(kSpaces);
-    if (begin == std::string_view::npos) return words;
-    line.remove_prefix(begin);
-    const size_t end = std::min(line.find_first_of(kSpaces), line.size());
-    words.emplace_back(line.substr(0, end));
-    line.remove_prefix(end);
-  }
-}
-
-std::vector<std::string> SplitFields(std::string_view line) {
-  std::vector<std::string> fields;
-  while (true) {
-    const size_t comma = line.find(',');
-    std::string_view field = line.substr(0, comma);
-    const size_t begin = std::min(field.find_first_not_of(kSpaces), field.size());
-    field.remove_prefix(begin);
-    fields.emplace_back(field.substr(0, field.find_last_not_of(kSpaces) + 1));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
 
 const fs::path& CheckedPath(const fs::path& path, const std::string& origin) {
   CheckIsThere(path, origin);
@@ -161,7 +137,7 @@ bool TableFile::Next() {
     const size_t begin = line.find_first_not_of(kSpaces);
     if (begin == std::string_view::npos || line[begin] == '#') continue;
     if (rows_left_-- == 0) Fail("the file has more rows than data sets have; give a part of it");
-    fields_ = separator_ == Separator::kComma ? SplitFields(line) : SplitWords(line);
+    fields_ = separator_ == Separator::kComma ? SplitAtCommas(line) : SplitAtBlanks(line);
     return true;
   }
   return false;

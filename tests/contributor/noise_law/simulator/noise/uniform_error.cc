@@ -10,7 +10,6 @@ namespace {
 class UniformError : public NoiseModel {
  public:
   std::vector<Parameter> Parameters() override { return {SigmaParameter(&sigma_px_)}; }
-  double sigma_px() const override { return sigma_px_; }
 
   void AddTo(std::span<Correspondence> matches, RandomStream& rng) const override {
     const double b_px = std::sqrt(3.0) * sigma_px_;
@@ -18,9 +17,6 @@ class UniformError : public NoiseModel {
       for (double* x_px : Coordinates(match)) *x_px += rng.Uniform(-b_px, b_px);
     }
   }
-
- private:
-  double sigma_px_ = 0.5;
 };
 
 }  // namespace
