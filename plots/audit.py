@@ -87,7 +87,7 @@ def draw_family(audit, family, claims):
 
 
 def parse(arguments):
-    parser = FigureParser(prog="rcme plot audit", description=__doc__, epilog=EXAMPLE)
+    parser = FigureParser(out_is_folder=True, prog="rcme plot audit", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("folder", metavar="DIR", help="the folder that 'rcme audit --out DIR' wrote; it holds audit.json")
     parser.add_argument("--out", metavar="OUTDIR", help="the folder to write to (default: DIR)")
     parser.add_argument("--page", action="store_true",

@@ -7,7 +7,7 @@ It draws what sigma.csv says and computes nothing but shares.
 import sys
 
 from common import style
-from common.command_line import FigureParser, check_figure_path, draw_figure
+from common.command_line import FigureParser, draw_figure
 from common.summary_csv import read_table
 
 COLUMNS = ("claim", "statistic", "budget", "sigma_error", "seeds", "does_not_hold", "does_not_hold_lower",
@@ -72,9 +72,7 @@ def parse(arguments):
     parser = FigureParser(prog="rcme plot audit_power", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("table", metavar="TABLE.csv", help="what 'rcme_audit_power sigma' printed")
     parser.add_argument("--out", metavar="PATH", default="audit_power", help="writes PATH.png and PATH.pdf")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def main(arguments=None):

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from common import sheet, style
-from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
+from common.command_line import FigureParser, PlotError, draw_figure
 from common.regular_file import read_bytes
 from common.text_size import fill
 
@@ -164,9 +164,7 @@ def parse(arguments):
     parser = FigureParser(prog="rcme plot benchmarks", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("result", help="what rcme_ratios wrote")
     parser.add_argument("--out", required=True, help="path of the figure without .png or .pdf")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def main(arguments=None):

@@ -13,7 +13,7 @@ import pandas
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from common import style
-from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
+from common.command_line import FigureParser, PlotError, draw_figure
 from common.number_text import number_text
 from common.summary_csv import numbers, read_table, rows_where
 
@@ -127,9 +127,7 @@ def parse(arguments):
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help=f"draw only these rows; KEY is one of {', '.join(KEYS)}; repeatable")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def main(arguments=None):

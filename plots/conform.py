@@ -7,7 +7,7 @@ It draws what the file says and computes nothing: coverages, intervals and sizes
 
 import sys
 
-from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
+from common.command_line import FigureParser, PlotError, draw_figure
 from conform_figure.conform_file import read_report, read_table_of_regions
 from conform_figure.panels import draw
 
@@ -29,9 +29,7 @@ def parse(arguments):
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="of a CSV table: draw only these rows; repeatable")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def draw_for(options):

@@ -7,7 +7,7 @@ It draws what the file says and computes nothing: levels and intervals are those
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure
+from common.command_line import FigureParser, draw_figure
 from rates.crossing_lines import draw, read_crossings
 
 EXAMPLE = """
@@ -26,9 +26,7 @@ def parse(arguments):
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
     parser.add_argument("--where", action="append", default=[], metavar="KEY=VALUE",
                         help="draw only these rows; KEY is a factor or estimator; repeatable")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def draw_for(options):

@@ -7,7 +7,7 @@ It draws what the file says and computes nothing: values and interval bounds are
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
+from common.command_line import FigureParser, draw_figure, names_of
 from common.summary_csv import of_estimators, read_summary, where
 from rates import estimator_marks
 from rates.lines import Choices, draw
@@ -60,7 +60,6 @@ def parse(arguments):
     options.names = None if options.names is None else names_of("--names", options.names, "rcme")
     options.quantities = None if options.quantities is None else names_of("--quantities", options.quantities, "failure")
     options.estimators = [] if options.estimators is None else names_of("--estimators", options.estimators, "rcme")
-    check_figure_path(options.out)
     return options
 
 

@@ -7,7 +7,7 @@ It draws what the file says and computes nothing but that ratio: changes, interv
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure
+from common.command_line import FigureParser, draw_figure
 from gate_figure.gate_file import read_gate
 from gate_figure.panel import draw
 
@@ -22,9 +22,7 @@ def parse(arguments):
     parser = FigureParser(prog="rcme plot gate", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("gate", metavar="GATE.json", help="gate.json of 'rcme gate --out DIR'")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def main(arguments=None):

@@ -7,7 +7,7 @@ helps the eye, and is the same for equal rates of a quantity in all panels; the 
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
+from common.command_line import FigureParser, draw_figure, names_of
 from common.summary_csv import read_summary, where
 from rates.cells import draw
 from rates.selection import usual_quantities
@@ -38,7 +38,6 @@ def parse(arguments):
     options = parser.parse_args(arguments)
     options.quantities = None if options.quantities is None else names_of("--quantities", options.quantities, "failure")
     options.estimators = [] if options.estimators is None else names_of("--estimators", options.estimators, "rcme")
-    check_figure_path(options.out)
     return options
 
 

@@ -8,7 +8,7 @@ compare`. A mark is filled where the Holm-adjusted p-value is below 0.05.
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
+from common.command_line import FigureParser, draw_figure, names_of
 from common.summary_csv import of_estimators, read_comparison, where
 from rates.differences import draw
 
@@ -41,7 +41,6 @@ def parse(arguments):
     options = parser.parse_args(arguments)
     options.event = names_of("--event", options.event, "failure")
     options.estimators = [] if options.estimators is None else names_of("--estimators", options.estimators, "rcme")
-    check_figure_path(options.out)
     return options
 
 

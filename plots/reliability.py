@@ -8,7 +8,7 @@ risk-coverage curves are computed here, from the counts.
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure, names_of
+from common.command_line import FigureParser, draw_figure, names_of
 from reliability_figure.panels import draw
 from reliability_figure.reliability_file import read_reliability
 
@@ -29,9 +29,7 @@ def parse(arguments):
                         "the first; all are in the risk-coverage curves")
     parser.add_argument("--group", metavar="LEVEL", help="of a file with --by: the level to draw; default: the first")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def draw_for(options):

@@ -8,7 +8,7 @@ below it the answer misled.
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure
+from common.command_line import FigureParser, draw_figure
 from stanford_figure.integrity_file import read_integrity
 from stanford_figure.panels import draw
 
@@ -23,9 +23,7 @@ def parse(arguments):
     parser = FigureParser(prog="rcme plot stanford", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("integrity", metavar="INTEGRITY.json", help="integrity.json of 'rcme integrity --out DIR'")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def draw_for(options):

@@ -7,7 +7,7 @@ It draws what the files say: values and interval bounds are those of `rcme summa
 
 import sys
 
-from common.command_line import FigureParser, check_figure_path, draw_figure
+from common.command_line import FigureParser, draw_figure
 from common.summary_csv import read_summary
 from rates.time_points import draw
 
@@ -24,9 +24,7 @@ def parse(arguments):
     parser.add_argument("summaries", metavar="SUMMARY.csv", nargs="+",
                         help="output of 'rcme summarize RUN.sqlite --pooled --times --format csv'")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def draw_for(options):

@@ -15,7 +15,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from common import sheet, style
-from common.command_line import FigureParser, PlotError, check_figure_path, draw_figures
+from common.command_line import FigureParser, PlotError, draw_figures
 from common.number_text import number_text
 from common.paper import HEAD_SIZE, SMALL_SIZE, add_axes, add_text
 from common.text_size import fill, height_of, width_of
@@ -214,9 +214,7 @@ def parse(arguments):
     parser.add_argument("transfer", metavar="TRANSFER.json", help="file that 'rcme transfer' wrote")
     parser.add_argument("--out", required=True, metavar="PREFIX",
                         help="where to write: the figures' names begin with it")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def main(arguments=None):

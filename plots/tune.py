@@ -10,7 +10,7 @@ program. Colours and lines between settings are interpolated.
 
 import sys
 
-from common.command_line import FigureParser, PlotError, check_figure_path, draw_figures, printable
+from common.command_line import FigureParser, PlotError, draw_figures, printable
 from tuning_figures.front import draw_front
 from tuning_figures.roc import draw_roc
 from tuning_figures.surface import draw_surface
@@ -33,9 +33,7 @@ def parse(arguments):
                         help="where to write: the figures' names begin with it")
     parser.add_argument("--where", action="append", default=[], metavar="OPTION=LEVEL",
                         help="draw only this part of the surface; repeatable")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def draw_surface_if_possible(tune, where):

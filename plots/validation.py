@@ -16,7 +16,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from common import direct_labels, sheet, style
-from common.command_line import FigureParser, PlotError, check_figure_path, draw_figure
+from common.command_line import FigureParser, PlotError, draw_figure
 from common.regular_file import read_bytes
 
 EXAMPLE = """
@@ -225,9 +225,7 @@ def parse(arguments):
     parser = FigureParser(prog="rcme plot validation", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("validation", metavar="VALIDATION.json", help="of `rcme validate --out`")
     parser.add_argument("--out", required=True, metavar="PATH", help="where to write, without suffix")
-    options = parser.parse_args(arguments)
-    check_figure_path(options.out)
-    return options
+    return parser.parse_args(arguments)
 
 
 def main(arguments=None):

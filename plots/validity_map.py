@@ -279,7 +279,7 @@ def draw_reference(path, rows):
 
 
 def parse(arguments):
-    parser = FigureParser(prog="rcme plot validity_map", description=__doc__, epilog=EXAMPLE)
+    parser = FigureParser(out_is_folder=True, prog="rcme plot validity_map", description=__doc__, epilog=EXAMPLE)
     parser.add_argument("tables", metavar="DIR", help="folder that 'rcme map --out DIR' wrote")
     parser.add_argument("--out", metavar="DIR", help="folder for the figures (default: where the tables are)")
     options = parser.parse_args(arguments)

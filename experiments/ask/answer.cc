@@ -145,7 +145,18 @@ std::vector<AskedEstimator> ListRanked(const ReadableRun& run, const Summary& su
   return ranked;
 }
 
-bool IsMoreThanChance(const ComparisonRow& row) { return row.n > 0 && row.holm_p_value < 0.05; }
+// Holm's p-values are of K - 1 comparisons with a reference that is named beforehand. The best is found by
+// the same trials and may be any of the K estimators, so that each of the K (K - 1) / 2 pairs may be
+// compared: K / 2 times as many.
+double CountChoices(const Comparison& comparison) {
+  return 0.5 * (static_cast<double>(comparison.rows.size()) + 1.0);
+}
+double AdjustedPValue(const ComparisonRow& row, const Comparison& comparison) {
+  return std::min(row.holm_p_value * CountChoices(comparison), 1.0);
+}
+bool IsMoreThanChance(const ComparisonRow& row, const Comparison& comparison) {
+  return row.n > 0 && AdjustedPValue(row, comparison) < 0.05;
+}
 
 // The estimators whose rate of failure or refusal does not differ significantly from that of the best.
 std::vector<AskedEstimator> FindAlike(const std::vector<AskedEstimator>& ranked,
@@ -153,19 +164,20 @@ std::vector<AskedEstimator> FindAlike(const std::vector<AskedEstimator>& ranked,
   std::vector<AskedEstimator> alike(ranked.begin() + 1, ranked.end());
   std::erase_if(alike, [&](const AskedEstimator& estimator) {
     return std::ranges::any_of(comparison.rows, [&](const ComparisonRow& row) {
-      return row.estimator == estimator.label && IsMoreThanChance(row);
+      return row.estimator == estimator.label && IsMoreThanChance(row, comparison);
     });
   });
   return alike;
 }
 
 // The interval of a difference, adjusted for all comparisons in agreement with Holm's verdict (Strassburger
-// and Bretz 2008, Statistics in Medicine 27:4914): those that are not told apart share the level 0.05, and
-// their intervals contain 0, which the exact test does not reject. Of a proven difference it is Bonferroni's,
-// on the proven side of 0.
-Interval AdjustInterval(const ComparisonRow& row, size_t num_compared, size_t num_undecided) {
-  const bool is_told_apart = IsMoreThanChance(row);
-  const double level = 0.05 / static_cast<double>(is_told_apart ? num_compared : num_undecided);
+// and Bretz 2008, Statistics in Medicine 27:4914): those that are not told apart share the level, and their
+// intervals contain 0, which the exact test does not reject. Of a proven difference it is Bonferroni's, on
+// the proven side of 0.
+Interval AdjustInterval(const ComparisonRow& row, const Comparison& comparison, size_t num_undecided) {
+  const bool is_told_apart = IsMoreThanChance(row, comparison);
+  const size_t num_shares = is_told_apart ? comparison.rows.size() : num_undecided;
+  const double level = 0.05 / CountChoices(comparison) / static_cast<double>(num_shares);
   const Interval interval = RiskDifferenceInterval(row.counts, 1.0 - level);
   if (!is_told_apart) return {std::min(interval.lower, 0.0), std::max(interval.upper, 0.0)};
   return row.difference > 0.0 ? Interval{std::max(interval.lower, 0.0), interval.upper}
@@ -173,7 +185,7 @@ Interval AdjustInterval(const ComparisonRow& row, size_t num_compared, size_t nu
 }
 
 // The difference in success, from the comparison of failures and refusals. Holm's step-down tests the least
-// p-value of `num_undecided` at 0.05 / num_undecided, so trials are planned at that level.
+// p-value of `num_undecided` at its share of the level, so trials are planned at that level.
 std::optional<AskedDifference> DescribeDifference(const Comparison& comparison, const std::string& other,
                                                   size_t num_undecided) {
   for (const ComparisonRow& row : comparison.rows) {
@@ -181,11 +193,12 @@ std::optional<AskedDifference> DescribeDifference(const Comparison& comparison, 
     const auto n = static_cast<double>(row.n);
     const double best_only = static_cast<double>(row.counts.first_only) / n;
     const double other_only = static_cast<double>(row.counts.second_only) / n;
-    const double level = 0.05 / static_cast<double>(std::max<size_t>(num_undecided, 1));
+    const double level =
+        0.05 / CountChoices(comparison) / static_cast<double>(std::max<size_t>(num_undecided, 1));
     const double discordant = std::max(best_only + other_only, kPlainDifference);
     return AskedDifference{
-        {.value = row.difference, .interval = AdjustInterval(row, comparison.rows.size(), num_undecided)},
-        row.holm_p_value,
+        {.value = row.difference, .interval = AdjustInterval(row, comparison, num_undecided)},
+        AdjustedPValue(row, comparison),
         TrialsToTellApart(best_only, other_only, level),
         TrialsToTellApart(0.5 * (discordant + kPlainDifference), 0.5 * (discordant - kPlainDifference),
                           level)};

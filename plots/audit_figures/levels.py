@@ -11,18 +11,12 @@ import numpy
 from matplotlib.ticker import FixedFormatter, FixedLocator, NullLocator
 
 from common import style
+from common.number_text import parse_number
 from common.text_size import height_of, width_of, wrap
 
 TICK_SIZE = 7.5
 UPRIGHT_LENGTH = 1.2  # inches at most of a label that stands upright
 ZERO_GAP = 0.35  # decades from the smallest positive level to the place of zero
-
-
-def as_number(text):
-    try:
-        return float(text)
-    except ValueError:
-        return math.nan
 
 
 class Levels:
@@ -31,7 +25,7 @@ class Levels:
     def __init__(self, name, texts, width):
         self.name, self.width = name, width
         self.texts = list(dict.fromkeys(texts))
-        numbers = [as_number(text) for text in self.texts]
+        numbers = [parse_number(text) for text in self.texts]
         self.are_numbers = all(map(math.isfinite, numbers))
         if self.are_numbers:
             self.texts.sort(key=float)

@@ -21,11 +21,13 @@ class Parser(argparse.ArgumentParser):
 
 
 class FigureParser(Parser):
-    """With the options that every figure has. `least_width`: inches below which this kind of figure cannot be drawn."""
+    """With the options that every figure has but --out, which has its own default. `least_width`: inches below which this kind of
+    figure cannot be drawn; `out_is_folder`: of several figures."""
 
-    def __init__(self, least_width=sheet.NARROWEST, **arguments):
+    def __init__(self, least_width=sheet.NARROWEST, out_is_folder=False, **arguments):
         super().__init__(formatter_class=argparse.RawDescriptionHelpFormatter, **arguments)
         self.least_width = least_width
+        self.out_is_folder = out_is_folder
         group = self.add_argument_group("for a paper")
         group.add_argument("--width", type=float, metavar="INCHES",
                            help="as wide as it is printed (a column of IEEEtran: 3.48, of article: 3.17); texts then have 7 to 9 points")
@@ -51,6 +53,8 @@ class FigureParser(Parser):
             formats=checked_formats(formats), highlight=highlight or tuple(shared.get("highlight", ())),
             colors=shared.get("colors", {}), asked=(*(("--labels", name) for name in labels),
                                                     *(("--highlight", name) for name in highlight)))
+        if not self.out_is_folder:
+            check_figure_path(options.out)
         return options
 
     def checked_width(self, width):

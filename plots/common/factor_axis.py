@@ -8,18 +8,12 @@ from matplotlib.transforms import ScaledTranslation
 
 from common import sheet, style
 from common.command_line import PlotError
+from common.number_text import is_number
 from common.text_size import height_of, width_of
 
 MAX_PANEL_ROWS = 6
 FAR = 50  # times the least level: levels farther than that from each other stand on a logarithmic axis
 TICK_SIZE, NAME_GAP = 8, 0.08  # points; inches between names below an axis, or they stand upright
-
-
-def is_number(text):
-    try:
-        return math.isfinite(float(text))
-    except ValueError:
-        return False
 
 
 class FactorAxis:

@@ -1,4 +1,4 @@
-"""Numbers as figures print them."""
+"""Numbers as figures print them, and as tables hold them."""
 
 import math
 
@@ -21,3 +21,15 @@ def power_text(value):
     digits = digits.rstrip("0").rstrip(".").replace("-", "\u2212")
     factor = digits[:-1] if digits in ("1", "\u22121") else digits + "\u00b7"
     return f"{factor}10{str(int(exponent)).translate(SUPERSCRIPTS)}"
+
+
+def parse_number(text):
+    """NaN: it is a word."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
+
+
+def is_number(text):
+    return math.isfinite(parse_number(text))

@@ -10,6 +10,8 @@ import dataclasses
 import numpy as np
 from numpy.polynomial import legendre
 
+from common.number_text import parse_number
+
 ABSENT = "-"
 DEGREES, NESTED_DEGREES = 8, 3  # of the polynomials of a number; of one that few conditions have
 FEW_LEVELS = 12  # a number with so many levels is not spread evenly over its range
@@ -109,25 +111,17 @@ class ConditionEncoder:
         self.degrees, self.highest = np.array(self.degrees, int), np.array(self.highest, int)
 
 
-def number_of(level):
-    """NaN: a word."""
-    try:
-        return float(level)
-    except ValueError:
-        return np.nan
-
-
 def are_numbers(levels):
     """Whether all levels that are there are numbers, or so many that the words stand for having none (parallax_deg: none)."""
     distinct = [level for level in set(levels) if level != ABSENT]
-    num_numbers = sum(not np.isnan(number_of(level)) for level in distinct)
+    num_numbers = sum(not np.isnan(parse_number(level)) for level in distinct)
     return num_numbers == len(distinct) or num_numbers > FEW_LEVELS
 
 
 def is_there(levels):
     """Which conditions have the factor."""
     if are_numbers(levels):
-        return np.array([not np.isnan(number_of(level)) for level in levels], bool)
+        return np.array([not np.isnan(parse_number(level)) for level in levels], bool)
     return (levels != ABSENT).to_numpy()
 
 
@@ -165,7 +159,7 @@ def is_even_in_logarithm(numbers):
 
 def position_in(column, levels):
     """0..1 within the range of a number; levels outside of it count as its ends. NaN where absent."""
-    numbers = np.array([number_of(level) for level in levels])
+    numbers = np.array([parse_number(level) for level in levels])
     with np.errstate(divide="ignore", invalid="ignore"):
         numbers = np.log(numbers) if column.is_log else numbers
     return np.clip((numbers - column.low) / (column.high - column.low), 0, 1)

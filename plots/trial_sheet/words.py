@@ -1,7 +1,7 @@
 """What a picture of a trial says in words; the numbers are those of the file."""
 
 from common import style
-from common.factor_axis import is_number
+from common.number_text import is_number
 
 OUTCOMES = {"success": "within the bounds", "failure": "failure", "refusal": "refusal", "not_scored": "not scored"}
 

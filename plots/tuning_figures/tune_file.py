@@ -12,7 +12,7 @@ import math
 from dataclasses import dataclass
 
 from common import style
-from common.factor_axis import is_number
+from common.number_text import is_number
 from common.json_file import is_finite, read_object
 from common.number_text import number_text
 

@@ -13,10 +13,11 @@ import numpy as np
 import yaml
 
 from common.command_line import PlotError
+from common.number_text import is_number
 from common.whole_file import write_text
 from worst_search.objective import Objective, Tried
 from worst_search.run_rcme import run_rcme
-from worst_search.space import ABSENT, is_number
+from worst_search.space import ABSENT
 
 SURE_BELOW, SURE_OF_COVERAGE = 0.1, 0.01  # stated probabilities of failure, as in `rcme marginals`
 COVERED_BELOW = 11.0705  # the 95 % point of chi square with five degrees of freedom

@@ -4,15 +4,10 @@ import dataclasses
 
 import numpy as np
 
+from common.number_text import is_number
+
 ABSENT = "-"  # the level of a key that a draw does not have
 IDLE_SHARE = 0.01  # of the draws with a key
-
-
-def is_number(text):
-    try:
-        return np.isfinite(float(text))
-    except ValueError:
-        return False
 
 
 def mostly_numbers(levels):
