@@ -68,6 +68,10 @@ std::vector<std::pair<std::string, std::int64_t PairedCounts::*>> ListPairedCoun
   return {};
 }
 
+Estimate FindDifference(const ComparisonRow& row) {
+  return row.n > 0 ? Estimate{row.difference, row.interval} : Estimate();
+}
+
 std::string RenderComparedTable(const Compared& compared, const Comparison& comparison) {
   using R = const ComparisonRow&;
   const bool is_error = compared.kind == ComparedKind::kError;
@@ -79,9 +83,7 @@ std::string RenderComparedTable(const Compared& compared, const Comparison& comp
   columns.push_back(
       {{is_error ? fmt::format("median difference ({})", compared.unit) : "difference (% points)",
         ColumnType::kEstimate, DifferenceFormat(compared.kind)},
-       [](R r) {
-         return r.n > 0 ? Estimate{r.difference, r.interval} : Estimate();
-       }});
+       FindDifference});
   columns.push_back({{"p", ColumnType::kNumber}, [](R r) { return r.p_value; }});
   columns.push_back({{"Holm p", ColumnType::kNumber}, [](R r) { return r.holm_p_value; }});
   columns.push_back({{" "}, [](R r) { return std::string(r.holm_p_value < 0.05 ? "*" : ""); }});
@@ -177,6 +179,26 @@ Table MakeRowTable(const Comparison& comparison) {
   return MakeTable(columns, comparison.rows);
 }
 
+// What a page needs of the rows: without what is the same in all of them or follows from the others.
+Table MakePaperTable(const Comparison& comparison) {
+  using R = const ComparisonRow&;
+  auto columns = LevelColumns<ComparisonRow>(comparison.factor_names);
+  columns.push_back({{.name = "estimator", .is_key = true}, [](R r) { return r.estimator; }});
+  columns.push_back({{"compared"}, [](R r) { return r.event; }});
+  columns.push_back({{"n", ColumnType::kCount}, [](R r) { return r.n; }});
+  const auto add_differences = [&](bool are_errors, const std::string& name) {
+    const auto is_shown = [are_errors](R r) { return (r.kind == ComparedKind::kError) == are_errors; };
+    if (std::ranges::none_of(comparison.rows, is_shown)) return;
+    const ComparedKind kind = are_errors ? ComparedKind::kError : ComparedKind::kEvent;
+    columns.push_back({{name, ColumnType::kEstimate, DifferenceFormat(kind)},
+                       [is_shown](R r) { return is_shown(r) ? FindDifference(r) : Estimate(); }});
+  };
+  add_differences(false, fmt::format("difference from {} (% points)", comparison.reference));
+  add_differences(true, fmt::format("median difference from {}", comparison.reference));
+  columns.push_back({{"Holm p", ColumnType::kNumber}, [](R r) { return r.holm_p_value; }});
+  return MakeTable(columns, comparison.rows);
+}
+
 std::string ComparisonAsTable(const Comparison& comparison) {
   std::string text = fmt::format(
       "Study {} against {}: {}\n", comparison.study, comparison.reference,
@@ -207,13 +229,15 @@ std::string ComparisonAsTable(const Comparison& comparison) {
 }  // namespace
 
 CommandResult MakeComparisonResult(const Comparison& comparison) {
-  return MakeResult(ComparisonAsTable(comparison), kComparisonFormat,
-                    {{"study", comparison.study},
-                     {"reference", comparison.reference},
-                     {"trials_done", comparison.num_trials_done},
-                     {"trials_planned", comparison.num_trials_planned},
-                     {"caution", comparison.caution}},
-                    MakeRowTable(comparison));
+  CommandResult result = MakeResult(ComparisonAsTable(comparison), kComparisonFormat,
+                                    {{"study", comparison.study},
+                                     {"reference", comparison.reference},
+                                     {"trials_done", comparison.num_trials_done},
+                                     {"trials_planned", comparison.num_trials_planned},
+                                     {"caution", comparison.caution}},
+                                    MakeRowTable(comparison));
+  result.paper = MakePaperTable(comparison);
+  return result;
 }
 
 }  // namespace rcme

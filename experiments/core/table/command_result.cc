@@ -15,8 +15,9 @@ const std::vector<std::string>& ListResultFormats() {
 std::string RenderResult(const CommandResult& result, const std::string& format) {
   if (format == "csv") return RenderCsv(result.rows);
   if (format == "json") return result.json;
-  if (format == "latex") return RenderLatex(result.rows);
-  if (format == "markdown") return RenderMarkdown(result.rows);
+  const Table& printed = result.paper.columns.empty() ? result.rows : result.paper;
+  if (format == "latex") return RenderLatex(printed);
+  if (format == "markdown") return RenderMarkdown(printed);
   return result.text;
 }
 
@@ -36,7 +37,7 @@ CommandResult MakeResult(const std::string& text, const char* format, const Fact
                          const std::vector<NamedTable>& more) {
   std::vector<NamedTable> tables = {{"rows", rows}};
   tables.insert(tables.end(), more.begin(), more.end());
-  return {text, rows, RenderDocument(format, facts, tables)};
+  return {.text = text, .rows = rows, .json = RenderDocument(format, facts, tables)};
 }
 
 }  // namespace rcme

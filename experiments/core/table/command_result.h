@@ -11,8 +11,9 @@ namespace rcme {
 
 struct CommandResult {
   std::string text = {};  // format table: tables and sentences for people
-  Table rows = {};        // formats csv, latex, markdown
+  Table rows = {};        // format csv
   std::string json = {};  // format json: a document; one of its arrays has the same rows
+  Table paper = {};       // formats latex and markdown, for a page; without columns: the rows
 };
 
 // Returns table, csv, json, latex, markdown.

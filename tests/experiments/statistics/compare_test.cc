@@ -198,6 +198,19 @@ TEST_F(CompareTest, ABadLabelNamesWhatIsAllowed) {
                                {"--against", "'rcme'", "'small'", "allowed: standard, ours"}));
 }
 
+// Without columns that are the same in every row, or follow from others; differences in percentage points.
+TEST_F(CompareTest, ATableForAPageHasWhatAReaderNeeds) {
+  Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
+  const CommandResult result = MakeComparisonResult(CompareRun("run"));
+  const std::string page = RenderResult(result, "markdown");
+  EXPECT_TRUE(
+      page.starts_with("| outlier_ratio | estimator | compared | n | difference from standard (% points) | "
+                       "Holm p |\n"))
+      << page;
+  EXPECT_NE(page.find("| 0 | ours | failure | 21 | -28.57 ["), std::string::npos) << page;
+  EXPECT_NE(RenderResult(result, "latex").find("28.57"), std::string::npos);
+}
+
 TEST_F(CompareTest, CsvAndJsonHoldTheSameRows) {
   Write("run", {{"ff", 1}, {"sf", 1}, {"fs", 7}, {"ss", 12}});
   const Comparison comparison = CompareRun("run");
