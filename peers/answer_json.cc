@@ -51,9 +51,11 @@ double NumberIn(const Json& value, const std::string& key) {
   return value.get<double>();
 }
 
-// Other keys than those of an answer are skipped, but not one that was probably meant to be one of them.
+// Other keys than those of an answer are skipped, but not one that was probably meant to be one of them. Of a
+// short key, such as T, F or pose, that cannot be said.
 void CheckKey(const std::string& key) {
-  if (std::ranges::find(kAnswerKeys, key) != kAnswerKeys.end()) return;
+  constexpr size_t kFewestLetters = 5;
+  if (key.size() < kFewestLetters || std::ranges::find(kAnswerKeys, key) != kAnswerKeys.end()) return;
   const std::string meant = DidYouMean(key, kAnswerKeys);
   if (!meant.empty()) Fail(fmt::format("unknown key {}{}", Quoted(key), meant));
 }
