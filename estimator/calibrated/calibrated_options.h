@@ -56,7 +56,7 @@ struct CalibratedOptions {
   CalibrationPrior calibration;  // uncertainty of the intrinsics, added to the covariance
   // Prior probability that the calibration has errors of usual size, of the kinds that `calibration` does not
   // state (unstated_errors.h).
-  double unstated_errors = 0.0;
+  double unstated_errors = 0.01;
   RobustCovarianceOptions robust;  // for kRobust; its calibration is taken from the field above
 };
 
