@@ -63,6 +63,12 @@ const char* Name(PriorUse use) {
   return "none";
 }
 
+Matrix5d CovarianceWithoutErrors(const MotionEstimate& estimate) {
+  const double weight = estimate.calibration_error_probability;
+  if (!(weight > 0.0 && weight < 1.0)) return estimate.pose_cov;
+  return (estimate.pose_cov - weight * estimate.pose_cov_with_errors) / (1.0 - weight);
+}
+
 MotionEstimate MakeRefusal(MotionStatus status, std::string message, const LoopCounts& counts) {
   MotionEstimate refusal;
   refusal.status = status;

@@ -145,6 +145,9 @@ struct MotionEstimate {
   double seconds_elsewhere = std::numeric_limits<double>::quiet_NaN();
 };
 
+// pose_cov if the calibration has no errors that nobody stated. pose_cov itself if it has them for sure.
+Matrix5d CovarianceWithoutErrors(const MotionEstimate& estimate);
+
 // No motion, and why.
 MotionEstimate MakeRefusal(MotionStatus status, std::string message, const LoopCounts& counts = {});
 

@@ -72,8 +72,7 @@ ProtectionLevels ComputeProtectionLevels(const MotionEstimate& estimate, double 
   const double errors = estimate.calibration_error_probability,
                weight = errors > 0.0 ? std::min(errors, 1.0) : 0.0;
   const Matrix5d& second = estimate.pose_cov_with_errors;
-  const Matrix5d first =
-      weight > 0.0 && weight < 1.0 ? Matrix5d((covariance - weight * second) / (1.0 - weight)) : covariance;
+  const Matrix5d first = CovarianceWithoutErrors(estimate);
   return {ComputeLevel(FindEigenvalues<3>(first.topLeftCorner<3, 3>()),
                        FindEigenvalues<3>(second.topLeftCorner<3, 3>()), weight, tail),
           ComputeLevel(FindEigenvalues<2>(first.bottomRightCorner<2, 2>()),

@@ -55,7 +55,7 @@ UnstatedErrors FindUnstatedErrors(const JudgedModes& judged) {
   return errors;
 }
 
-// MakeCovarianceRobust comes before the errors and the bound.
+// With a robust covariance, MakeCovarianceRobust comes before the errors and the bound.
 ModeSpread MakeSpread(const Matrix5d& covariance, const UnstatedErrors& errors,
                       const CalibratedOptions& options) {
   if (options.covariance == CovarianceKind::kRobust) return {covariance, covariance, covariance};

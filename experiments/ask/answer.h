@@ -64,8 +64,8 @@ struct AskedEstimator {
 struct AskedDifference {
   // Success rate of the best minus that of the next. The interval contains 0 unless p_value < 0.05.
   Estimate difference;
-  double p_value =
-      1.0;  // McNemar's, adjusted for all pairs of estimators, as the best was chosen by the same trials
+  // McNemar's, adjusted for all pairs of estimators, as the best was chosen by the same trials.
+  double p_value = 1.0;
   std::int64_t trials_to_tell = 0;  // about so many trials tell the two apart with probability 0.8
   // The same if the success rates differed by kPlainDifference and the outcomes disagreed as often as here.
   std::int64_t trials_of_plain_difference = 0;

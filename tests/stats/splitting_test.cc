@@ -166,6 +166,18 @@ TEST(Splitting, CountsAFrequentEventAtOnce) {
   EXPECT_EQ(rate.num_values, 21 * 100);  // no level, no move
 }
 
+// Replicates that agree exactly do not show how far their mean may be off.
+TEST(Splitting, AnEventOfAllDrawsHasTheExactInterval) {
+  struct AnyState : NormalVector {
+    double Value(const State&) const { return 2.0; }
+  };
+  const SplittingRate rate = Estimate(AnyState{}, kSmall, 4, 0);
+  EXPECT_EQ(rate.estimate, 1.0);
+  EXPECT_EQ(rate.relative_spread, 0.0);
+  EXPECT_EQ(rate.interval.upper, 1.0);
+  EXPECT_NEAR(rate.interval.lower, std::pow(0.025, 1.0 / 400.0), 1e-9);
+}
+
 TEST(SplittingRate, DoubtsWhatItHasReasonTo) {
   SplittingPilot pilot;
   const auto replicates = [](std::vector<double> estimates, double acceptance, std::int64_t num_events) {

@@ -168,13 +168,19 @@ void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, boo
   if (estimate->status != MotionStatus::kOk) return;
   RobustCovarianceOptions options;
   options.known_variances = FindKnownVariances(noise);
-  const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(estimate->pose_cov);
+  const Matrix5d mixed = estimate->pose_cov, exact = CovarianceWithoutErrors(*estimate);
+  estimate->pose_cov = exact;
+  const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(exact);
   MotionEstimate by_file = *estimate;
   if (options.known_variances->own < 1.0) MakeCovarianceRobust(problem, options, own_cov, &by_file);
   if (!is_robust || ComputeWidth(problem, by_file) > ComputeWidth(problem, *estimate))
     *estimate = std::move(by_file);
-  if (estimate->status == MotionStatus::kOk)
-    estimate->pose_cov += ComputeCovarianceOfFaults(problem, noise, *estimate);
+  if (estimate->status != MotionStatus::kOk) return;
+  estimate->pose_cov += ComputeCovarianceOfFaults(problem, noise, *estimate);
+  if (!(estimate->calibration_error_probability > 0.0)) return;
+  const Matrix5d increase = estimate->pose_cov - exact;
+  estimate->pose_cov = mixed + increase;
+  estimate->pose_cov_with_errors += increase;
 }
 
 std::unique_ptr<MotionEstimator> WithSharedNoise(std::unique_ptr<MotionEstimator> estimator,

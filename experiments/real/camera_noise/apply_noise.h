@@ -39,7 +39,8 @@ MotionProblem CorrectReadout(MotionProblem problem, const RelativePose& cam2_fro
 // uncertainty of the camera's faults (fault_posterior.h), whether removed or not. G = -A^-1 sum J_i' D_i is
 // the derivative of the motion by the faults, with A = sum J_i' J_i and D_i the derivative of the residual by
 // the faults (truth_free/calibration_score.h). G U G' is omitted for a pair of another camera than the
-// file's.
+// file's. Errors of the calibration that nobody stated are no noise of the matches: they add what they added
+// before.
 //
 // With `is_robust` the first term replaces the estimator's covariance only if it is wider in tr(A C), since
 // neighbours in this pair can share more than the file states. Nothing changes if the file has neither shared

@@ -297,6 +297,7 @@ TEST(WidenCovariance, AddsHowFarAnErrorOfWhatIsRemovedMovesTheMotion) {
     noise.corrections = {{static_cast<size_t>(fault), {}, 0.0, error}};
     noise.uncertainty_correlations = {1.0};
     estimate.pose_cov.setZero();
+    estimate.calibration_error_probability = 0.0;
     WidenCovariance(problem, noise, false, &estimate);
     const Matrix5d expected = moved * moved.transpose();
     EXPECT_LT((estimate.pose_cov - expected).norm(), 0.02 * expected.norm()) << FindFaultText(fault).name;
@@ -321,6 +322,34 @@ TEST(WidenCovariance, LeavesOtherCamerasTheirCovariance) {
   };
   EXPECT_EQ(widen(1.01 * problem.camera1.fx), given.pose_cov);
   EXPECT_GT(widen(problem.camera1.fx).trace(), 1.1 * given.pose_cov.trace());
+}
+
+// What errors of the calibration add is neither lost nor multiplied with the noise.
+TEST(WidenCovariance, WidensTheLawsWithAndWithoutUnstatedErrors) {
+  const MotionProblem problem = TakePairs(1).set.pairs[4].problem;
+  RandomStream rng({.seed = 1, .purpose = 124});
+  MotionEstimate exact = MakeEstimator("rcme_calibrated")->Estimate(problem, rng);
+  exact.calibration_error_probability = 0.0;
+  MotionEstimate mixture = exact;
+  const Matrix5d of_errors = 9.0 * exact.pose_cov;
+  mixture.calibration_error_probability = 0.25;
+  mixture.pose_cov_with_errors = exact.pose_cov + of_errors;
+  mixture.pose_cov += 0.25 * of_errors;
+  CameraNoise noise;
+  noise.sigma_px = {problem.sigma_px, 0.01};
+  noise.camera = problem.camera1;
+  noise.corrections = {{0, {}, 0.0, 0.01}};
+  noise.uncertainty_correlations = {1.0};
+  noise.displacement_px = {0.7 * problem.sigma_px, 0.01};
+  noise.reach_px = 150.0;
+  for (const bool is_robust : {false, true}) {
+    MotionEstimate of_exact = exact, of_mixture = mixture;
+    WidenCovariance(problem, noise, is_robust, &of_exact);
+    WidenCovariance(problem, noise, is_robust, &of_mixture);
+    EXPECT_GT(of_exact.pose_cov.trace(), 1.1 * exact.pose_cov.trace());
+    EXPECT_TRUE(CovarianceWithoutErrors(of_mixture).isApprox(of_exact.pose_cov, 1e-9)) << is_robust;
+    EXPECT_TRUE(of_mixture.pose_cov_with_errors.isApprox(of_exact.pose_cov + of_errors, 1e-9)) << is_robust;
+  }
 }
 
 // A field that was not found and is to be expected counts as one of its variance that was.
