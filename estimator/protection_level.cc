@@ -36,22 +36,6 @@ Eigen::Vector3d FindEigenvalues(const Eigen::Matrix<double, kSize, kSize>& block
   return eigenvalues;
 }
 
-// The level of a mixture of two normal laws, `weight` that of the second. It lies between their levels.
-double ComputeLevel(const Eigen::Vector3d& first, const Eigen::Vector3d& second, double weight, double tail) {
-  constexpr int kHalvings = 60;
-  const double of_first = GaussianNormQuantile(first, tail);
-  if (weight == 0.0) return std::min(std::numbers::pi, of_first);
-  const double of_second = GaussianNormQuantile(second, tail);
-  double low = std::min(of_first, of_second), high = std::max(of_first, of_second);
-  for (int k = 0; k < kHalvings; ++k) {
-    const double middle = 0.5 * (low + high);
-    const double beyond =
-        (1.0 - weight) * GaussianNormTail(first, middle) + weight * GaussianNormTail(second, middle);
-    (beyond > tail ? low : high) = middle;
-  }
-  return std::min(std::numbers::pi, high);
-}
-
 }  // namespace
 
 ProtectionLevels ComputeProtectionLevels(const MotionEstimate& estimate, double risk) {
@@ -73,10 +57,13 @@ ProtectionLevels ComputeProtectionLevels(const MotionEstimate& estimate, double 
                weight = errors > 0.0 ? std::min(errors, 1.0) : 0.0;
   const Matrix5d& second = estimate.pose_cov_with_errors;
   const Matrix5d first = CovarianceWithoutErrors(estimate);
-  return {ComputeLevel(FindEigenvalues<3>(first.topLeftCorner<3, 3>()),
-                       FindEigenvalues<3>(second.topLeftCorner<3, 3>()), weight, tail),
-          ComputeLevel(FindEigenvalues<2>(first.bottomRightCorner<2, 2>()),
-                       FindEigenvalues<2>(second.bottomRightCorner<2, 2>()), weight, tail)};
+  const auto level = [&](const Eigen::Vector3d& without, const Eigen::Vector3d& with) {
+    return std::min(std::numbers::pi, GaussianNormQuantile(without, with, weight, tail));
+  };
+  return {level(FindEigenvalues<3>(first.topLeftCorner<3, 3>()),
+                FindEigenvalues<3>(second.topLeftCorner<3, 3>())),
+          level(FindEigenvalues<2>(first.bottomRightCorner<2, 2>()),
+                FindEigenvalues<2>(second.bottomRightCorner<2, 2>()))};
 }
 
 }  // namespace rcme

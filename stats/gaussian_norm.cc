@@ -59,23 +59,38 @@ double NormTail(const Eigen::Vector3d& l, double r) {
   return std::min(1.0, outside + mean);
 }
 
-}  // namespace
-
-double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, double tail) {
-  const Eigen::Vector3d sorted = SortEigenvalues(eigenvalues);
-  if (!(tail >= kLeastTail && tail < 1.0))
-    throw std::invalid_argument("the probability of a greater length is not in [1e-300, 1)");
-  if (sorted(0) == 0.0) return 0.0;
-  const Eigen::Vector3d l = sorted / sorted(0);
+// The r >= 0 with tail_at(r) = tail; tail_at falls from 1 to 0.
+template <typename Function>
+double SolveTail(const Function& tail_at, double tail) {
   const auto excess = [&](double r) {
-    return std::log(std::max(NormTail(l, r), std::numeric_limits<double>::min())) - std::log(tail);
+    return std::log(std::max(tail_at(r), std::numeric_limits<double>::min())) - std::log(tail);
   };
   double greatest = 1.0;
   while (excess(greatest) > 0.0) greatest *= 2.0;
   std::uintmax_t most_steps = 100;
   const auto [lower, upper] = boost::math::tools::toms748_solve(
       excess, 0.0, greatest, boost::math::tools::eps_tolerance<double>(46), most_steps);
-  return std::sqrt(sorted(0)) * (0.5 * (lower + upper));
+  return 0.5 * (lower + upper);
+}
+
+}  // namespace
+
+double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, double tail) {
+  return GaussianNormQuantile(eigenvalues, Eigen::Vector3d::Zero(), 0.0, tail);
+}
+
+double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, const Eigen::Vector3d& other, double weight,
+                            double tail) {
+  if (!(tail >= kLeastTail && tail < 1.0))
+    throw std::invalid_argument("the probability of a greater length is not in [1e-300, 1)");
+  const double unit = std::sqrt(std::max(weight < 1.0 ? SortEigenvalues(eigenvalues)(0) : 0.0,
+                                         weight > 0.0 ? SortEigenvalues(other)(0) : 0.0));
+  if (unit == 0.0) return 0.0;
+  const auto tail_at = [&](double r) {
+    return (weight < 1.0 ? (1.0 - weight) * GaussianNormTail(eigenvalues, unit * r) : 0.0) +
+           (weight > 0.0 ? weight * GaussianNormTail(other, unit * r) : 0.0);
+  };
+  return unit * SolveTail(tail_at, tail);
 }
 
 double GaussianNormTail(const Eigen::Vector3d& eigenvalues, double r) {

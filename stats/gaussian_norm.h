@@ -25,6 +25,11 @@ namespace rcme {
 // not finite or negative, or tail is outside of [1e-300, 1).
 double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, double tail);
 
+// The same if e has these eigenvalues with probability 1 - weight, and those of `other` with probability
+// `weight`, in [0, 1].
+double GaussianNormQuantile(const Eigen::Vector3d& eigenvalues, const Eigen::Vector3d& other, double weight,
+                            double tail);
+
 // P(|e| > r), r >= 0. Throws for such eigenvalues likewise.
 double GaussianNormTail(const Eigen::Vector3d& eigenvalues, double r);
 

@@ -96,6 +96,21 @@ TEST(GaussianNorm, TailIsTheShareOfDrawsBeyondTheQuantile) {
   }
 }
 
+// Rayleigh's law with the shares 1 - w and w.
+TEST(GaussianNorm, OfAMixtureHasTheTailOfBothLaws) {
+  for (const double sd : {0.1, 5.0, 1e4}) {
+    for (const double weight : {0.0, 1e-9, 0.01, 0.5, 1.0}) {
+      for (const double tail : {0.9, 0.05, 1e-3, 1e-9}) {
+        const double r = GaussianNormQuantile({4.0, 4.0, 0.0}, {sd * sd, sd * sd, 0.0}, weight, tail);
+        const double beyond =
+            (1.0 - weight) * std::exp(-r * r / 8.0) + weight * std::exp(-0.5 * r * r / (sd * sd));
+        EXPECT_NEAR(beyond / tail, 1.0, 1e-9) << sd << " " << weight << " " << tail;
+      }
+    }
+  }
+  EXPECT_LT(GaussianNormQuantile(Vector3d::Zero(), Vector3d::Ones(), 0.01, 0.05), 1e-12);
+}
+
 TEST(GaussianNorm, IsZeroWithoutVariance) { EXPECT_EQ(GaussianNormQuantile(Vector3d::Zero(), 1e-3), 0.0); }
 
 TEST(GaussianNorm, RefusesWhatIsNoLaw) {
