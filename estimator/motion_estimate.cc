@@ -63,10 +63,14 @@ const char* Name(PriorUse use) {
   return "none";
 }
 
-Matrix5d CovarianceWithoutErrors(const MotionEstimate& estimate) {
-  const double weight = estimate.calibration_error_probability;
-  if (!(weight > 0.0 && weight < 1.0)) return estimate.pose_cov;
-  return (estimate.pose_cov - weight * estimate.pose_cov_with_errors) / (1.0 - weight);
+const Matrix5d& CovarianceWithoutErrors(const MotionEstimate& estimate) {
+  return estimate.calibration_error_probability > 0.0 ? estimate.pose_cov_without_errors : estimate.pose_cov;
+}
+
+void MixErrors(MotionEstimate* estimate) {
+  const double weight = estimate->calibration_error_probability;
+  estimate->pose_cov =
+      (1.0 - weight) * estimate->pose_cov_without_errors + weight * estimate->pose_cov_with_errors;
 }
 
 MotionEstimate MakeRefusal(MotionStatus status, std::string message, const LoopCounts& counts) {

@@ -132,9 +132,9 @@ struct MotionEstimate {
   // Probability that the calibration has errors that nobody stated (unstated_errors.h), which pose_cov
   // counts; 0: they are not counted.
   double calibration_error_probability = std::numeric_limits<double>::quiet_NaN();
-  // The covariance if it has them. pose_cov is the mean of the covariances with and without them, weighed by
-  // their probabilities.
-  Matrix5d pose_cov_with_errors = Matrix5d::Zero();
+  // The covariances if it has none and if it has them; pose_cov is their mean, weighed by the probabilities.
+  // Zero if calibration_error_probability is NaN.
+  Matrix5d pose_cov_without_errors = Matrix5d::Zero(), pose_cov_with_errors = Matrix5d::Zero();
 
   PriorUse prior = PriorUse::kNone;
   // Probability that a correct prior is at least this far from the motion of the matches alone; NaN: not
@@ -145,8 +145,10 @@ struct MotionEstimate {
   double seconds_elsewhere = std::numeric_limits<double>::quiet_NaN();
 };
 
-// pose_cov if the calibration has no errors that nobody stated. pose_cov itself if it has them for sure.
-Matrix5d CovarianceWithoutErrors(const MotionEstimate& estimate);
+// pose_cov if the calibration has no errors that nobody stated.
+const Matrix5d& CovarianceWithoutErrors(const MotionEstimate& estimate);
+// Mixes both covariances into pose_cov.
+void MixErrors(MotionEstimate* estimate);
 
 // No motion, and why.
 MotionEstimate MakeRefusal(MotionStatus status, std::string message, const LoopCounts& counts = {});

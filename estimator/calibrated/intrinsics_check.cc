@@ -30,27 +30,20 @@ OfCamera MoveAlong(const Eigen::Vector2d& line, const Eigen::Vector2d& x, const 
 class PointMoves {
  public:
   PointMoves(const MotionProblem& problem, Camera MotionProblem::*camera, Lens Undistortion::*lens,
-             const Eigen::Matrix2d& of_pixels, const CalibrationPrior& stated)
+             const Eigen::Matrix2d& of_pixels)
       : per_focal_of_pixels_(
-            Eigen::Vector2d(1.0 / (problem.*camera).fx, 1.0 / (problem.*camera).fy).asDiagonal() * of_pixels),
-        counts_(stated.focal_sd == 0.0, stated.principal_point_sd_px == 0.0,
-                stated.principal_point_sd_px == 0.0, stated.distortion_sd == 0.0) {
+            Eigen::Vector2d(1.0 / (problem.*camera).fx, 1.0 / (problem.*camera).fy).asDiagonal() *
+            of_pixels) {
     if (!problem.undistortion) return;
     lens_ = (*problem.undistortion).*lens;
     turn_ = per_focal_of_pixels_ * Eigen::Vector2d(lens_->camera.fx, lens_->camera.fy).asDiagonal();
   }
 
-  bool CountsFocal() const { return counts_(0) != 0.0; }
-
   Eigen::Matrix<double, 2, kOfCamera> At(const Eigen::Vector2d& x) const {
+    if (lens_) return MoveThroughLens(x);
     Eigen::Matrix<double, 2, kOfCamera> moves;
-    if (lens_) {
-      moves = MoveThroughLens(x);
-    } else {
-      moves << -kFocalSd * x, -kPrincipalPointSdPx * per_focal_of_pixels_,
-          -kDistortionSd * x.squaredNorm() * x;
-    }
-    return moves * counts_.asDiagonal();
+    moves << -kFocalSd * x, -kPrincipalPointSdPx * per_focal_of_pixels_, -kDistortionSd * x.squaredNorm() * x;
+    return moves;
   }
 
  private:
@@ -68,7 +61,6 @@ class PointMoves {
   }
 
   Eigen::Matrix2d per_focal_of_pixels_;
-  Eigen::Vector4d counts_;  // 1 or, if errors of this kind are stated, 0
   std::optional<Lens> lens_;
   Eigen::Matrix2d turn_ = Eigen::Matrix2d::Identity();  // from rays of the lens to those of the problem
 };
@@ -110,7 +102,6 @@ class ResidualErrors {
     if (exact_ != nullptr) {
       of = {by_x1.transpose() * exact_->image1.At(ray1.head<2>()),
             by_x2.transpose() * exact_->image2.At(ray2.head<2>())};
-      if (!exact_->image1.CountsFocal()) return of;
     } else {
       of = {MoveAlong(by_x1, ray1.head<2>(), per_focal1_), MoveAlong(by_x2, ray2.head<2>(), per_focal2_)};
     }
@@ -199,20 +190,23 @@ IntrinsicsCheck Check(const MotionProblem& problem, const Mode& answer, const Ex
 
 IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer,
                                 const Explanation& explanation) {
-  if (problem.camera1.K() == problem.camera2.K()) return Check<kOfCamera>(problem, answer, explanation);
+  if (IsOfOneCamera(problem)) return Check<kOfCamera>(problem, answer, explanation);
   return Check<2 * kOfCamera>(problem, answer, explanation);
 }
 
 IntrinsicsEvidence FindIntrinsicsEvidence(const MotionProblem& problem, const Mode& answer,
                                           const Explanation& explanation, const CalibrationPrior& stated) {
-  const ExactMoves exact{{problem, &MotionProblem::camera1, &Undistortion::lens1, stated.of_pixels1, stated},
-                         {problem, &MotionProblem::camera2, &Undistortion::lens2, stated.of_pixels2, stated}};
+  const ExactMoves exact{{problem, &MotionProblem::camera1, &Undistortion::lens1, stated.of_pixels1},
+                         {problem, &MotionProblem::camera2, &Undistortion::lens2, stated.of_pixels2}};
+  const Eigen::Vector4d of_camera(
+      stated.focal_sd / kFocalSd, stated.principal_point_sd_px / kPrincipalPointSdPx,
+      stated.principal_point_sd_px / kPrincipalPointSdPx, stated.distortion_sd / kDistortionSd);
   const auto find = [&]<Eigen::Index kErrors>() -> IntrinsicsEvidence {
     const Evidence<kErrors> evidence = FindEvidence<kErrors>(problem, answer, explanation, &exact);
-    return {evidence.information, evidence.score, -evidence.M};
+    return {evidence.information, evidence.score, -evidence.M, of_camera.replicate<kErrors / kOfCamera, 1>()};
   };
-  return problem.camera1.K() == problem.camera2.K() ? find.template operator()<kOfCamera>()
-                                                    : find.template operator()<2 * kOfCamera>();
+  return IsOfOneCamera(problem) ? find.template operator()<kOfCamera>()
+                                : find.template operator()<2 * kOfCamera>();
 }
 
 CalibrationPrior ExceedUsualErrors(CalibrationPrior stated) {

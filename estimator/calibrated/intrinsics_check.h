@@ -2,7 +2,7 @@
 //
 // A camera may have errors of the logarithm of its focal length and of both coordinates of its principal
 // point, and a radial distortion k1 that was not removed. theta are these errors over their usual standard
-// deviations (intrinsics_check.cc): four if one camera took both images (equal K), eight for two cameras. A
+// deviations (intrinsics_check.cc): four if one camera took both images (IsOfOneCamera), eight for two. A
 // priori theta is N(0, I).
 //
 // r are the residuals of the matches that the answer explains, in standard deviations, J = dr/dp and G =
@@ -40,15 +40,17 @@ IntrinsicsCheck CheckIntrinsics(const MotionProblem& problem, const Mode& answer
 
 struct IntrinsicsEvidence {
   static constexpr int kMostErrors = 8;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostErrors, kMostErrors> information;  // I_theta
-  Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostErrors, 1> score;                               // q
-  Eigen::Matrix<double, 5, Eigen::Dynamic, 0, 5, kMostErrors> of_motion;                           // -M, rad
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostErrors, kMostErrors>;
+  using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostErrors, 1>;
+  Square information;                                                     // I_theta
+  Vector score;                                                           // q
+  Eigen::Matrix<double, 5, Eigen::Dynamic, 0, 5, kMostErrors> of_motion;  // -M, rad
+  Vector stated_sd;  // standard deviations that are stated, over the usual ones; 0: not stated
 };
 
-// The evidence about errors of the kinds whose standard deviation in `stated` is 0; the others are not errors
-// of theta here, their rows are zero. Exact to first order: errors are those of the lenses that the matches
-// were undistorted by (MotionProblem::undistortion), and those of the principal point are in the pixels of
-// the images (CalibrationPrior::of_pixels1, 2).
+// Exact to first order: errors are those of the lenses that the matches were undistorted by
+// (MotionProblem::undistortion), and those of the principal point are in the pixels of the images
+// (CalibrationPrior::of_pixels1, 2).
 IntrinsicsEvidence FindIntrinsicsEvidence(const MotionProblem& problem, const Mode& answer,
                                           const Explanation& explanation, const CalibrationPrior& stated);
 

@@ -39,20 +39,12 @@ double ComputeLeftByIntrinsics(const JudgedModes& judged, const Mode& mode, cons
 }
 
 // The errors that the covariance counts.
-UnstatedErrors FindUnstatedErrors(const JudgedModes& judged) {
-  const CalibratedOptions& options = judged.options;
-  const CalibrationPrior& stated = options.calibration;
-  const bool are_all_stated =
-      stated.focal_sd > 0.0 && stated.principal_point_sd_px > 0.0 && stated.distortion_sd > 0.0;
-  if (options.unstated_errors == 0.0 || are_all_stated) return {};
-  const Mode& mode = judged.modes[judged.weights.answer].mode;
-  const Explanation& explanation = judged.modes[judged.weights.answer].explanation;
-  UnstatedErrors errors = WeighUnstatedErrors(
-      FindIntrinsicsEvidence(judged.problem, mode, explanation, stated), options.unstated_errors);
-  if (judged.prior.motion == nullptr) return errors;
-  const Matrix5d to_both = mode.inverse_hessian * FindMatchInformation(judged.prior.motion, mode);
-  errors.moment = to_both * errors.moment * to_both.transpose();
-  return errors;
+UnstatedErrors FindErrorsOfAnswer(const JudgedModes& judged) {
+  const auto& [mode, explanation] = judged.modes[judged.weights.answer];
+  const UnstatedErrors errors = FindUnstatedErrors(judged.problem, mode, explanation, judged.options);
+  if (errors.probability == 0.0 || judged.prior.motion == nullptr) return errors;
+  return UpdateByPrior(errors, FindMatchInformation(judged.prior.motion, mode).inverse(),
+                       ComputePriorResiduals(*judged.prior.motion, mode.pose));
 }
 
 // With a robust covariance, MakeCovarianceRobust comes before the errors and the bound.
@@ -86,7 +78,7 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
   const Mode& answer = modes[weights.answer].mode;
   double within = 0.0, success = 0.0;
   ModesVerdict verdict;
-  verdict.unstated_errors = FindUnstatedErrors(judged);
+  verdict.unstated_errors = FindErrorsOfAnswer(judged);
   std::optional<ModeSpread> of_weak;
   if (spreads != nullptr) spreads->assign(modes.size(), {});
   for (size_t i = 0; i < modes.size(); ++i) {
@@ -118,16 +110,14 @@ ModesVerdict JudgeModes(const JudgedModes& judged, RandomStream& rng, std::vecto
     const auto second_moment = [&](const Matrix5d& covariance) -> Matrix5d {
       return weight * (to_answer * covariance * to_answer.transpose() + away * away.transpose());
     };
-    verdict.pose_cov += second_moment(spread.mixed);
-    verdict.pose_cov_with_errors += second_moment(spread.with_errors);
+    verdict.pose_cov.exact += second_moment(spread.exact);
+    verdict.pose_cov.with_errors += second_moment(spread.with_errors);
+    verdict.pose_cov.mixed += second_moment(spread.mixed);
     within += weight;
   }
-  verdict.pose_cov /= within;
-  verdict.pose_cov_with_errors /= within;
-  if (of_weak) {
-    verdict.pose_cov = of_weak->mixed;
-    verdict.pose_cov_with_errors = of_weak->with_errors;
-  }
+  for (Matrix5d* each : {&verdict.pose_cov.exact, &verdict.pose_cov.with_errors, &verdict.pose_cov.mixed})
+    *each /= within;
+  if (of_weak) verdict.pose_cov = *of_weak;
   verdict.mass_beyond = std::max(within - success, 0.0);
   verdict.by_modes = verdict.failure_probability = std::clamp(1.0 - success, 0.0, 1.0);
   return verdict;

@@ -26,12 +26,6 @@ struct JudgedModes {
   const CalibratedOptions& options;
 };
 
-// Covariances of a mode: if the calibration has no errors that nobody stated, if it has, and the second
-// moment of both cases.
-struct ModeSpread {
-  Matrix5d exact = Matrix5d::Zero(), with_errors = Matrix5d::Zero(), mixed = Matrix5d::Zero();
-};
-
 MotionBounds MakeMotionBounds(const CalibratedOptions& options);
 
 // The verdict before the model check corrects the probability. The covariance is the second moment, about the

@@ -6,6 +6,12 @@
 
 namespace rcme {
 
+// Covariances of a motion: if the calibration has no errors that nobody stated, if it has, and the second
+// moment of both cases.
+struct ModeSpread {
+  Matrix5d exact = Matrix5d::Zero(), with_errors = Matrix5d::Zero(), mixed = Matrix5d::Zero();
+};
+
 struct ModesVerdict {
   double by_modes = 1.0;             // probability of failure according to the modes alone
   double failure_probability = 1.0;  // after the model check, and with uncertain intrinsics
@@ -14,8 +20,7 @@ struct ModesVerdict {
   // usual (intrinsics_check.h).
   double left_by_intrinsics = 1.0;
   UnstatedErrors unstated_errors = {};  // of the calibration; in pose_cov unless CovarianceKind::kRobust
-  Matrix5d pose_cov = Matrix5d::Zero();
-  Matrix5d pose_cov_with_errors = Matrix5d::Zero();  // if the calibration has these errors
+  ModeSpread pose_cov = {};             // of the answer
 };
 
 // Applies the check to the weights. A probability of failure that it adds becomes weight of no motion. One

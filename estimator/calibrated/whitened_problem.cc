@@ -94,8 +94,10 @@ void WhitenedProblem::Restore(MotionEstimate* estimate) const {
     *pose = Restored(*pose);
     *covariance = map * *covariance * map.transpose();
   };
-  RelativePose same = estimate->cam2_from_cam1;
-  restore(&same, &estimate->pose_cov_with_errors);
+  for (Matrix5d* each : {&estimate->pose_cov_without_errors, &estimate->pose_cov_with_errors}) {
+    RelativePose same = estimate->cam2_from_cam1;
+    restore(&same, each);
+  }
   restore(&estimate->cam2_from_cam1, &estimate->pose_cov);
   estimate->initial_pose = Restored(estimate->initial_pose);
   for (MotionMode& mode : estimate->other_modes) restore(&mode.cam2_from_cam1, &mode.pose_cov);

@@ -146,11 +146,13 @@ MotionEstimate ConformJudge::Apply(const MotionProblem& problem, MotionEstimate 
     return refusal;
   }
   const bool has_region = std::isfinite(verdict.factor);
-  estimate.pose_cov = has_region ? verdict.factor * estimate.pose_cov : CovarianceOfAllMotions();
-  estimate.pose_cov_with_errors =
-      has_region ? verdict.factor * estimate.pose_cov_with_errors : CovarianceOfAllMotions();
-  for (MotionMode& mode : estimate.other_modes)
-    mode.pose_cov = has_region ? verdict.factor * mode.pose_cov : CovarianceOfAllMotions();
+  const auto conform = [&](Matrix5d* covariance) {
+    *covariance = has_region ? verdict.factor * *covariance : CovarianceOfAllMotions();
+  };
+  for (Matrix5d* each :
+       {&estimate.pose_cov, &estimate.pose_cov_without_errors, &estimate.pose_cov_with_errors})
+    conform(each);
+  for (MotionMode& mode : estimate.other_modes) conform(&mode.pose_cov);
   estimate.failure_probability = verdict.failure_probability;
   estimate.probability_domain = is_strange       ? ProbabilityDomain::kExtrapolated
                                 : KnowsStrange() ? ProbabilityDomain::kVerified

@@ -56,7 +56,6 @@ struct Workings {
   std::vector<ExplainedMode> modes;
   ModeWeights weights;
   std::optional<WeakDirection> weak_direction;
-  UnstatedErrors unstated_errors;
   CheckedVerdict checked;
 };
 
@@ -93,8 +92,9 @@ void FillMotion(const ExplainedMode& answer, const ModesVerdict& verdict, double
   const MixtureParameters& mixture = answer.mode.mixture;
   estimate->status = MotionStatus::kOk;
   estimate->cam2_from_cam1 = estimate->initial_pose = answer.mode.pose;
-  estimate->pose_cov = verdict.pose_cov;
-  estimate->pose_cov_with_errors = verdict.pose_cov_with_errors;
+  estimate->pose_cov = verdict.pose_cov.mixed;
+  estimate->pose_cov_without_errors = verdict.pose_cov.exact;
+  estimate->pose_cov_with_errors = verdict.pose_cov.with_errors;
   estimate->failure_probability = verdict.failure_probability;
   estimate->calibration_error_probability = verdict.unstated_errors.probability;
   estimate->sigma_estimated_px = assumed_sigma_px * mixture.scale / mixture.noise.scale_of_gaussian;
@@ -281,10 +281,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
         covariance = SpreadOverCells(ComputeDirectionCells(problem, modes[i], Bounds().direction_rad));
       else if (options_.covariance != CovarianceKind::kRobust)
         covariance = BoundByUniformMotion(covariance);
-      const UnstatedErrors& errors = of_matches.unstated_errors;
-      const double of_errors = weights.of_modes[i] * errors.probability;
-      beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i] - of_errors});
-      if (of_errors > 0.0) beliefs.push_back({modes[i].mode.pose, covariance + errors.moment, of_errors});
+      beliefs.push_back({modes[i].mode.pose, covariance, weights.of_modes[i],
+                         FindUnstatedErrors(problem, modes[i].mode, modes[i].explanation, options_)});
     }
     return beliefs;
   }
@@ -325,7 +323,6 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
         JudgeModes({shuffled, matches, prior, modes, weights, weak_direction, check, options_}, rng,
                    posterior != nullptr ? &spreads : nullptr);
     workings->checked = {check, verdict.by_modes};
-    workings->unstated_errors = verdict.unstated_errors;
     if (is_checked) verdict.failure_probability = CheckedFailureProbability(verdict.by_modes, check);
     verdict.failure_probability += (1.0 - verdict.left_by_intrinsics) * (1.0 - verdict.failure_probability);
     if (is_checked) estimate.probability_domain = Domain(verdict.by_modes, check, prior);
@@ -342,7 +339,8 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       robust.calibration = options_.calibration;
       robust.factor = 1.0;  // below, of the greater of both
       const Mode& answer = modes[weights.answer].mode;
-      const Matrix5d own = prior.motion ? OwnCovarianceOfMatches(matches, prior, answer) : verdict.pose_cov;
+      const Matrix5d own =
+          prior.motion ? OwnCovarianceOfMatches(matches, prior, answer) : verdict.pose_cov.exact;
       MakeCovarianceRobust(problem, robust, own, &estimate);
       if (estimate.status == MotionStatus::kOk) {
         // No smaller than the checked one, on average over the directions.
@@ -352,15 +350,16 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
         const Matrix5d of_matches =
             factor * (ratio > 1.0 && std::isfinite(ratio) ? ratio : 1.0) * estimate.pose_cov;
         UnstatedErrors errors = verdict.unstated_errors;
-        errors.moment *= factor;
+        errors.shift *= std::sqrt(factor);
+        errors.spread *= factor;
         const Matrix5d of_both = CovarianceWithPrior(of_matches, answer, prior);
-        estimate.pose_cov = errors.MixInto(of_both);
+        estimate.pose_cov_without_errors = BoundByUniformMotion(of_both);
         estimate.pose_cov_with_errors = errors.AddTo(of_both);
+        MixErrors(&estimate);
       }
     }
     if (posterior != nullptr)
-      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, verdict.unstated_errors,
-                                  weak_direction.has_value(), estimate);
+      *posterior = BuildPosterior(shuffled, modes, reweighed, spreads, weak_direction.has_value(), estimate);
     workings->weights = std::move(weights);
     workings->weak_direction = weak_direction;
     workings->modes = std::move(modes);
@@ -404,8 +403,7 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
   // the estimate's is used for the whole answer.
   MotionPosterior BuildPosterior(const MotionProblem& problem, const std::vector<ExplainedMode>& modes,
                                  const ModeWeights& weights, const std::vector<ModeSpread>& spreads,
-                                 const UnstatedErrors& unstated, bool is_direction_weak,
-                                 const MotionEstimate& estimate) const {
+                                 bool is_direction_weak, const MotionEstimate& estimate) const {
     const bool is_whole = options_.covariance == CovarianceKind::kRobust;
     std::vector<MotionComponent> components;
     for (size_t i = 0; i < modes.size(); ++i) {
@@ -414,11 +412,15 @@ class RcmeCalibrated : public MotionEstimator, public WeightInspection {
       if (is_direction_weak && (is_answer || !weights.is_second_motion[i])) continue;
       if (weight < kNegligibleWeight && i != weights.answer) continue;
       if (is_whole && is_answer && i != weights.answer) continue;
-      const Matrix5d& spread = is_whole && is_answer ? estimate.pose_cov : spreads[i].exact;
-      const double of_errors = is_answer && !is_whole ? weight * unstated.probability : 0.0;
-      components.push_back({modes[i].mode.pose, spread, weight - of_errors, is_answer});
+      const bool is_of_estimate = is_whole && is_answer;
+      const double of_errors = is_answer ? weight * estimate.calibration_error_probability : 0.0;
+      components.push_back({modes[i].mode.pose,
+                            is_of_estimate ? estimate.pose_cov_without_errors : spreads[i].exact,
+                            weight - of_errors, is_answer});
       if (of_errors > 0.0)
-        components.push_back({modes[i].mode.pose, spreads[i].with_errors, of_errors, true});
+        components.push_back({modes[i].mode.pose,
+                              is_of_estimate ? estimate.pose_cov_with_errors : spreads[i].with_errors,
+                              of_errors, true});
     }
     std::vector<DirectionCell> cells;
     if (is_direction_weak)

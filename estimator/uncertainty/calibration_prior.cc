@@ -100,6 +100,13 @@ Parameter DistortionParameter(double* distortion_sd) {
                          "standard deviation of the remaining radial distortion k1, likewise");
 }
 
+bool IsOfOneCamera(const MotionProblem& problem) {
+  if (!problem.camera1.K().isApprox(problem.camera2.K(), 1e-4)) return false;
+  if (!problem.undistortion) return true;
+  const auto& [lens1, lens2, _] = *problem.undistortion;
+  return lens1.model == lens2.model && lens1.k == lens2.k;
+}
+
 Matrix5d CalibrationCovariance(const MotionProblem& problem, const CalibrationPrior& prior,
                                const Matrix5d& inverse_hessian,
                                const std::function<Vector5d(const MotionProblem&)>& gradient_of) {
@@ -114,7 +121,7 @@ Matrix5d CalibrationCovariance(const MotionProblem& problem, const CalibrationPr
   };
   const Image image1{&MotionProblem::camera1, &Correspondence::x1_px, &Undistortion::lens1, prior.of_pixels1},
       image2{&MotionProblem::camera2, &Correspondence::x2_px, &Undistortion::lens2, prior.of_pixels2};
-  const bool is_one_camera = problem.camera1.K() == problem.camera2.K();
+  const bool is_one_camera = IsOfOneCamera(problem);
   const double step_px = 0.01 * problem.sigma_px, step = step_px / problem.camera1.fx;
   struct Uncertain {
     Intrinsic intrinsic;

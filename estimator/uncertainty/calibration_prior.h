@@ -10,7 +10,7 @@
 namespace rcme {
 
 // Standard deviations of the intrinsics. Two cameras have independent errors; a single camera that took both
-// images (equal K) has the same errors in both.
+// images (IsOfOneCamera) has the same errors in both.
 struct CalibrationPrior {
   double focal_sd = 0.0;               // relative
   double principal_point_sd_px = 0.0;  // per coordinate
@@ -23,6 +23,10 @@ struct CalibrationPrior {
 
   bool IsNone() const { return focal_sd == 0.0 && principal_point_sd_px == 0.0 && distortion_sd == 0.0; }
 };
+
+// Whether one camera took both images: K is equal to a relative 1e-4, as each image of a reconstruction may
+// have its own rounded one, and the lenses are equal.
+bool IsOfOneCamera(const MotionProblem& problem);
 
 Parameter FocalParameter(double* focal_sd);
 Parameter PrincipalPointParameter(double* principal_point_sd_px);

@@ -58,6 +58,7 @@ TEST(ProtectionLevels, OfAMixtureCountBothLaws) {
       AnswerWith(((1.0 - weight) * sd * sd + weight * wide * wide) * Matrix5d::Identity());
   const double normal = ComputeProtectionLevels(answer, risk).direction_rad;
   answer.calibration_error_probability = weight;
+  answer.pose_cov_without_errors = sd * sd * Matrix5d::Identity();
   answer.pose_cov_with_errors = wide * wide * Matrix5d::Identity();
   const ProtectionLevels levels = ComputeProtectionLevels(answer, risk);
   const auto beyond = [&](double r) {

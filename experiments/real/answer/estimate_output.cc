@@ -108,19 +108,22 @@ std::string FormatProtection(const LevelsAtRisk& at) {
 // What errors of the calibration would do that nobody stated.
 std::string CalibrationText(const PairAnswer& answer, const EstimatorSpec& spec) {
   const std::vector<CalibrationEffect>& effects = answer.calibration_effects;
-  if (effects.empty()) return {};
-  std::string text = "  if K is off, errors with these standard deviations move the motion by (rms)\n";
+  std::string text = effects.empty()
+                         ? ""
+                         : "  if K is off, errors with these standard deviations move the motion by (rms)\n";
   for (const CalibrationEffect& effect : effects) {
     text += fmt::format("             {:<27} rotation {:.2g} deg, direction {:.2g} deg\n", effect.error,
                         effect.rotation_rms_deg, effect.direction_rms_deg);
   }
-  text += fmt::format("             in the covariance by{} --set focal_sd=0.005\n",
-                      CanStateCalibrationErrors(spec) ? "" : " --set covariance=robust");
+  if (!effects.empty())
+    text += fmt::format("             state what you know of K by{} --set focal_sd=0.01\n",
+                        CanStateCalibrationErrors(spec) ? "" : " --set covariance=robust");
   constexpr double kNotable = 0.05;
   const double probability = answer.estimate.calibration_error_probability;
   if (probability >= kNotable)
     text += fmt::format(
-        "             the matches say that K is off with probability {}: the covariance counts it\n",
+        "  K is off   with probability {}, by its prior and the residuals: the covariance counts\n"
+        "             it. Correlated noise looks the same\n",
         ProbabilityText(probability));
   return text;
 }

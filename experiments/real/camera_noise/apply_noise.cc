@@ -168,7 +168,7 @@ void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, boo
   if (estimate->status != MotionStatus::kOk) return;
   RobustCovarianceOptions options;
   options.known_variances = FindKnownVariances(noise);
-  const Matrix5d mixed = estimate->pose_cov, exact = CovarianceWithoutErrors(*estimate);
+  const Matrix5d exact = CovarianceWithoutErrors(*estimate);
   estimate->pose_cov = exact;
   const std::optional<Matrix5d> own_cov = is_robust ? std::nullopt : std::optional(exact);
   MotionEstimate by_file = *estimate;
@@ -178,9 +178,9 @@ void WidenCovariance(const MotionProblem& problem, const CameraNoise& noise, boo
   if (estimate->status != MotionStatus::kOk) return;
   estimate->pose_cov += ComputeCovarianceOfFaults(problem, noise, *estimate);
   if (!(estimate->calibration_error_probability > 0.0)) return;
-  const Matrix5d increase = estimate->pose_cov - exact;
-  estimate->pose_cov = mixed + increase;
-  estimate->pose_cov_with_errors += increase;
+  estimate->pose_cov_with_errors += estimate->pose_cov - exact;
+  estimate->pose_cov_without_errors = estimate->pose_cov;
+  MixErrors(estimate);
 }
 
 std::unique_ptr<MotionEstimator> WithSharedNoise(std::unique_ptr<MotionEstimator> estimator,

@@ -110,7 +110,7 @@ std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of,
   Moves moves;
   for (size_t k = 0; k < loop.size(); ++k) {
     const LoopJacobian jacobian = ComputeLoopJacobian(loop, k, error_of);
-    sigma += jacobian * loop[k].estimate->pose_cov * jacobian.transpose();
+    sigma += jacobian * CovarianceWithoutErrors(*loop[k].estimate) * jacobian.transpose();
     if (shared == SharedErrors::kIgnored) continue;
     const size_t next = (k + 1) % loop.size();
     moves.Add(loop[k], jacobian, loop[k].is_forward ? k : next, loop[k].is_forward ? next : k);

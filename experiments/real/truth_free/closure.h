@@ -42,10 +42,11 @@ enum class SharedErrors { kAllowedFor, kIgnored };
 //
 // To first order dc = sum G_k q_k, with q_k (5x1) the error of motion k and G_k = dc/dq_k by differences. For
 // independent pairs Sigma would be Sigma_0 = sum G_k C_k G_k', and kIgnored uses that. But pairs that share a
-// key point share its error. The residual of one match moves c by G_k A^-1 J' r / (1 - h). V_i is the sum of
-// the outer products of these moves; for V_c the moves of matches that share key points are added first. Then
-// Sigma = L_0 (L_i^-1 V_c L_i^-T) L_0', with L_0 and L_i the Cholesky factors of Sigma_0 and V_i.
-// nullopt: a matrix is not positive definite, or no match has a move.
+// key point share its error, and all share the calibration: C_k is without errors of it that nobody stated.
+// The residual of one match moves c by G_k A^-1 J' r / (1 - h). V_i is the sum of the outer products of these
+// moves; for V_c the moves of matches that share key points are added first. Then Sigma = L_0 (L_i^-1 V_c
+// L_i^-T) L_0', with L_0 and L_i the Cholesky factors of Sigma_0 and V_i. nullopt: a matrix is not positive
+// definite, or no match has a move.
 std::optional<double> NormalizedClosure(AnsweredLoop loop, LoopErrorOf error_of, const LoopError& expected,
                                         SharedErrors shared = SharedErrors::kAllowedFor);
 

@@ -39,7 +39,8 @@ double NormalizedDifference(const MotionEstimate& a, const MotionEstimate& b) {
   const RelativePose &pose_a = a.cam2_from_cam1, &pose_b = b.cam2_from_cam1;
   Matrix5d to_a = Matrix5d::Identity();  // a direction's tangent at b, in the basis at a
   to_a.bottomRightCorner<2, 2>() = DirectionBasis(pose_a.t).transpose() * DirectionBasis(pose_b.t);
-  const Matrix5d covariance = a.pose_cov + to_a * b.pose_cov * to_a.transpose();
+  const Matrix5d covariance =
+      CovarianceWithoutErrors(a) + to_a * CovarianceWithoutErrors(b) * to_a.transpose();
   return NormalizedErrorSquared(LocalCoordinates(pose_a, pose_b), covariance);
 }
 

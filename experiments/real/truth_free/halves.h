@@ -20,7 +20,8 @@ std::optional<double> DifferenceOfHalves(const MotionProblem& problem, const Mot
                                          Split split, const MotionEstimator& estimator,
                                          const StreamName& name);
 
-// (a - b)' (C_a + C_b)^-1 (a - b) of two motions, with C_b transformed to the tangent basis at a.
+// (a - b)' (C_a + C_b)^-1 (a - b) of two motions, with C_b transformed to the tangent basis at a. The
+// covariances are those without errors of the calibration that nobody stated, which both share.
 double NormalizedDifference(const MotionEstimate& a, const MotionEstimate& b);
 
 }  // namespace rcme

@@ -44,12 +44,13 @@ Json AnswerAsJson(const MotionEstimate& estimate) {
   return Json::array({StatusName(estimate.status), MatrixAsJson(estimate.cam2_from_cam1.R),
                       MatrixAsJson(estimate.cam2_from_cam1.t), MatrixAsJson(estimate.pose_cov),
                       estimate.inliers, NumberAsJson(estimate.failure_probability),
-                      NumberAsJson(estimate.sigma_estimated_px),
-                      NumbersAsJson(estimate.inlier_probabilities)});
+                      NumberAsJson(estimate.sigma_estimated_px), NumbersAsJson(estimate.inlier_probabilities),
+                      NumberAsJson(estimate.calibration_error_probability),
+                      MatrixAsJson(estimate.pose_cov_without_errors)});
 }
 
 MotionEstimate AnswerFrom(const Json& json, size_t num_matches) {
-  RequireSize(json, 8);
+  RequireSize(json, 10);
   MotionEstimate estimate;
   estimate.status = StatusFrom(json[0]);
   ReadMatrix(json[1], &estimate.cam2_from_cam1.R);
@@ -61,6 +62,8 @@ MotionEstimate AnswerFrom(const Json& json, size_t num_matches) {
   estimate.failure_probability = NumberFrom(json[5]);
   estimate.sigma_estimated_px = NumberFrom(json[6]);
   estimate.inlier_probabilities = NumbersFrom(json[7]);
+  estimate.calibration_error_probability = NumberFrom(json[8]);
+  ReadMatrix(json[9], &estimate.pose_cov_without_errors);
   if (const auto fault = FindFault(estimate, num_matches)) throw std::invalid_argument(fault->message);
   return estimate;
 }

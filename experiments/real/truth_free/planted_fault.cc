@@ -18,8 +18,9 @@ class ScaledCovariance : public MotionEstimator {
       : estimator_(std::move(estimator)), factor_(factor) {}
   MotionEstimate Estimate(const MotionProblem& problem, RandomStream& rng) const override {
     MotionEstimate estimate = estimator_->Estimate(problem, rng);
-    estimate.pose_cov *= factor_;
-    estimate.pose_cov_with_errors *= factor_;
+    for (Matrix5d* each :
+         {&estimate.pose_cov, &estimate.pose_cov_without_errors, &estimate.pose_cov_with_errors})
+      *each *= factor_;
     return estimate;
   }
 

@@ -45,6 +45,7 @@ IntrinsicsEvidence CheckLinear(const LinearProblem& problem, const Eigen::Vector
   check.information = G.transpose() * rest;
   check.score = rest.transpose() * r;
   check.of_motion = -M;
+  check.stated_sd.setZero(4);
   return check;
 }
 
@@ -77,6 +78,76 @@ TEST(UnstatedErrors, FactorIsTheRatioOfTheDensitiesOfTheResiduals) {
   }
 }
 
+// An error that is stated is there in both cases, whatever its size: the residuals that it explains are no
+// evidence of others. Without the stated ones in both densities the factor would be e^100 and more.
+TEST(UnstatedErrors, StatedErrorsAreNoEvidence) {
+  constexpr double kVagueSd = 1e3, kPrior = 0.3;
+  RandomStream rng({.seed = 1, .purpose = 2852});
+  for (int trial = 0; trial < 20; ++trial) {
+    const LinearProblem problem = MakeLinearProblem(30, rng);
+    const double sd = 20.0;
+    Errors theta = sd * rng.Normal() * Errors::Unit(1);
+    if (trial % 2 == 1) theta(0) = 3.0 * rng.Normal();
+    const Eigen::VectorXd r = DrawNormals(30, rng) + problem.G * theta;
+    const Eigen::MatrixXd without = Eigen::MatrixXd::Identity(30, 30) +
+                                    kVagueSd * kVagueSd * problem.J * problem.J.transpose() +
+                                    sd * sd * problem.G.col(1) * problem.G.col(1).transpose();
+    Eigen::MatrixXd with = without;
+    for (const int k : {0, 2, 3}) with += problem.G.col(k) * problem.G.col(k).transpose();
+    IntrinsicsEvidence evidence = CheckLinear(problem, r);
+    evidence.stated_sd(1) = sd;
+    const UnstatedErrors errors = WeighUnstatedErrors(evidence, kPrior);
+    const double w = errors.probability;
+    EXPECT_NEAR(std::log(w / (1.0 - w)),
+                std::log(kPrior / (1.0 - kPrior)) + LogDensity(r, with) - LogDensity(r, without), 2e-3)
+        << trial;
+    // Of the others alone.
+    evidence.of_motion.col(1).setConstant(1e3);
+    EXPECT_EQ(WeighUnstatedErrors(evidence, kPrior).Moment(), errors.Moment());
+  }
+}
+
+// Against draws of the motion from both laws, weighed by the density of the prior's residuals.
+TEST(UnstatedErrors, ByAPriorAreThoseOfWeighedDraws) {
+  constexpr int kDraws = 400000;
+  RandomStream rng({.seed = 1, .purpose = 2853});
+  for (const double offset : {0.0, 1.5, 4.0}) {
+    Matrix5d root = Matrix5d::Zero(), wide = Matrix5d::Zero();
+    for (double& x : root.reshaped()) x = 0.3 * rng.Normal();
+    for (double& x : wide.reshaped()) x = 0.6 * rng.Normal();
+    root += Matrix5d::Identity();
+    const Matrix5d C = root * root.transpose();
+    const UnstatedErrors before{0.2, 0.3 * Vector5d::Ones(), wide * wide.transpose()};
+    PriorResiduals at_optimum;  // of the matches: rows of a rotation, and of a direction of rank two
+    for (const int row : {0, 1, 2, 6, 7}) {
+      at_optimum.residual(row) = offset * rng.Normal();
+      for (int k = 0; k < 5; ++k) at_optimum.jacobian(row, k) = rng.Normal();
+    }
+    const auto& J = at_optimum.jacobian;
+    const Matrix5d posterior = (C.inverse() + J.transpose() * J).inverse();
+    const Vector5d answer = -posterior * J.transpose() * at_optimum.residual;
+    PriorResiduals at_answer = at_optimum;
+    at_answer.residual += J * answer;
+    const UnstatedErrors after = UpdateByPrior(before, C, at_answer);
+    const Matrix5d with_errors = (C + before.spread).llt().matrixL();
+    const Matrix5d without = C.llt().matrixL();
+    double weight[2] = {};
+    Matrix5d moment = Matrix5d::Zero();
+    for (int draw = 0; draw < kDraws; ++draw) {
+      const int errs = draw % 2;
+      const Vector5d z = DrawNormals(5, rng);
+      const Vector5d motion = errs ? Vector5d(before.shift + with_errors * z) : Vector5d(without * z);
+      const double density = std::exp(-0.5 * (at_optimum.residual + J * motion).squaredNorm());
+      weight[errs] += density;
+      if (errs) moment += density * (motion - answer) * (motion - answer).transpose();
+    }
+    const double odds = before.probability / (1.0 - before.probability) * weight[1] / weight[0];
+    EXPECT_NEAR(after.probability / (1.0 - after.probability) / odds, 1.0, 0.1) << offset;
+    moment /= weight[1];
+    EXPECT_LT((posterior + after.Moment() - moment).norm(), 0.1 * moment.norm()) << offset;
+  }
+}
+
 // The moment about the fit without errors is that of the true motion, given the residuals: of draws with
 // errors, mean (dp - fit)(dp - fit)' = E A + C. The element of the error that cannot be seen is most of it.
 // The standard error of a mean of 4,000 squares is 2.2 %.
@@ -90,7 +161,7 @@ TEST(UnstatedErrors, MomentIsThatOfTheMotionAboutTheFit) {
     const Eigen::VectorXd r = DrawNormals(30, rng) + problem.G * DrawNormals(4, rng);
     const Vector5d fit = C * problem.J.transpose() * r;  // true: 0
     of_draws += fit * fit.transpose() / kDraws;
-    stated += (C + WeighUnstatedErrors(CheckLinear(problem, r), 1.0).moment) / kDraws;
+    stated += (C + WeighUnstatedErrors(CheckLinear(problem, r), 1.0).Moment()) / kDraws;
   }
   for (int k = 0; k < 5; ++k) EXPECT_NEAR(of_draws(k, k) / stated(k, k), 1.0, 0.11) << k;
   EXPECT_GT(stated(0, 0), 20.0 * C(0, 0));
@@ -125,12 +196,12 @@ TEST(UnstatedErrors, NoneIfImpossibleCertainIfCertainNoneIfNotFinite) {
   EXPECT_EQ(WeighUnstatedErrors(check, 1.0).probability, 1.0);
   check.score(0) = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(WeighUnstatedErrors(check, 0.5).probability, 0.0);
-  EXPECT_TRUE(WeighUnstatedErrors(check, 0.5).moment.isZero());
+  EXPECT_TRUE(WeighUnstatedErrors(check, 0.5).Moment().isZero());
 }
 
 // The bound of a uniform motion is applied once: errors make no variance smaller, however weak the direction.
 TEST(UnstatedErrors, NeverNarrow) {
-  UnstatedErrors errors{.probability = 0.3, .moment = 1e-4 * Matrix5d::Identity()};
+  UnstatedErrors errors{.probability = 0.3, .spread = 1e-4 * Matrix5d::Identity()};
   for (const double variance : {1e-4, 0.1, 1.0, 10.0}) {
     const Matrix5d covariance = variance * Matrix5d::Identity();
     const Matrix5d wider = errors.MixInto(covariance) - BoundByUniformMotion(covariance);

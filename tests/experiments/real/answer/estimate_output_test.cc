@@ -59,8 +59,8 @@ TEST(EstimateOutput, ACovarianceThatIsWiderThanTheDistributionSaysByHowMuch) {
   EXPECT_LT(answer.posterior->narrowed, 0.5);
   // P(chi_3 > q / sd) = 0.04 for q = 3 deg, the bound: 95 % of the rotations are within 0.967 of it.
   EXPECT_NEAR(kDegPerRad * answer.posterior->quantile_95.rotation_rad, 2.9, 0.06);
-  EXPECT_THAT(AnswerAsText(answer, spec),
-              AllOf(HasSubstr("standard deviations are 2.9 times"), HasSubstr("are within 2.9 deg of the answer")));
+  EXPECT_THAT(AnswerAsText(answer, spec), AllOf(HasSubstr("standard deviations are 2.9 times"),
+                                                HasSubstr("are within 2.9 deg of the answer")));
   EXPECT_NEAR(AnswerAsJson(answer, spec)["posterior"]["narrowed"].get<double>(), answer.posterior->narrowed,
               1e-12);
   answer.posterior = summary(3.0, 0.2);
@@ -78,12 +78,10 @@ TEST(EstimateOutput, ErrorsOfTheCalibrationThatTheMatchesShowAreNamed) {
   answer.estimate.failure_probability = 0.04;
   const EstimatorSpec spec = DefaultEstimator("rcme_calibrated");
   EXPECT_FALSE(AnswerAsJson(answer, spec).contains("calibration_error_probability"));
-  answer.calibration_effects = {{"1 % of the focal length", "focal_sd", 0.01, 0.1, 0.2}};
   answer.estimate.calibration_error_probability = 0.01;
-  EXPECT_THAT(AnswerAsText(answer, spec), Not(HasSubstr("K is off with")));
+  EXPECT_THAT(AnswerAsText(answer, spec), Not(HasSubstr("K is off")));
   answer.estimate.calibration_error_probability = 0.5;
-  EXPECT_THAT(AnswerAsText(answer, spec),
-              HasSubstr("K is off with probability 0.5: the covariance counts it"));
+  EXPECT_THAT(AnswerAsText(answer, spec), HasSubstr("K is off   with probability 0.5,"));
   EXPECT_EQ(AnswerAsJson(answer, spec)["calibration_error_probability"], 0.5);
 }
 

@@ -110,6 +110,8 @@ TEST(AnswerFrom, GivesBackWhatIsUsed) {
   estimate.inliers = {0, 2};
   estimate.sigma_estimated_px = 1.0 / 3.0;
   estimate.inlier_probabilities = {1.0, 0.1, 2.0 / 3.0};
+  estimate.calibration_error_probability = 1.0 / 7.0;
+  estimate.pose_cov_without_errors = 1e-300 / 7.0 * Matrix5d::Identity();
   const MotionEstimate back = AnswerFrom(AnswerAsJson(estimate), 3);
   EXPECT_EQ(back.status, MotionStatus::kOk);
   EXPECT_EQ(back.cam2_from_cam1.t, estimate.cam2_from_cam1.t);
@@ -118,6 +120,8 @@ TEST(AnswerFrom, GivesBackWhatIsUsed) {
   EXPECT_EQ(back.inliers, estimate.inliers);
   EXPECT_EQ(back.sigma_estimated_px, estimate.sigma_estimated_px);
   EXPECT_TRUE(std::isnan(back.failure_probability));
+  EXPECT_EQ(back.calibration_error_probability, estimate.calibration_error_probability);
+  EXPECT_EQ(CovarianceWithoutErrors(back), estimate.pose_cov_without_errors);
   EXPECT_EQ(back.inlier_probabilities, estimate.inlier_probabilities);
   EXPECT_ANY_THROW(AnswerFrom(AnswerAsJson(estimate), 2)) << "an inlier that is no match";
   estimate.cam2_from_cam1.t = {0.6, 0.0, kNaN};
