@@ -95,9 +95,10 @@ def estimate_relative_pose(x1: Any, x2: Any, camera1: Any, camera2: Any,
         of `bounds` {rotation_deg, direction_deg, p_failure, domain} (empty where there is no motion); draws, {R (draws, 3, 3),
         t (draws, 3)}, NaN in the share that "none of these motions" has (None if none were asked for, or without a motion);
         protection_levels {risk, rotation, direction}: the angles (rad) that the error of R and that of t exceed with a probability
-        of at most integrity_risk each, by the covariances with and without such errors and p_failure (pi: every angle; None without a motion); sigma and sigma_sd (px),
-        the noise level that it found (None likewise); calibration_error_probability, that the calibration has errors that no
-        option states, which pose_cov counts (None from most estimators);
+        of at most integrity_risk each, by p_failure and by the covariances with and without errors of the calibration (pi: every
+        angle; None without a motion); sigma and sigma_sd (px), the noise level that it found (None likewise);
+        calibration_error_probability, that the calibration has errors that no option states, which pose_cov counts (None from most
+        estimators);
         prior, "used", "contradicted" (the matches speak against it: the answer is of these alone) or "none"; prior_p_value, the
         probability that a right prior is as far from the matches (None without one);
         other_motions: a list of further explanations {R, t, pose_cov, weight, explained_share}, the most likely first.
