@@ -62,6 +62,17 @@ void Rename(Names* names, Table* table) {
   }
 }
 
+// Leaves of a note what stands before the first comma: a page shows the verdict, not how many trials would
+// decide.
+void ShortenNotes(Table* table) {
+  for (std::vector<Value>& row : table->rows) {
+    for (Value& value : row) {
+      if (auto* estimate = std::get_if<Estimate>(&value))
+        estimate->note = estimate->note.substr(0, estimate->note.find(','));
+    }
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& DefaultLatexQuantities() {
@@ -76,11 +87,12 @@ std::string SummaryAsLatex(const Summary& summary, const std::vector<std::string
   Names names(labels);
   Table table = MakeQuantityTable(summary, quantities);
   Rename(&names, &table);
+  ShortenNotes(&table);
   names.CheckAllWereNeeded();
   return fmt::format(
       "% Study {}: {} of {} trials done. Rates with {} intervals, scores with {} ones, medians with\n"
       "% distribution-free 95 % ones, means with Monte-Carlo standard errors; (n = ...) where it is not the "
-      "row's.\n"
+      "row's; covers: the whole interval is within 95 +- 1 %.\n"
       "% Needs \\usepackage{{booktabs}}.\n{}",
       LatexText(summary.study), summary.num_trials_done, summary.num_trials_planned, IntervalKindsIn(summary),
       DescribeIntervalKind(IntervalKind::kBetting), RenderLatex(table));

@@ -25,10 +25,10 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;  // clang 14 does not deduce
 // The symbols of an output format for people.
 struct Signs {
   const char *minus, *infinity, *plus_minus, *unknown, *n_begin, *n_end;
-  bool has_units, has_notes;  // beside the numbers
+  bool is_latex;  // units are in the headings, texts are escaped
 };
-constexpr Signs kPlainSigns{"-", "inf", "+-", "-", " (n ", ")", true, true};
-constexpr Signs kLatexSigns{"$-$", "$\\infty$", "$\\pm$", "--", " ($n = ", "$)", false, false};
+constexpr Signs kPlainSigns{"-", "inf", "+-", "-", " (n ", ")", false};
+constexpr Signs kLatexSigns{"$-$", "$\\infty$", "$\\pm$", "--", " ($n = ", "$)", true};
 
 std::string FormatNumber(double x, const std::string& format, const Signs& signs) {
   if (std::isnan(x)) return signs.unknown;
@@ -54,7 +54,7 @@ std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format,
   const bool is_weighted = has_error && !std::isnan(estimate.interval.lower);
   const std::string digits = estimate.decimals < 0 ? format.value : fmt::format(".{}f", estimate.decimals);
   std::string text = FormatNumber(format.scale * estimate.value, is_weighted ? ".3g" : digits, signs);
-  if (signs.has_units && !format.unit.empty()) text += " " + format.unit;
+  if (!signs.is_latex && !format.unit.empty()) text += " " + format.unit;
   if (has_error)
     text += fmt::format(" {} {}", signs.plus_minus,
                         FormatNumber(format.scale * estimate.standard_error, format.spread, signs));
@@ -62,13 +62,15 @@ std::string FormatEstimate(const Estimate& estimate, const NumberFormat& format,
       FormatInterval(estimate.interval, format.scale, is_weighted ? format.spread : digits, signs);
   if (!interval.empty()) text += " " + interval;
   if (estimate.n) text += fmt::format("{}{}{}", signs.n_begin, *estimate.n, signs.n_end);
-  return estimate.note.empty() || !signs.has_notes ? text : text + ": " + estimate.note;
+  return estimate.note.empty() ? text
+                               : text + ": " + (signs.is_latex ? LatexText(estimate.note) : estimate.note);
 }
 
 std::string FormatValue(const Value& value, const Column& column, const Signs& signs) {
   const NumberFormat& format = column.format;
   return std::visit(
-      Overloaded{[](std::monostate) { return std::string(); }, [](const std::string& text) { return text; },
+      Overloaded{[](std::monostate) { return std::string(); },
+                 [&](const std::string& text) { return signs.is_latex ? LatexText(text) : text; },
                  [](std::int64_t count) { return fmt::format("{}", count); },
                  [](bool flag) { return std::string(flag ? "yes" : "no"); },
                  [&](double x) { return FormatEstimate({.value = x}, format, signs); },
@@ -274,11 +276,10 @@ std::string RenderLatexRow(const Table& table, const std::vector<Value>& row, bo
   std::vector<std::string> cells;
   for (size_t c = 0; c < row.size(); ++c) {
     const Column& column = table.columns[c];
-    const auto* text = std::get_if<std::string>(&row[c]);
     if (column.group == "levels" && !has_levels) {
       cells.emplace_back();
     } else {
-      cells.push_back(text ? LatexText(*text) : FormatValue(row[c], column, kLatexSigns));
+      cells.push_back(FormatValue(row[c], column, kLatexSigns));
     }
   }
   return fmt::format("{} \\\\\n", fmt::join(cells, " & "));

@@ -22,7 +22,8 @@ namespace rcme {
 // a text column that is the only one beside the keys gets all of that. Columns that do not fit follow in
 // further blocks, which repeat the key columns and omit rows without a value in the block; a block without
 // rows is omitted. Levels that the first one determines are left out if the keys take more than half of
-// `width`; a last line says how many. The result is wider than `width` only if a single column does not fit beside the keys.
+// `width`; a last line says how many. The result is wider than `width` only if a single column does not fit
+// beside the keys.
 std::string RenderText(const Table& table, size_t width = kTextWidth);
 
 // The texts of a table's cells: the headings, then each row.
@@ -79,8 +80,7 @@ nlohmann::ordered_json RenderJson(const Interval& interval);
 nlohmann::ordered_json RenderJsonBounds(const Estimate& estimate);
 
 // Renders a LaTeX tabular with the rules of the package booktabs; all texts are escaped. The columns of the
-// group `levels` are printed only in rows where one of them changes, with extra space above. Notes are
-// omitted.
+// group `levels` are printed only in rows where one of them changes, with extra space above.
 std::string RenderLatex(const Table& table);
 
 // Renders a Markdown table with the cells of RenderText. Line ends within a cell become spaces.

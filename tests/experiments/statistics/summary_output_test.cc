@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/core/table/render_table.h"
 #include "experiments/statistics/quantity_table.h"
 #include "experiments/statistics/summary_latex.h"
 #include "parameters/input_error.h"
@@ -169,6 +170,15 @@ TEST_F(SummaryOutputTest, LatexHasARowPerConditionAndEstimatorAndIntervals) {
   EXPECT_EQ(lines[8], "\\addlinespace");
   EXPECT_EQ(lines[9], "0.3 & standard & 0 & -- & -- & -- & -- \\\\");
   EXPECT_EQ(lines[11], "\\end{tabular}");
+}
+
+TEST_F(SummaryOutputTest, PagesShowTheVerdictOnACoverage) {
+  const Summary summary = SummarizeRun("run");
+  const std::string latex = SummaryAsLatex(summary, {"nees_coverage"}, {});
+  EXPECT_NE(latex.find("66.67 [22.28, 95.67] ($n = 6$): undecided \\\\\n"), std::string::npos) << latex;
+  EXPECT_NE(latex.find("covers: the whole interval is within 95 +- 1 %."), std::string::npos) << latex;
+  const std::string markdown = RenderMarkdown(MakeQuantityTable(summary, {"nees_coverage"}));
+  EXPECT_NE(markdown.find("66.67 % [22.28, 95.67] (n 6): undecided, about"), std::string::npos) << markdown;
 }
 
 TEST_F(SummaryOutputTest, LatexEscapesEveryNameAndTakesLabels) {

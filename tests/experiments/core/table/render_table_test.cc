@@ -186,12 +186,13 @@ TEST(RenderJson, IsAnObjectPerRowWithoutWhatTheRowHasNot) {
 TEST(RenderLatex, EscapesTextsAndPrintsLevelsWhereTheyChange) {
   Table table = MakeExample();
   table.rows[0][1] = std::string("a_b & 50 %");
+  std::get<Estimate>(table.rows[0][3]).note = "7 of 10 %";
   EXPECT_EQ(RenderLatex(table),
             "\\begin{tabular}{llrrrrr}\n\\toprule\n"
             "outlier\\_ratio & estimator & $n$ & failure (\\%) & error (deg) & lower,upper & trusted \\\\\n"
             "\\midrule\n"
-            "0.3 & a\\_b \\& 50 \\% & 1200 & 12.34 [10.10, 14.80] ($n = 7$) & $-$1.5 & [$-$0.5, 2] & yes "
-            "\\\\\n"
+            "0.3 & a\\_b \\& 50 \\% & 1200 & 12.34 [10.10, 14.80] ($n = 7$): 7 of 10 \\% & "
+            "$-$1.5 & [$-$0.5, 2] & yes \\\\\n"
             " & standard & 9 & -- & $\\infty$ & [$-$$\\infty$, 1] & no \\\\\n"
             "\\addlinespace\n"
             "0.5 & ours & 0 &  & -- &  &  \\\\\n"
