@@ -7,9 +7,9 @@ helps the eye, and is the same for equal rates of a quantity in all panels; the 
 
 import sys
 
-from common.command_line import FigureParser, draw_figure, names_of
+from common.command_line import FigureParser, draw_figures, names_of, numbered
 from common.summary_csv import read_summary, where
-from rates.cells import draw
+from rates.cells import draw_pages
 from rates.selection import usual_quantities
 
 EXAMPLE = """
@@ -17,6 +17,7 @@ example:
   rcme summarize run.sqlite --format csv > summary.csv
   rcme plot heat_map summary.csv --x outlier_ratio --y sigma_px --out heat_map
 draws heat_map.png and heat_map.pdf: the rate of failures, and of failures or refusals, of each estimator over the two factors.
+With --width, panels that do not fit on a page go to heat_map_2 and so on.
 
   rcme plot heat_map summary.csv --x outlier_ratio --y sigma_px --out failure \\
       --quantities failure --estimators standard,rcme_rank_aware --where num_matches=500
@@ -43,11 +44,12 @@ def parse(arguments):
 
 def draw_for(options):
     summary = where(read_summary(options.summary), options.where)
-    return draw(summary, options.x, options.y, options.quantities or usual_quantities(summary), options.estimators)
+    return numbered("", draw_pages(summary, options.x, options.y, options.quantities or usual_quantities(summary),
+                                   options.estimators))
 
 
 def main(arguments=None):
-    return draw_figure("heat_map.py", parse, draw_for, arguments)
+    return draw_figures("heat_map.py", parse, draw_for, arguments)
 
 
 if __name__ == "__main__":

@@ -19,12 +19,11 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from common import sheet, style
-from common.command_line import FigureParser, PlotError, draw_figures
+from common.command_line import FigureParser, PlotError, draw_figures, numbered
 from common.summary_csv import numbers, read_table
 from common.text_size import wrap
 
 NOMINAL = 0.95
-TALLEST = 7.6  # inches that panels take of a page of paper; legend and caption come to them
 QUANTITIES = {  # name in the files: name in words
     "f": "Linear model f", "pose": "Motion p from f", "fresh_point": "Inlier test, fresh match",
     "ml_pose": "Motion p, max. likelihood",
@@ -194,7 +193,7 @@ def pages_of(rows):
         conditions, per_page = names[first:first + MAX_COLUMNS], len(quantities)
         if sheet.current().width is not None:
             lines = math.ceil(len(conditions) / style.panels_abreast(len(conditions)))
-            per_page = max(1, int(TALLEST / (style.PANEL_HEIGHT * lines)))
+            per_page = max(1, int(style.TALLEST / (style.PANEL_HEIGHT * lines)))
         for start in range(0, len(quantities), max(1, per_page)):
             pages.append(rows[rows.condition.isin(conditions) & rows.quantity.isin(quantities[start:start + per_page])])
     return pages
@@ -294,8 +293,7 @@ def draw_for(options):
     map_path, reference_path = (os.path.join(options.tables, name)
                                 for name in ("validity_map.csv", "validity_reference.csv"))
     coverages = read_coverages(map_path, MAP_KEYS, ["median_parallax_deg"])
-    figures = {"validity_map" + (f"_{number}" if number > 1 else ""): draw_map(map_path, page)
-               for number, page in enumerate(pages_of(coverages), 1)}
+    figures = numbered("validity_map", [draw_map(map_path, page) for page in pages_of(coverages)])
     figures["validity_conditioning"] = draw_conditioning(map_path, coverages)
     if "baseline_m" in coverages:
         reference = read_coverages(reference_path, REFERENCE_KEYS, ["num_samples"])

@@ -153,6 +153,11 @@ def draw_figures(name, parse, draw, arguments, dpi=None):
     return run(name, lambda arguments: written_figures(parse(arguments), draw, dpi), arguments)
 
 
+def numbered(name, figures):
+    """{name: the first figure, name_2: the second, ...}"""
+    return {name + (f"_{number}" if number > 1 else ""): figure for number, figure in enumerate(figures, 1)}
+
+
 def written_figures(options, draw, dpi=None):
     """The paths."""
     from common import style  # here, so that a script without figures need not load matplotlib, which takes half a second

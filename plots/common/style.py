@@ -221,6 +221,7 @@ def letters(count):
     return (f"({letter}) " if count > 1 else "" for letter in "abcdefghijklmnopqrstuvwxyz" * 9)
 
 
+TALLEST = 7.6  # inches that panels take of a page of paper; legend and caption come to them
 ONE_PANEL_WIDTH = 4.6  # inches: of a figure of one panel on a sheet without a width
 PANEL_WIDTH, PANEL_HEIGHT = 2.2, 1.9  # inches: of the narrowest panel on a sheet with a width, and of all there
 

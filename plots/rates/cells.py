@@ -22,8 +22,9 @@ CELL_WIDTH, CELL_HEIGHT = 0.62, 0.36  # inches: room for "[10.1, 14.8]"
 LONGEST_LEVEL_NAME = 11  # letters that fit below a cell
 WIDEST = 9.5  # inches; more panels go into a further row
 LABELS_WIDTH, BAR_WIDTH = 0.85, 0.65  # inches beside the panels: names of levels and of the factor; the colour bar
-STACKED_HEIGHT, SMALLEST_CELL = 0.47, 0.34  # inches, on a sheet with a width: of three lines of text, and of "100.0"
+STACKED_HEIGHT, SMALLEST_CELL = 0.42, 0.34  # inches, on a sheet with a width: of three lines of text, and of "100.0"
 LARGE, SMALL = 7.5, 5.2  # points: the rate in a cell, its interval
+TITLE_HEIGHT = 0.6  # inches of a panel's title and names of levels
 MAX_PANELS = 60
 
 
@@ -75,21 +76,42 @@ def without_content_in_words(rows, quantity, names, labels):
     return f"{title_of(quantity)} of {listed}: 0 in every cell, at most {100 * upper:.2g} %"
 
 
-def grid_of(counts, x_levels, y_levels):
+def size_of_panels(num_panels, x_levels, y_levels):
+    """(width of a panel, its height, how many stand side by side)."""
+    paper_width = sheet.current().width
+    if paper_width is None:
+        width = max(1.5, CELL_WIDTH * x_levels)
+        return width, CELL_HEIGHT * y_levels, max(1, min(num_panels, int((WIDEST - 1.6) // (width + 0.1))))
+    width, columns = fitted(paper_width, num_panels, x_levels)
+    return width, (CELL_HEIGHT if has_room_for_interval(width / x_levels) else STACKED_HEIGHT) * y_levels, columns
+
+
+def pages_of(shown, columns, height):
+    """`shown` in parts whose panels, with so many columns and of that height, fit on a page; on a sheet without a width all of
+    it. A quantity that fits on a page is not split."""
+    most = MAX_PANELS if sheet.current().width is None else max(1, int(style.TALLEST / (height + TITLE_HEIGHT)))
+    pages, lines = [{}], 0
+    for quantity, names in shown.items():
+        for first in range(0, len(names), most * columns):
+            part = names[first:first + most * columns]
+            added = -(-len(part) // columns)
+            if lines and lines + added > most:
+                pages.append({})
+                lines = 0
+            pages[-1][quantity] = part
+            lines += added
+    return pages
+
+
+def grid_of(counts, width, height, columns):
     """(figure, panels, colour bars): a row of panels per quantity, or several where one would be too wide. `counts` has the
     number of estimators of each quantity, `panels` one list per quantity, estimators in order; `colour bars` the axes at the
     right of each of its rows."""
-    num_estimators = max(counts)
     paper_width = sheet.current().width
-    width, height = max(1.5, CELL_WIDTH * x_levels), CELL_HEIGHT * y_levels
-    columns = max(1, min(num_estimators, int((WIDEST - 1.6) // (width + 0.1))))
-    if paper_width is not None:
-        width, columns = fitted(paper_width, num_estimators, x_levels)
-        height = (CELL_HEIGHT if has_room_for_interval(width / x_levels) else STACKED_HEIGHT) * y_levels
     lines = [-(-count // columns) for count in counts]
     rows, firsts = sum(lines), [sum(lines[:q]) for q in range(len(lines))]
     figure = Figure(figsize=(paper_width or 1.4 + columns * (width + 0.1),
-                             (0.9 if paper_width is None else 0.25) + rows * (height + 0.6)), layout="constrained")
+                             (0.9 if paper_width is None else 0.25) + rows * (height + TITLE_HEIGHT)), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns + 1, squeeze=False, gridspec_kw={"width_ratios": [width] * columns + [0.13]})
     panels = [list(axes[first:first + count, :-1].flat) for first, count in zip(firsts, lines)]
@@ -181,8 +203,8 @@ def scale_of(rows):
     return Normalize(0, max(LEAST_TOP, rows.value.max() if rows.value.notna().any() else 0))
 
 
-def draw(summary, x, y, quantities, estimators=()):
-    """The whole figure: a row of panels per quantity, a panel per estimator that has it anywhere."""
+def draw_pages(summary, x, y, quantities, estimators=()):
+    """The figures: a row of panels per quantity, a panel per estimator that has it anywhere."""
     rows, x_axis, y_axis = select(summary, x, y, quantities)
     names = chosen_estimators(summary, rows, estimators)
     rows = rows[rows.estimator.isin(names)].assign(x=rows[x], y=rows[y])
@@ -190,30 +212,33 @@ def draw(summary, x, y, quantities, estimators=()):
         raise PlotError(f"{len(names)} estimators and {len(quantities)} quantities need more than {MAX_PANELS} panels; "
                         "choose some with --estimators or --quantities.")
     shown, left_out = with_content(rows, names, quantities)
-    labels, counts = {name: style.label_of(name) for name in names}, list(map(len, shown.values()))
-    letters = style.letters(sum(counts))
-    figure, panels, bars = grid_of(counts, len(x_axis.levels), len(y_axis.levels))
-    width = sheet.current().width
-    panel_width = None if width is None else fitted(width, max(counts), len(x_axis.levels))[0]
-    cell_width = panel_width and panel_width / len(x_axis.levels)
-    for (quantity, with_panel), of_quantity, bars_of_quantity in zip(shown.items(), panels, bars):
-        drawn = rows[rows.quantity == quantity]
-        scale = scale_of(drawn)
-        for axes, name in zip(of_quantity, with_panel):
-            draw_panel(axes, drawn[drawn.estimator == name], x_axis, y_axis, scale, cell_width)
-            title = f"{next(letters)}{title_of(quantity)}, {labels[name]}"
-            room = panel_width or max(1.5, CELL_WIDTH * len(x_axis.levels))
-            axes.set_title("\n".join(wrap(title, room, 7.5)), fontsize=7.5)
-        draw_color_bars(figure, bars_of_quantity, scale, f"{kind_in_words(drawn)} (%)")
-        name_axes(of_quantity, len(of_quantity) // len(bars_of_quantity), x, y)
+    labels = {name: style.label_of(name) for name in names}
+    width, height, columns = size_of_panels(max(map(len, shown.values())), len(x_axis.levels), len(y_axis.levels))
+    cell_width = None if sheet.current().width is None else width / len(x_axis.levels)
     others = [factor for factor in summary.factors if factor not in (x, y)]
-    style.add_legend_and_caption(figure, [], "; ".join(
+    caption = "; ".join(
         [f"Study {rows.study.iloc[0]}", *fixed_levels(rows, others), n_in_words(rows, "cell"),
          f"in each cell the {kind_in_words(rows).lower()} in %, " + (
              "below it" if cell_width is None or has_room_for_interval(cell_width) else "above and below it the ends of") +
          f" its {interval_in_words(rows)} interval", *sharpness_in_words(summary, quantities),
-         *(without_content_in_words(rows, quantity, without, labels) for quantity, without in left_out)]) + ".")
-    return figure
+         *(without_content_in_words(rows, quantity, without, labels) for quantity, without in left_out)]) + "."
+    figures = []
+    for page in pages_of(shown, columns, height):
+        counts = list(map(len, page.values()))
+        letters = style.letters(sum(counts))
+        figure, panels, bars = grid_of(counts, width, height, columns)
+        for (quantity, with_panel), of_quantity, bars_of_quantity in zip(page.items(), panels, bars):
+            drawn = rows[rows.quantity == quantity]
+            scale = scale_of(drawn)
+            for axes, name in zip(of_quantity, with_panel):
+                draw_panel(axes, drawn[drawn.estimator == name], x_axis, y_axis, scale, cell_width)
+                title = f"{next(letters)}{title_of(quantity)}, {labels[name]}"
+                axes.set_title("\n".join(wrap(title, width, 7.5)), fontsize=7.5)
+            draw_color_bars(figure, bars_of_quantity, scale, f"{kind_in_words(drawn)} (%)")
+            name_axes(of_quantity, len(of_quantity) // len(bars_of_quantity), x, y)
+        style.add_legend_and_caption(figure, [], caption)
+        figures.append(figure)
+    return figures
 
 
 def name_axes(of_quantity, columns, x, y):

@@ -74,7 +74,7 @@ def heat_map_figure(run, x, y, fixed):
         f", {style.level_in_words(*pair)}" for pair in fixed) + "."
     conditions = [f"{factor}={level}" for factor, level in fixed]
     arguments = ["--x", x, "--y", y, "--quantities", ",".join(quantities_of(run))]
-    return drawn(lambda: cells.draw(where(run.summary, conditions), x, y, quantities_of(run)),
+    return drawn(lambda: cells.draw_pages(where(run.summary, conditions), x, y, quantities_of(run))[0],
                  f"{caption} A heat map per estimator with the rate and its exact 95 % interval in each cell; the numbers "
                  "are in the table of results.", caption,
                  script_command(run, "heat_map",

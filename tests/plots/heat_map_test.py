@@ -8,6 +8,7 @@ from plot_test_case import PlotTestCase
 
 import heat_map
 from matplotlib.collections import PolyCollection
+from common import sheet, style
 from common.summary_csv import read_summary, where
 from rates.cells import COLORS, LEAST_TOP, luminance, scale_of
 from rates.selection import select_rates
@@ -49,7 +50,8 @@ class HeatMapTest(PlotTestCase):
 
     def draw(self, text=TABLE, quantities=("failure",), estimators=(), conditions=()):
         summary = where(read_summary(self.write(text)), conditions)
-        return heat_map.draw(summary, "noise", "sigma_px", list(quantities), list(estimators))
+        figure, = heat_map.draw_pages(summary, "noise", "sigma_px", list(quantities), list(estimators))
+        return figure
 
     def run_main(self, *arguments, text=TABLE, x="noise", y="sigma_px"):
         return self.run_script(self.write(text), "--x", x, "--y", y, "--out", self.folder / "map", *arguments)
@@ -120,6 +122,26 @@ class Drawn(HeatMapTest):
         figure = self.draw(HEADER + "\n" + "\n".join(lines) + "\n")
         self.assertLessEqual(figure.get_size_inches()[0], 10)
         self.assertEqual(sum(bool(axes.get_title("left")) for axes in figure.axes), 3)
+
+    def test_a_narrow_figure_is_split_into_pages_and_a_quantity_stays_together(self):
+        levels = [(x, y) for x in range(3) for y in range(5)]
+        names = [f"e{number}" for number in range(4)]
+        lines = [f"demo,{c},{x},{y},{name},{quantity},rate,{0.1 + 0.2 * (name == 'e3')},0.05,0.4,,10" for c, (x, y) in enumerate(levels)
+                 for name in names for quantity in ("failure", "success")]
+        path = self.write(HEADER + "\n" + "\n".join(lines) + "\n")
+
+        def titles_of_pages(*chosen):
+            with sheet.use(sheet.Sheet(width=3.3)):
+                pages = heat_map.draw_pages(read_summary(path), "noise", "sigma_px", ["failure", "success"], chosen)
+            self.assertLessEqual(max(page.get_figheight() for page in pages), style.TALLEST + 1.5)
+            self.assertEqual(len({bar.get_ylim() for page in pages for bar in page.axes if bar.get_ylabel() == "Rate (%)"}), 1)
+            return [[axes.get_title("left") for axes in page.axes if axes.get_title("left")] for page in pages]
+        self.assertEqual(titles_of_pages("e0", "e3"), [[f"({letter}) {quantity} rate, {name}" for letter, name in (("a", "e0"), ("b", "e3"))]
+                                                       for quantity in ("Failure", "Success")])
+        self.assertEqual(sum(map(len, titles_of_pages())), 8)
+        code, out, err = self.run_main("--width", "3.3", "--estimators", "e0,e3", "--quantities", "failure,success", "--format", "pdf",
+                                       text=pathlib.Path(path).read_text())
+        self.assertEqual((code, err, [pathlib.Path(line).name for line in out.split()]), (0, "", ["map.pdf", "map_2.pdf"]))
 
     def test_the_command_writes_both_files_the_same_each_time(self):
         def run():
