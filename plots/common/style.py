@@ -222,6 +222,7 @@ def letters(count):
 
 
 TALLEST = 7.6  # inches that panels take of a page of paper; legend and caption come to them
+BESIDE_NAME = {RC["legend.fontsize"]: 0.6, sheet.SMALLEST_FONT: 0.45}  # inches of a legend's mark and margins
 ONE_PANEL_WIDTH = 4.6  # inches: of a figure of one panel on a sheet without a width
 PANEL_WIDTH, PANEL_HEIGHT = 2.2, 1.9  # inches: of the narrowest panel on a sheet with a width, and of all there
 
@@ -306,18 +307,35 @@ def draw_legend(where, handles, **options):
     return legend
 
 
-def add_legend(figure, handles):
-    """At the upper edge, in as few rows as fit the width."""
-    if sheet.current().width is not None:
-        for handle in handles:  # room for the mark and the margins
-            handle.set_label("\n".join(line for part in handle.get_label().split("\n") for line in
-                                       fill(part, figure.get_figwidth() - 0.6, RC["legend.fontsize"])))
+def in_few_rows(figure, handles, size=RC["legend.fontsize"]):
+    """(legend, its columns): at the upper edge, in as few rows as fit the width."""
     for legend_rows in range(1, len(handles) + 1):
         columns = math.ceil(len(handles) / legend_rows)
-        legend = draw_legend(figure, handles, loc="upper center", ncols=columns, borderaxespad=0.2)
+        legend = draw_legend(figure, handles, loc="upper center", ncols=columns, borderaxespad=0.2, fontsize=size)
         if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
-            return legend
+            return legend, columns
         legend.remove()
+
+
+def add_legend(figure, handles):
+    """In few rows; on a sheet with a width, names that are wider are broken, and those of one column stand in two in small print
+    where that is much lower."""
+    if sheet.current().width is None:
+        return in_few_rows(figure, handles)[0]
+    names = [handle.get_label() for handle in handles]
+
+    def legend_for(columns, size):
+        room = figure.get_figwidth() / columns - BESIDE_NAME[size]
+        for handle, name in zip(handles, names):
+            handle.set_label("\n".join(line for part in name.split("\n") for line in fill(part, room, size)))
+        return in_few_rows(figure, handles, size)
+    one, columns = legend_for(1, RC["legend.fontsize"])
+    if columns > 1:
+        return one
+    two, _ = legend_for(2, sheet.SMALLEST_FONT)
+    is_much_lower = two.get_window_extent().height < 0.8 * one.get_window_extent().height
+    (one if is_much_lower else two).remove()
+    return two if is_much_lower else one
 
 
 def lay_out(figure, dpi):

@@ -144,6 +144,17 @@ class Paper(WithCases):
                         self.assertAlmostEqual(figure.get_figwidth(), width)
                         self.assertEqual(problems_of(figure, sheet.SMALLEST_FONT, sheet.LARGEST_FONT), [], name)
 
+    def test_a_narrow_legend_of_ten_names_has_two_columns_and_ends_above_the_panels(self):
+        for case in (self.cases[1], self.cases[7]):
+            code, errors, figures = run_script(*self.arguments(*case, "--width", "3.3"))
+            self.assertEqual((code, errors), (0, ""))
+            figure = figures["figure"]
+            figure.draw_without_rendering()
+            names = [text.get_window_extent() for text in figure.legends[0].get_texts()]
+            self.assertEqual(len(names), 10)
+            self.assertEqual(len({round(name.x0) for name in names}), 2)
+            self.assertGreater(min(name.y0 for name in names), max(axes.get_tightbbox().y1 for axes in figure.axes))
+
     def test_the_widths_of_the_guide_are_taken(self):
         page = (ROOT / "docs" / "figures.md").read_text()
         widths = [float(width) for row in re.findall(r"^\| `.*pt.*\|$", page, re.M) for width in re.findall(r"\d\.\d\d(?= \|)", row)]
