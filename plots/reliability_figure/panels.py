@@ -110,17 +110,24 @@ def draw_histogram(axes, entry, edges):
     axes.tick_params(axis="x", labelsize=7)
 
 
+def curve_of(entry):
+    """(coverage, risk) where there is a risk."""
+    return [point for point in entry.risk_coverage if point[1] > 0]
+
+
 def draw_risk_coverage(axes, entries, looks):
-    """Logarithmic, from the first failure among the surest answers on."""
-    curves = {entry.estimator: [point for point in entry.risk_coverage if point[1] > 0] for entry in entries}
+    """Logarithmic, from the first failure among the surest answers on; a curve that begins at its end is a dot."""
+    curves = {entry.estimator: curve_of(entry) for entry in entries if curve_of(entry)}
     for entry in entries:
-        look, curve = looks[entry.estimator], curves[entry.estimator]
+        look, curve = looks[entry.estimator], curves.get(entry.estimator)
+        if not curve:
+            continue
         if band := risk_band(entry, curve):
             axes.fill_between(*zip(*band), **RISK_BAND, color=look.color, zorder=look.zorder - 1, label="_risk_band")
-        axes.plot(*(zip(*curve) if curve else ([], [])), color=look.color, linestyle=look.dashes, linewidth=1.3, label="_risk",
-                  zorder=look.zorder)
+        axes.plot(*zip(*curve), color=look.color, linestyle=look.dashes, linewidth=1.3, label="_risk", zorder=look.zorder,
+                  marker="o" if len(curve) == 1 else None, markersize=3.4, clip_on=len(curve) > 1)
     risks = [risk for curve in curves.values() for _, risk in curve]
-    first = min((curve[0][0] for curve in curves.values() if curve), default=0)
+    first = min((curve[0][0] for curve in curves.values()), default=0)
     axes.set_xlim(max(0, min(first - 0.03 * (1 - first), 0.98)), 1)
     axes.set_yscale("log")
     axes.set_ylim(0.7 * min(risks, default=0.001), min(1.0, 1.5 * max(risks, default=1)))
@@ -133,19 +140,21 @@ def draw_risk_coverage(axes, entries, looks):
     axes.set(xlabel="Answered, surest first (%)", ylabel="Failed among them (%)")
 
 
-def handles_of(entries, looks):
+def handles_of(entries, diagrams, looks):
+    """Of what is drawn: an estimator without a failure has no curve."""
     handles = [Line2D([], [], color=looks[entry.estimator].color, linestyle=looks[entry.estimator].dashes, linewidth=1.3,
-                      label=f"{title_of(entry)}: AURC {number(entry.risk_coverage_area, 4)}") for entry in entries]
-    return handles + [Patch(**BAND, label="if P were right (95 %)")]
+                      label=f"{title_of(entry)}: AURC {number(entry.risk_coverage_area, 4)}") for entry in entries if curve_of(entry)]
+    return handles + [Patch(**BAND, label="if P were right (95 %)")] * any(entry.band for entry in diagrams)
 
 
-def caption_of(file, group, diagrams, has_band):
+def caption_of(file, group, entries, diagrams, has_band):
+    safe = [title_of(entry) for entry in entries if not curve_of(entry)]
     parts = [f"Study {file.study}"] + ([style.level_in_words(file.by, group)] if file.by else [])
     return "; ".join(parts + list(map(scores_in_words, diagrams)) + [
         "lines: isotonic regression of failures on P; dots: ten bins of equal width with exact 95 % intervals",
         "the band is pointwise", "axes of P in proportion to the square root", "risk and coverage: from the first failure "
         "on, a refusal is the least sure and counts as a failure" + (", band pointwise 95 % (Wilson)" if has_band else ""),
-        "AURC: area under the curve"]) + "."
+        "AURC: area under the curve"] + [f"without a failure, so without a curve: {', '.join(safe)}"] * bool(safe)) + "."
 
 
 def draw(file, names=None, group=None):
@@ -170,6 +179,6 @@ def draw(file, names=None, group=None):
     axes = figure.add_subplot(grid[2 * line:2 * line + 2, column])
     draw_risk_coverage(axes, entries, looks)
     axes.set_title(next(letters) + "Risk and coverage")
-    style.add_legend_and_caption(figure, handles_of(entries, looks), caption_of(
-        file, entries[0].group, diagrams, any(not entry.is_of_population for entry in entries)))
+    style.add_legend_and_caption(figure, handles_of(entries, diagrams, looks), caption_of(
+        file, entries[0].group, entries, diagrams, any(not entry.is_of_population for entry in entries)))
     return figure

@@ -98,6 +98,16 @@ class ReliabilityTest(PlotTestCase):
                       curve=[{"first": 0, "last": 0, "recalibrated": 0, "n": 100, "failed": 0}], band=[])
         self.assertTrue(math.isclose(draw(self.read(never)).axes[-1].get_ylim()[1], 1))
 
+    def test_the_legend_names_what_is_drawn(self):
+        safe = entry("poselib", risk_coverage=[{"probability": 0, "coverage": 1, "risk": 0.0}])
+        figure = draw(self.read(entry(), safe, entry("standard")))
+        names = [text.get_text().split(":")[0] for text in figure.legends[0].get_texts()]
+        self.assertEqual(names, ["RCME, calibrated", "Standard", "if P were right (95 %)"])
+        self.assertEqual(len(figure.axes[-1].lines), 2)
+        self.assertIn("without a failure, so without a curve: PoseLib.", figure.texts[0].get_text().replace("\n", " "))
+        self.assertNotIn("if P", str([text.get_text() for text in draw(self.read(entry(band=[]))).legends[0].get_texts()]))
+        self.assertEqual(figure.axes[-1].lines[0].get_marker(), "o")  # of a single point, where a line would not be seen
+
     def test_writes_both_files(self):
         out = self.folder / "figure"
         self.assertEqual(self.run_script(self.write(content(entry(), entry("poselib"))), "--out", out)[0], 0)
