@@ -14,7 +14,7 @@ from common.command_line import PlotError
 from common.factor_axis import FactorAxis
 from common.text_size import wrap, width_of
 from rates.selection import (check_factor, check_no_repetition, fixed_levels, interval_in_words, kind_in_words,
-                             n_in_words, select_rates, sharpness_in_words, title_of)
+                             listed, n_in_words, select_rates, sharpness_in_words, title_of)
 
 COLORS = colormaps["cividis_r"]  # even steps to the eye, with every colour vision and in grey; dark is much
 LEAST_TOP = 0.05  # a scale that ended lower would paint rates that hardly differ from zero as dark as a failure
@@ -68,12 +68,9 @@ def with_content(rows, names, quantities):
 
 
 def without_content_in_words(rows, quantity, names, labels):
-    """'No-candidate rate of Standard and pRCME: 0 in every cell, at most 0.9 %'. Labels stand in quotes where one has a comma."""
+    """'No-candidate rate of Standard and pRCME: 0 in every cell, at most 0.9 %'."""
     upper = rows.upper[(rows.quantity == quantity) & rows.estimator.isin(names)].max()
-    quote = '"' if any("," in labels[name] for name in names) else ""
-    texts = [f"{quote}{labels[name]}{quote}" for name in names]
-    listed = " and ".join(filter(None, [", ".join(texts[:-1]), texts[-1]]))
-    return f"{title_of(quantity)} of {listed}: 0 in every cell, at most {100 * upper:.2g} %"
+    return f"{title_of(quantity)} of {listed([labels[name] for name in names])}: 0 in every cell, at most {100 * upper:.2g} %"
 
 
 def size_of_panels(num_panels, x_levels, y_levels):

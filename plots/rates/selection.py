@@ -32,6 +32,13 @@ ERROR = re.compile(f"_error(_median)?_deg({ANSWERED})?$")
 SHARPNESS = ("sd_over_crb", "rotation_sd_deg", "direction_sd_deg", "log_det_cov")
 
 
+def listed(labels):
+    """'Standard and pRCME'; all in quotes where one has a comma."""
+    quote = '"' if any("," in label for label in labels) else ""
+    texts = [f"{quote}{label}{quote}" for label in labels]
+    return " and ".join(filter(None, [", ".join(texts[:-1]), texts[-1]]))
+
+
 def title_of(quantity):
     measure = quantity.removesuffix(ANSWERED)
     if measure in TITLES and quantity.endswith(ANSWERED):

@@ -11,6 +11,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLoca
 from common import sheet, style
 from common.command_line import PlotError
 from rates.rate_bands import per_cent
+from rates.selection import listed
 from reliability_figure.reliability_file import STATED
 from reliability_figure.risk_band import risk_band
 
@@ -115,8 +116,14 @@ def curve_of(entry):
     return [point for point in entry.risk_coverage if point[1] > 0]
 
 
+def line_of(curve, look):
+    """How it is drawn; a curve that begins at its end is a dot."""
+    shape = dict(marker="o", markersize=3.4, linestyle="none") if len(curve) == 1 else dict(linestyle=look.dashes, linewidth=1.3)
+    return dict(color=look.color, **shape)
+
+
 def draw_risk_coverage(axes, entries, looks):
-    """Logarithmic, from the first failure among the surest answers on; a curve that begins at its end is a dot."""
+    """Logarithmic, from the first failure among the surest answers on."""
     curves = {entry.estimator: curve_of(entry) for entry in entries if curve_of(entry)}
     for entry in entries:
         look, curve = looks[entry.estimator], curves.get(entry.estimator)
@@ -124,8 +131,7 @@ def draw_risk_coverage(axes, entries, looks):
             continue
         if band := risk_band(entry, curve):
             axes.fill_between(*zip(*band), **RISK_BAND, color=look.color, zorder=look.zorder - 1, label="_risk_band")
-        axes.plot(*zip(*curve), color=look.color, linestyle=look.dashes, linewidth=1.3, label="_risk", zorder=look.zorder,
-                  marker="o" if len(curve) == 1 else None, markersize=3.4, clip_on=len(curve) > 1)
+        axes.plot(*zip(*curve), **line_of(curve, look), label="_risk", zorder=look.zorder, clip_on=len(curve) > 1)
     risks = [risk for curve in curves.values() for _, risk in curve]
     first = min((curve[0][0] for curve in curves.values()), default=0)
     axes.set_xlim(max(0, min(first - 0.03 * (1 - first), 0.98)), 1)
@@ -142,19 +148,21 @@ def draw_risk_coverage(axes, entries, looks):
 
 def handles_of(entries, diagrams, looks):
     """Of what is drawn: an estimator without a failure has no curve."""
-    handles = [Line2D([], [], color=looks[entry.estimator].color, linestyle=looks[entry.estimator].dashes, linewidth=1.3,
-                      label=f"{title_of(entry)}: AURC {number(entry.risk_coverage_area, 4)}") for entry in entries if curve_of(entry)]
+    handles = [Line2D([], [], **line_of(curve_of(entry), looks[entry.estimator]),
+                      label=f"{style.label_of(entry.estimator)}: AURC {number(entry.risk_coverage_area, 4)}") for entry in entries if curve_of(entry)]
     return handles + [Patch(**BAND, label="if P were right (95 %)")] * any(entry.band for entry in diagrams)
 
 
 def caption_of(file, group, entries, diagrams, has_band):
-    safe = [title_of(entry) for entry in entries if not curve_of(entry)]
+    safe, others = ([style.label_of(entry.estimator) for entry in entries if is_in(entry)]
+                    for is_in in (lambda entry: not curve_of(entry), lambda entry: entry.source != STATED))
     parts = [f"Study {file.study}"] + ([style.level_in_words(file.by, group)] if file.by else [])
     return "; ".join(parts + list(map(scores_in_words, diagrams)) + [
         "lines: isotonic regression of failures on P; dots: ten bins of equal width with exact 95 % intervals",
         "the band is pointwise", "axes of P in proportion to the square root", "risk and coverage: from the first failure "
         "on, a refusal is the least sure and counts as a failure" + (", band pointwise 95 % (Wilson)" if has_band else ""),
-        "AURC: area under the curve"] + [f"without a failure, so without a curve: {', '.join(safe)}"] * bool(safe)) + "."
+        "AURC: area under the curve"] + [f"{words}: {listed(names)}" for words, names in (
+            ("P from inlier share", others), ("without a failure, so without a curve", safe)) if names]) + "."
 
 
 def draw(file, names=None, group=None):

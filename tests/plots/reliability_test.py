@@ -105,6 +105,9 @@ class ReliabilityTest(PlotTestCase):
         self.assertEqual(names, ["RCME, calibrated", "Standard", "if P were right (95 %)"])
         self.assertEqual(len(figure.axes[-1].lines), 2)
         self.assertIn("without a failure, so without a curve: PoseLib.", figure.texts[0].get_text().replace("\n", " "))
+        proxy = draw(self.read(entry(), entry("poselib", source="inlier_share")))
+        self.assertIn("P from inlier share: PoseLib.", proxy.texts[0].get_text().replace("\n", " "))
+        self.assertNotIn("inlier share", str(proxy.legends[0].get_texts()))
         self.assertNotIn("if P", str([text.get_text() for text in draw(self.read(entry(band=[]))).legends[0].get_texts()]))
         self.assertEqual(figure.axes[-1].lines[0].get_marker(), "o")  # of a single point, where a line would not be seen
 
