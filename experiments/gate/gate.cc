@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "experiments/core/text/pick_name.h"
 #include "experiments/statistics/scenes_of_run.h"
 #include "experiments/trial/trial_event.h"
 #include "parameters/input_error.h"
@@ -166,17 +167,7 @@ int RankOutcome(TrialOutcome outcome) {
 }  // namespace
 
 std::string Name(GateVerdict verdict) {
-  switch (verdict) {
-    case GateVerdict::kNotWorse:
-      return "not worse";
-    case GateVerdict::kWorse:
-      return "worse";
-    case GateVerdict::kUndecided:
-      return "undecided";
-    case GateVerdict::kNotMeasured:
-      return "not measured";
-  }
-  return "";
+  return PickName(verdict, {"not worse", "worse", "undecided", "not measured"});
 }
 
 GateLook TakeGateLook(const ReadableRun& run, const std::vector<GateTest>& tests, std::int64_t num_rounds) {

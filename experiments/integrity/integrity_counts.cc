@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "estimator/protection_level.h"
+#include "experiments/core/text/pick_name.h"
 #include "experiments/core/work/part_file.h"
 #include "experiments/trial/truth_error.h"
 #include "stats/constants.h"
@@ -114,19 +115,7 @@ const char* IntegrityQuantityName(size_t quantity) {
 }
 
 const char* Name(StanfordRegion region) {
-  switch (region) {
-    case StanfordRegion::kAvailable:
-      return "available";
-    case StanfordRegion::kMisleading:
-      return "misleading";
-    case StanfordRegion::kHazardous:
-      return "hazardous";
-    case StanfordRegion::kUnavailable:
-      return "unavailable";
-    case StanfordRegion::kUnavailableMisleading:
-      break;
-  }
-  return "unavailable_misleading";
+  return PickName(region, {"available", "misleading", "hazardous", "unavailable", "unavailable_misleading"});
 }
 
 StanfordRegion FindStanfordRegion(double error, double level, double limit) {

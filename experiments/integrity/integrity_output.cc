@@ -10,6 +10,7 @@
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/core/text/pick_name.h"
 #include "experiments/trial/truth_error.h"
 #include "stats/clustered_estimate.h"
 #include "stats/intervals.h"
@@ -270,17 +271,7 @@ Json DiagramAsJson(const IntegrityReport& report, const IntegrityCounts& all, si
 
 }  // namespace
 
-const char* Name(RiskVerdict verdict) {
-  switch (verdict) {
-    case RiskVerdict::kKept:
-      return "kept";
-    case RiskVerdict::kExceeded:
-      return "exceeded";
-    case RiskVerdict::kUndecided:
-      break;
-  }
-  return "undecided";
-}
+const char* Name(RiskVerdict verdict) { return PickName(verdict, {"kept", "exceeded", "undecided"}); }
 
 IntegrityRates MeasureIntegrity(const std::vector<IntegrityTally>& clusters, bool by_trial, size_t quantity,
                                 double risk) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "estimator/protection_level.h"
+#include "experiments/core/text/pick_name.h"
 #include "experiments/data/make_data.h"
 #include "experiments/trial/simulate_draw.h"
 #include "parameters/input_error.h"
@@ -28,15 +29,7 @@ bool SeesAll(const Scene& scene, const std::vector<Eigen::Vector3d>& points) {
 }  // namespace
 
 const char* Name(RareEvent::Kind kind) {
-  switch (kind) {
-    case RareEvent::Kind::kFailure:
-      return "failure";
-    case RareEvent::Kind::kMisleadingRotation:
-      return "misleading_rotation";
-    case RareEvent::Kind::kMisleadingDirection:
-      break;
-  }
-  return "misleading_direction";
+  return PickName(kind, {"failure", "misleading_rotation", "misleading_direction"});
 }
 
 double ErrorOverBound(const TrialRecord& record, const FailureBounds& bounds) {

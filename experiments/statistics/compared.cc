@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "experiments/core/text/pick_name.h"
 #include "experiments/statistics/failure_forecasts.h"
 #include "experiments/trial/trial_event.h"
 #include "experiments/trial/trial_measure.h"
@@ -60,17 +61,7 @@ bool IsNamed(const Compared& compared, const std::string& name) {
 
 }  // namespace
 
-std::string Name(ComparedKind kind) {
-  switch (kind) {
-    case ComparedKind::kEvent:
-      return "event";
-    case ComparedKind::kScore:
-      return "score";
-    case ComparedKind::kError:
-      return "error";
-  }
-  return "";
-}
+std::string Name(ComparedKind kind) { return PickName(kind, {"event", "score", "error"}); }
 
 const std::vector<Compared>& AllCompared() {
   static const std::vector<Compared> all = [] {

@@ -8,20 +8,15 @@
 #include "experiments/core/table/table.h"
 #include "experiments/core/text/columns.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/core/text/pick_name.h"
 
 namespace rcme {
 namespace {
 
 const char* NameIntervals(StrataIntervals intervals) {
-  switch (intervals) {
-    case StrataIntervals::kClusters:
-      return "exact, or by betting on the sums of scenes where scenes are repeated or shared";
-    case StrataIntervals::kAnytime:
-      return "anytime-valid";
-    case StrataIntervals::kPopulation:
-      return "of the population that the conditions are a sample of";
-  }
-  return "";
+  return PickName(intervals,
+                  {"exact, or by betting on the sums of scenes where scenes are repeated or shared",
+                   "anytime-valid", "of the population that the conditions are a sample of"});
 }
 
 }  // namespace

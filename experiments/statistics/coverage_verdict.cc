@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "experiments/core/text/pick_name.h"
+
 namespace rcme {
 
 namespace {
@@ -23,17 +25,7 @@ RegionVerdict JudgeRegion(const Interval& interval, const Interval& allowed) {
 }  // namespace
 
 const char* Name(RegionVerdict verdict) {
-  switch (verdict) {
-    case RegionVerdict::kCovers:
-      return "covers";
-    case RegionVerdict::kTooNarrow:
-      return "too narrow";
-    case RegionVerdict::kTooWide:
-      return "too wide";
-    case RegionVerdict::kUndecided:
-      break;
-  }
-  return "undecided";
+  return PickName(verdict, {"covers", "too narrow", "too wide", "undecided"});
 }
 
 CoverageVerdict JudgeCoverage(double coverage, const Interval& interval, std::int64_t n,

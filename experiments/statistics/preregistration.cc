@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "experiments/core/text/pick_name.h"
 #include "experiments/statistics/hypothesis_evidence.h"
 #include "experiments/study/population.h"
 #include "experiments/study/study_lock.h"
@@ -58,17 +59,7 @@ std::string PlanText(const RunDescription& run, const std::string& path) {
 
 }  // namespace
 
-std::string Name(HypothesisVerdict verdict) {
-  switch (verdict) {
-    case HypothesisVerdict::kHolds:
-      return "holds";
-    case HypothesisVerdict::kDoesNotHold:
-      return "does not hold";
-    case HypothesisVerdict::kOpen:
-      return "open";
-  }
-  return "";
-}
+std::string Name(HypothesisVerdict verdict) { return PickName(verdict, {"holds", "does not hold", "open"}); }
 
 HypothesisVerdict Decide(const StatedHypothesis& hypothesis, const Interval& interval) {
   const auto [lower, upper] = interval;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "experiments/core/text/pick_name.h"
 #include "experiments/statistics/error_ranking.h"
 #include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/scene_split.h"
@@ -114,21 +115,7 @@ bool HasFailureProbabilities(const Summary& summary) {
 }
 
 std::string KindName(SummaryRow::Kind kind) {
-  switch (kind) {
-    case SummaryRow::Kind::kRate:
-      return "rate";
-    case SummaryRow::Kind::kMean:
-      return "mean";
-    case SummaryRow::Kind::kMedian:
-      return "median";
-    case SummaryRow::Kind::kScore:
-      return "score";
-    case SummaryRow::Kind::kVarianceShare:
-      return "share";
-    case SummaryRow::Kind::kArea:
-      return "area";
-  }
-  return "";
+  return PickName(kind, {"rate", "mean", "median", "score", "share", "area"});
 }
 
 Summary Summarize(const ReadableRun& run, bool with_times, Pooling pooling) {

@@ -10,6 +10,7 @@
 
 #include "experiments/core/table/render_table.h"
 #include "experiments/core/text/json_output.h"
+#include "experiments/core/text/pick_name.h"
 #include "experiments/statistics/population_summary.h"
 #include "experiments/statistics/preregistration_output.h"
 #include "experiments/statistics/quantity_table.h"
@@ -19,21 +20,10 @@
 namespace rcme {
 
 std::string DescribeIntervalKind(IntervalKind kind) {
-  switch (kind) {
-    case IntervalKind::kExact:
-      return "exact 95 % (Clopper-Pearson)";
-    case IntervalKind::kAnytimeValid:
-      return "anytime-valid 95 % (confidence sequence)";
-    case IntervalKind::kWeighted:
-      return "weighted 95 % (Fay-Feuer, cautious upper end)";
-    case IntervalKind::kBetting:
-      return "anytime-valid 95 % (betting)";
-    case IntervalKind::kLogStudent:
-      return "approximate 95 % (Student on the logarithm)";
-    case IntervalKind::kPopulation:
-      return "95 % of the population, over its draws";
-  }
-  return "";
+  return PickName(kind,
+                  {"exact 95 % (Clopper-Pearson)", "anytime-valid 95 % (confidence sequence)",
+                   "weighted 95 % (Fay-Feuer, cautious upper end)", "anytime-valid 95 % (betting)",
+                   "approximate 95 % (Student on the logarithm)", "95 % of the population, over its draws"});
 }
 
 std::string IntervalKindsIn(const Summary& summary) {
@@ -57,21 +47,7 @@ bool IsShare(SummaryRow::Kind kind) {
 
 // Returns the name of an interval kind as one word.
 std::string IntervalKindName(IntervalKind kind) {
-  switch (kind) {
-    case IntervalKind::kExact:
-      return "exact";
-    case IntervalKind::kAnytimeValid:
-      return "anytime_valid";
-    case IntervalKind::kWeighted:
-      return "weighted";
-    case IntervalKind::kBetting:
-      return "betting";
-    case IntervalKind::kLogStudent:
-      return "log_student";
-    case IntervalKind::kPopulation:
-      return "population";
-  }
-  return "";
+  return PickName(kind, {"exact", "anytime_valid", "weighted", "betting", "log_student", "population"});
 }
 
 bool HasStandardError(const SummaryRow& row) {

@@ -1,5 +1,7 @@
 #include "experiments/trial/trial_event.h"
 
+#include "experiments/core/text/pick_name.h"
+
 namespace rcme {
 namespace {
 
@@ -14,17 +16,7 @@ TrialOutcome ClassifyOutcome(const TrialRecord& record, const FailureBounds& bou
 }
 
 const char* Name(TrialOutcome outcome) {
-  switch (outcome) {
-    case TrialOutcome::kSuccess:
-      return "success";
-    case TrialOutcome::kFailure:
-      return "failure";
-    case TrialOutcome::kRefusal:
-      return "refusal";
-    case TrialOutcome::kNotScored:
-      break;
-  }
-  return "not_scored";
+  return PickName(outcome, {"success", "failure", "refusal", "not_scored"});
 }
 
 std::string OutcomeInFull(const TrialRecord& record, const FailureBounds& bounds) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <map>
 
+#include "experiments/core/text/pick_name.h"
+
 namespace rcme {
 
 const char* Name(ClaimVerdict verdict) {
@@ -23,17 +25,7 @@ const char* Name(ClaimVerdict verdict) {
   return Name(Verdict::kUndecided);
 }
 
-const char* Name(Side side) {
-  switch (side) {
-    case Side::kTooNarrow:
-      return "too narrow";
-    case Side::kTooWide:
-      return "too wide";
-    case Side::kBoth:
-      break;
-  }
-  return "too narrow and too wide";
-}
+const char* Name(Side side) { return PickName(side, {"too narrow", "too wide", "too narrow and too wide"}); }
 
 std::optional<Side> FindFailedSide(const Target& target, const TargetResult& result) {
   if (!target.IsOfRegion() || result.verdict != Verdict::kDoesNotHold) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "experiments/core/text/pick_name.h"
 #include "parameters/input_error.h"
 #include "parameters/suggestion.h"
 
@@ -16,17 +17,7 @@ namespace fs = std::filesystem;
 constexpr const char* kEnding = ".yaml";
 
 const char* FindFolderName(SharedFolder folder) {
-  switch (folder) {
-    case SharedFolder::kStudies:
-      return "studies";
-    case SharedFolder::kEstimators:
-      return "estimator_files";
-    case SharedFolder::kPopulations:
-      return "populations";
-    case SharedFolder::kPlots:
-      break;
-  }
-  return "plots";
+  return PickName(folder, {"studies", "estimator_files", "populations", "plots"});
 }
 
 std::string FormatListCommand(SharedFolder folder) {

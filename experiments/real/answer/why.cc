@@ -12,6 +12,7 @@
 #include "estimator/loop_inspection.h"
 #include "estimator/motion_tests.h"
 #include "estimator/reference_matches.h"
+#include "experiments/core/text/pick_name.h"
 #include "experiments/real/answer/estimate_output.h"
 #include "experiments/real/answer/motion_words.h"
 #include "experiments/study/estimator_spec.h"
@@ -248,21 +249,9 @@ bool IsWithoutAnswer(MotionStatus status) {
 }
 
 const char* Meaning(WhyVerdict verdict) {
-  switch (verdict) {
-    case WhyVerdict::kRight:
-      return "right";
-    case WhyVerdict::kSearchFailed:
-      return "the search failed";
-    case WhyVerdict::kModelCannotTell:
-      return "the model cannot tell";
-    case WhyVerdict::kTestsRefuse:
-      return "its tests refuse the true motion as well";
-    case WhyVerdict::kNoAnswer:
-      return "it gave no answer";
-    case WhyVerdict::kTruthUnknown:
-      break;
-  }
-  return "the true motion is unknown";
+  return PickName(verdict, {"right", "the search failed", "the model cannot tell",
+                            "its tests refuse the true motion as well", "it gave no answer",
+                            "the true motion is unknown"});
 }
 
 std::vector<int> RightMatches(const TrialData& data) {
@@ -291,21 +280,8 @@ std::optional<MotionEvidence> EvidenceOfTruth(const TrialData& data) {
 }  // namespace
 
 const char* Name(WhyVerdict verdict) {
-  switch (verdict) {
-    case WhyVerdict::kRight:
-      return "right";
-    case WhyVerdict::kSearchFailed:
-      return "search_failed";
-    case WhyVerdict::kModelCannotTell:
-      return "model_cannot_tell";
-    case WhyVerdict::kTestsRefuse:
-      return "tests_refuse";
-    case WhyVerdict::kNoAnswer:
-      return "no_answer";
-    case WhyVerdict::kTruthUnknown:
-      break;
-  }
-  return "truth_unknown";
+  return PickName(
+      verdict, {"right", "search_failed", "model_cannot_tell", "tests_refuse", "no_answer", "truth_unknown"});
 }
 
 Why ExplainOutcome(const EstimatorSpec& spec, const TrialData& data, const MotionEstimate& estimate,

@@ -10,6 +10,7 @@
 #include "estimator/calibrated/explanation.h"
 #include "estimator/noise_scale.h"
 #include "estimator/robust_covariance/clustered_covariance.h"
+#include "experiments/core/text/pick_name.h"
 #include "experiments/data/data_source.h"
 #include "experiments/trial/answer_check.h"
 #include "stats/constants.h"
@@ -211,17 +212,7 @@ std::vector<bool> IsInWhiteSquare(const MotionProblem& problem) {
   return is_white;
 }
 
-const char* Name(TruthVerdict verdict) {
-  switch (verdict) {
-    case TruthVerdict::kSilent:
-      break;
-    case TruthVerdict::kHolds:
-      return "holds";
-    case TruthVerdict::kInDoubt:
-      return "in_doubt";
-  }
-  return "silent";
-}
+const char* Name(TruthVerdict verdict) { return PickName(verdict, {"silent", "holds", "in_doubt"}); }
 
 namespace {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "experiments/core/text/pick_name.h"
 #include "stats/intervals.h"
 
 namespace rcme {
@@ -8,19 +9,7 @@ enum class TruthFreeVerdict { kHolds, kTooSmall, kTooLarge, kUndecided, kNoData 
 
 // "holds", "too small", ...
 inline const char* VerdictName(TruthFreeVerdict verdict) {
-  switch (verdict) {
-    case TruthFreeVerdict::kHolds:
-      return "holds";
-    case TruthFreeVerdict::kTooSmall:
-      return "too small";
-    case TruthFreeVerdict::kTooLarge:
-      return "too large";
-    case TruthFreeVerdict::kUndecided:
-      return "undecided";
-    case TruthFreeVerdict::kNoData:
-      break;
-  }
-  return "no data";
+  return PickName(verdict, {"holds", "too small", "too large", "undecided", "no data"});
 }
 
 // The verdict from the interval of a quantity whose correct value is `right`: holds if the interval lies

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/core/text/columns.h"
+#include "experiments/core/text/pick_name.h"
 
 namespace rcme {
 namespace {
@@ -81,19 +82,7 @@ std::string FormatRange(double value, const Interval& interval) {
   return fmt::format("{:.2g} [{:.2g}, {:.2g}]", value, interval.lower, interval.upper);
 }
 
-const char* CauseName(FaultCause cause) {
-  switch (cause) {
-    case FaultCause::kData:
-      return "data";
-    case FaultCause::kEstimator:
-      return "estimator";
-    case FaultCause::kBoth:
-      return "both";
-    case FaultCause::kNone:
-      break;
-  }
-  return "";
-}
+const char* CauseName(FaultCause cause) { return PickName(cause, {"", "data", "estimator", "both"}); }
 
 std::string DescribeVerdict(const TruthFreeTest& test) {
   const ComparedMedians& ratio = test.ratio;
