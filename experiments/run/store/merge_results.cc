@@ -11,6 +11,7 @@
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
 #include "experiments/run/store/new_trials.h"
+#include "experiments/run/store/places.h"
 #include "experiments/trial/trial_columns.h"
 #include "parameters/input_error.h"
 
@@ -55,16 +56,18 @@ void CheckEqual(const std::string& path, const StoredTrial& here, const StoredTr
                   path, here.problem.condition, here.problem.trial, in_a->first, in_a->second, in_b->second));
 }
 
+using HeldTrials = std::vector<Places>;  // per condition
+
 // Notes which planned trials are missing, and to which shards they belong.
-void NoteMissing(const TrialsHeld& held, const PartDescriptions& descriptions, MergeReport* report) {
-  report->num_trials = held.num_trials();
+void NoteMissing(const HeldTrials& held, const PartDescriptions& descriptions, MergeReport* report) {
+  for (const Places& trials : held) report->num_trials += trials.num();
   report->num_shards = descriptions.num_shards();
   if (!report->run.stopping_rule.empty()) return;
   std::set<std::uint32_t> shards;
   const auto repeats = static_cast<std::uint32_t>(report->run.repeats_per_scene);
   for (std::uint32_t c = 0; c < report->run.conditions.size(); ++c) {
     for (std::uint32_t trial = 0; trial < report->run.conditions[c].num_trials; ++trial) {
-      if (held.Has(c, trial)) continue;
+      if (held[c].Has(trial)) continue;
       ++report->num_missing;
       if (report->num_shards > 0) shards.insert(FindShard(c, trial / repeats, report->num_shards));
     }
@@ -74,28 +77,6 @@ void NoteMissing(const TrialsHeld& held, const PartDescriptions& descriptions, M
 
 }  // namespace
 
-bool TrialsHeld::Add(std::uint32_t condition, std::uint32_t trial) {
-  if (condition >= held_.size()) held_.resize(condition + size_t{1});
-  std::vector<bool>& trials = held_[condition];
-  if (trial >= trials.size()) trials.resize(std::max<size_t>(trial + size_t{1}, 2 * trials.size()));
-  if (trials[trial]) return false;
-  trials[trial] = true;
-  ++num_trials_;
-  return true;
-}
-
-void TrialsHeld::AddAll(const TrialsHeld& other) {
-  for (std::uint32_t c = 0; c < other.held_.size(); ++c) {
-    for (std::uint32_t trial = 0; trial < other.held_[c].size(); ++trial) {
-      if (other.held_[c][trial]) Add(c, trial);
-    }
-  }
-}
-
-bool TrialsHeld::Has(std::uint32_t condition, std::uint32_t trial) const {
-  return condition < held_.size() && trial < held_[condition].size() && held_[condition][trial];
-}
-
 MergeReport MergeResults(const std::vector<std::string>& parts, const std::string& out, bool is_partial,
                          const MergeOptions& options) {
   const PartDescriptions descriptions = DescribeParts(parts, options, nullptr);
@@ -103,11 +84,11 @@ MergeReport MergeResults(const std::vector<std::string>& parts, const std::strin
   report.run = descriptions.Merged();
   Progress progress("trials merged", descriptions.num_trials());
   NewTrials merged(out, report.run);
-  TrialsHeld held;
+  HeldTrials held(report.run.conditions.size());
   for (const std::string& path : parts) {
     ReadPart(path, report.run.identity, [&](const StoredTrial& trial) {
       progress.Advance(1);
-      if (held.Add(trial.problem.condition, trial.problem.trial)) return merged.Add(trial);
+      if (held[trial.problem.condition].Add(trial.problem.trial)) return merged.Add(trial);
       CheckEqual(path, trial, merged.Read(trial.problem.condition, trial.problem.trial));
       ++report.num_twice;
     });
@@ -122,13 +103,13 @@ MergeReport CheckParts(const std::vector<std::string>& parts, const MergeOptions
   MergeReport report;
   const PartDescriptions descriptions = DescribeParts(parts, options, &report.unreadable);
   report.run = descriptions.Merged();
-  TrialsHeld held;
+  HeldTrials held(report.run.conditions.size());
   for (const std::string& path : parts) {
-    TrialsHeld of_part;  // dropped if the part is damaged at its end
+    HeldTrials of_part(held.size());  // dropped if the part is damaged at its end
     try {
       ReadPart(path, report.run.identity,
-               [&](const StoredTrial& trial) { of_part.Add(trial.problem.condition, trial.problem.trial); });
-      held.AddAll(of_part);
+               [&](const StoredTrial& trial) { of_part[trial.problem.condition].Add(trial.problem.trial); });
+      for (size_t c = 0; c < held.size(); ++c) held[c].AddAll(of_part[c]);
     } catch (const InputError& error) {
       if (std::ranges::count(report.unreadable, error.what()) == 0) report.unreadable.push_back(error.what());
     }

@@ -6,27 +6,12 @@
 // Every trial is checked as it is read; a part that is still being written is at worst refused.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "experiments/run/store/parts.h"
 
 namespace rcme {
-
-// The set of trials that some files hold together.
-class TrialsHeld {
- public:
-  // Returns false if the trial was held already.
-  bool Add(std::uint32_t condition, std::uint32_t trial);
-  void AddAll(const TrialsHeld& other);
-  bool Has(std::uint32_t condition, std::uint32_t trial) const;
-  std::int64_t num_trials() const { return num_trials_; }
-
- private:
-  std::vector<std::vector<bool>> held_;  // per condition
-  std::int64_t num_trials_ = 0;
-};
 
 // Writes the trials of all parts to `out`, completely or not at all. If trials are missing, it writes only
 // if `is_partial`. Throws InputError that names the part and the reason: it cannot be read or is damaged; it
