@@ -2,6 +2,7 @@
 #pragma once
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <SQLiteCpp/VariadicBind.h>
 
 #include <cstdint>
 #include <string>
@@ -34,6 +35,14 @@ auto NamingFile(const std::string& path, Action action) {
 // The value of a column of the current row. Throws Damage if it is stored as another type.
 std::string TextIn(const SQLite::Column& column, const char* table);
 std::int64_t IntegerIn(const SQLite::Column& column, const char* table);
+
+// Runs a statement without result with these parameters.
+template <typename... Values>
+void Execute(SQLite::Statement& statement, const Values&... values) {
+  SQLite::bind(statement, values...);
+  statement.exec();
+  statement.reset();
+}
 
 [[noreturn]] void ThrowWrongType(const SQLite::Column& column, const char* table, const char* wanted);
 [[noreturn]] void ThrowOutOfRange(const SQLite::Column& column, const char* table);

@@ -58,27 +58,12 @@ void WriteStoredCounts(ResultFile* file, std::uint32_t condition, const StoredCo
   for (const char* table : {"counted", "counts"})
     file->database.exec(fmt::format("DELETE FROM {} WHERE condition = {}", table, condition));
   SQLite::Statement places(file->database, "INSERT INTO counted VALUES (?, ?, ?, ?)");
-  for (const CountedPlaces& row : counts.places) {
-    places.bind(1, condition);
-    places.bind(2, row.shard);
-    places.bind(3, row.places);
-    places.bind(4, ChecksumOfRow(*file, condition, row));
-    places.exec();
-    places.reset();
-  }
+  for (const CountedPlaces& row : counts.places)
+    Execute(places, condition, row.shard, row.places, ChecksumOfRow(*file, condition, row));
   SQLite::Statement sums(file->database, "INSERT INTO counts VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
-  for (const CountedQuantity& row : counts.quantities) {
-    sums.bind(1, condition);
-    sums.bind(2, row.estimator);
-    sums.bind(3, row.quantity);
-    sums.bind(4, row.n);
-    sums.bind(5, row.sum);
-    sums.bind(6, row.sum_squares);
-    sums.bind(7, row.cells);
-    sums.bind(8, ChecksumOfRow(*file, condition, row));
-    sums.exec();
-    sums.reset();
-  }
+  for (const CountedQuantity& row : counts.quantities)
+    Execute(sums, condition, row.estimator, row.quantity, row.n, row.sum, row.sum_squares, row.cells,
+            ChecksumOfRow(*file, condition, row));
 }
 
 }  // namespace rcme

@@ -44,9 +44,7 @@ void Insert(SQLite::Database& database, const char* table, const Values&... valu
   const std::vector<const char*> places(sizeof...(values), "?");
   SQLite::Statement statement(database,
                               fmt::format("INSERT INTO {} VALUES ({})", table, fmt::join(places, ", ")));
-  int parameter = 1;
-  (statement.bind(parameter++, values), ...);
-  statement.exec();
+  Execute(statement, values...);
 }
 
 // The stopping rule has its own checksum, so it can be recovered if the description is damaged elsewhere.

@@ -103,12 +103,7 @@ std::int64_t ResultFile::RemoveForRetry(const std::vector<MotionStatus>& statuse
     for (const char* table : {"trials", "problems"}) {
       SQLite::Statement remove(database,
                                fmt::format("DELETE FROM {} WHERE condition = ? AND trial = ?", table));
-      for (const StoredTrial& trial : removed) {
-        remove.bind(1, trial.problem.condition);
-        remove.bind(2, trial.problem.trial);
-        remove.exec();
-        remove.reset();
-      }
+      for (const StoredTrial& trial : removed) Execute(remove, trial.problem.condition, trial.problem.trial);
     }
     for (const StoredTrial& trial : removed) totals.Remove(trial.problem.condition, trial.checksum);
     totals.WriteChanged(database);

@@ -136,8 +136,7 @@ std::vector<TrialRange> ResultStore::MissingTrials(std::uint32_t condition, std:
   return NamingFile(connection_->file.path, [&] {
     SQLite::Statement query(connection_->file.database,
                             "SELECT trial FROM problems WHERE condition = ? AND trial < ? ORDER BY trial");
-    query.bind(1, condition);
-    query.bind(2, num_trials);
+    SQLite::bind(query, condition, num_trials);
     std::vector<TrialRange> missing;
     std::uint32_t next = 0;
     while (query.executeStep()) {

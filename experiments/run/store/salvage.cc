@@ -39,10 +39,7 @@ bool Scan(const SQLite::Database& database, std::uint32_t condition, std::int64_
                             fmt::format("SELECT trial FROM problems WHERE condition = ? AND trial >= "
                                         "? AND trial < ? ORDER BY trial {} LIMIT ?",
                                         direction));
-    query.bind(1, condition);
-    query.bind(2, first);
-    query.bind(3, end);
-    query.bind(4, limit);
+    SQLite::bind(query, condition, first, end, limit);
     std::int64_t low = first, high = end;  // range not yet visited
     while (query.executeStep()) {
       const std::int64_t trial = IntegerIn(query.getColumn(0), "problems");

@@ -5,17 +5,6 @@
 #include "experiments/core/files/database.h"
 
 namespace rcme {
-namespace {
-
-void WriteRow(SQLite::Statement& statement, std::int64_t condition, const TrialTotal& total) {
-  statement.bind(1, condition);
-  statement.bind(2, total.num_trials);
-  statement.bind(3, total.checksum);
-  statement.exec();
-  statement.reset();
-}
-
-}  // namespace
 
 TrialTotals TrialTotals::Read(SQLite::Database& database) {
   TrialTotals totals;
@@ -35,7 +24,7 @@ TrialTotals TrialTotals::Write(SQLite::Database& database, size_t num_conditions
   TrialTotals totals;
   totals.totals_.resize(num_conditions);
   SQLite::Statement insert(database, "INSERT INTO totals VALUES (?, ?, ?)");
-  for (size_t c = 0; c < num_conditions; ++c) WriteRow(insert, static_cast<std::int64_t>(c), {});
+  for (size_t c = 0; c < num_conditions; ++c) Execute(insert, static_cast<std::int64_t>(c), 0, 0);
   return totals;
 }
 
@@ -64,7 +53,8 @@ void TrialTotals::Clear(std::uint32_t condition) {
 
 void TrialTotals::WriteChanged(SQLite::Database& database) {
   SQLite::Statement insert(database, "INSERT OR REPLACE INTO totals VALUES (?, ?, ?)");
-  for (const std::uint32_t condition : changed_) WriteRow(insert, condition, totals_[condition]);
+  for (const std::uint32_t condition : changed_)
+    Execute(insert, condition, totals_[condition].num_trials, totals_[condition].checksum);
   changed_.clear();
 }
 

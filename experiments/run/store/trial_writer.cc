@@ -10,11 +10,6 @@ namespace {
 
 constexpr std::chrono::milliseconds kCommitInterval{500};
 
-void Insert(SQLite::Statement& statement) {
-  statement.exec();
-  statement.reset();
-}
-
 }  // namespace
 
 TrialWriter::TrialWriter(ResultFile* file)
@@ -43,11 +38,11 @@ void TrialWriter::AddTrial(const ProblemRecord& problem, std::span<const TrialRe
     if (record.condition != problem.condition || record.trial != problem.trial || record.estimator != e)
       throw std::logic_error("the records are not those of the problem");
     BindFields(insert_trial_, record);
-    Insert(insert_trial_);
+    Execute(insert_trial_);
   }
   const std::uint32_t checksum = ChecksumOfTrial(frame_.identity, problem, records);
   insert_problem_.bind(BindFields(insert_problem_, problem), checksum);
-  Insert(insert_problem_);
+  Execute(insert_problem_);
   file_->totals.Add(problem.condition, checksum);
 }
 
