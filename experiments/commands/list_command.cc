@@ -135,24 +135,20 @@ std::string ValueIn(SharedFolder folder, const std::string& name, const std::str
   return value && value.IsScalar() ? value.Scalar() : "";
 }
 
-Rows ListStudies() {
-  Rows rows = {{"study", "what it asks"}};
-  for (const std::string& name : NamesIn(SharedFolder::kStudies)) {
-    std::string description = ValueIn(SharedFolder::kStudies, name, "description");
-    std::replace(description.begin(), description.end(), '\n', ' ');
+Rows ListDescriptions(SharedFolder folder, const std::string& of, const std::string& what) {
+  Rows rows = {{of, what}};
+  for (const std::string& name : NamesIn(folder)) {
+    std::string description = ValueIn(folder, name, "description");
+    std::ranges::replace(description, '\n', ' ');
     rows.push_back({name, description});
   }
   return rows;
 }
 
+Rows ListStudies() { return ListDescriptions(SharedFolder::kStudies, "study", "what it asks"); }
+
 Rows ListPopulations() {
-  Rows rows = {{"population", "what it stands for"}};
-  for (const std::string& name : NamesIn(SharedFolder::kPopulations)) {
-    std::string description = ValueIn(SharedFolder::kPopulations, name, "description");
-    std::replace(description.begin(), description.end(), '\n', ' ');
-    rows.push_back({name, description});
-  }
-  return rows;
+  return ListDescriptions(SharedFolder::kPopulations, "population", "what it stands for");
 }
 
 Rows ListEstimatorFiles() {

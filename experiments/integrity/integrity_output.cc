@@ -126,10 +126,7 @@ void AddRate(const std::string& name, Estimate IntegrityRates::*rate, TableFor t
     return;
   }
   columns->push_back({Column::Number(name), [rate](R row) { return (row.rates.*rate).value; }});
-  columns->push_back({{.name = name + "_lower," + name + "_upper",
-                       .type = ColumnType::kInterval,
-                       .json_name = name + "_interval"},
-                      [rate](R row) { return (row.rates.*rate).interval; }});
+  columns->push_back({Column::Bounds(name), [rate](R row) { return (row.rates.*rate).interval; }});
 }
 
 Table MakeIntegrityTable(std::vector<ColumnOf<IntegrityRow>> columns, TableFor table_for,

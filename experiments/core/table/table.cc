@@ -9,10 +9,7 @@ Table WithIntervalColumns(const Table& table) {
     wide.columns.push_back(table.columns[c]);
     for (size_t r = 0; r < table.rows.size(); ++r) wide.rows[r].push_back(table.rows[r][c]);
     if (table.columns[c].type != ColumnType::kEstimate) continue;
-    const std::string& name = table.columns[c].name;
-    wide.columns.push_back({.name = name + "_lower," + name + "_upper",
-                            .type = ColumnType::kInterval,
-                            .json_name = name + "_interval"});
+    wide.columns.push_back(Column::Bounds(table.columns[c].name));
     for (size_t r = 0; r < table.rows.size(); ++r)
       wide.rows[r].emplace_back(std::get<Estimate>(table.rows[r][c]).interval);
   }

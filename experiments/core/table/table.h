@@ -66,6 +66,13 @@ struct Column {
     return {name, ColumnType::kEstimate, format};
   }
 
+  // "NAME_lower,NAME_upper" in CSV, "NAME_interval" in JSON.
+  static Column Bounds(const std::string& name) {
+    return {.name = name + "_lower," + name + "_upper",
+            .type = ColumnType::kInterval,
+            .json_name = name + "_interval"};
+  }
+
   const std::string& Heading() const { return heading.empty() ? name : heading; }
 };
 
@@ -114,8 +121,7 @@ std::vector<ColumnOf<Item>> LevelColumns(const std::vector<std::string>& factors
       factors, [](const Item& item) -> const auto& { return item.levels; });
 }
 
-// Adds a column with the interval after each column of estimates: "NAME_lower,NAME_upper" in CSV,
-// "NAME_interval" in JSON.
+// Adds a column with the interval, Column::Bounds, after each column of estimates.
 Table WithIntervalColumns(const Table& table);
 
 }  // namespace rcme

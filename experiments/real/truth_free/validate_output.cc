@@ -41,34 +41,21 @@ Table MakeTableOfParts(PartColumns<Part> columns, const std::vector<SetReport>& 
   return MakeTable(columns, rows);
 }
 
-Column MakeIntervalColumn(const std::string& name) {
-  return {.name = name + "_lower," + name + "_upper",
-          .type = ColumnType::kInterval,
-          .json_name = name + "_interval"};
+// A number and its interval.
+template <typename Part, typename Measured>
+void AddMeasured(const std::string& name, Measured Part::*member, double Measured::*value,
+                 PartColumns<Part>* columns) {
+  using P = const PartOfSet<Part>&;
+  columns->push_back({Column::Number(name), [=](P of) { return of.part->*member.*value; }});
+  columns->push_back({Column::Bounds(name), [=](P of) { return (of.part->*member).interval; }});
 }
 
 // The parameter, its interval, and as how many pairs it counts.
 void AddPooled(const std::string& name, PooledParameter FaultReport::*member,
                PartColumns<FaultReport>* columns) {
-  using F = const PartOfSet<FaultReport>&;
-  columns->push_back({Column::Number(name), [=](F f) { return (f.part->*member).value; }});
-  columns->push_back({MakeIntervalColumn(name), [=](F f) { return (f.part->*member).interval; }});
-  columns->push_back(
-      {Column::Number(name + "_effective_pairs"), [=](F f) { return (f.part->*member).effective_n; }});
-}
-
-void AddRatio(const std::string& name, ComparedMedians TruthFreeTest::*member,
-              PartColumns<TruthFreeTest>* columns) {
-  using T = const PartOfSet<TruthFreeTest>&;
-  columns->push_back({Column::Number(name), [=](T t) { return (t.part->*member).value; }});
-  columns->push_back({MakeIntervalColumn(name), [=](T t) { return (t.part->*member).interval; }});
-}
-
-void AddCoverage(const std::string& name, SharedMemberRate TruthFreeTest::*member,
-                 PartColumns<TruthFreeTest>* columns) {
-  using T = const PartOfSet<TruthFreeTest>&;
-  columns->push_back({Column::Number(name), [=](T t) { return (t.part->*member).rate; }});
-  columns->push_back({MakeIntervalColumn(name), [=](T t) { return (t.part->*member).interval; }});
+  AddMeasured(name, member, &PooledParameter::value, columns);
+  columns->push_back({Column::Number(name + "_effective_pairs"),
+                      [=](const auto& of) { return (of.part->*member).effective_n; }});
 }
 
 std::vector<ColumnOf<SetReport>> MakeSetColumns() {
@@ -84,7 +71,7 @@ std::vector<ColumnOf<SetReport>> MakeSetColumns() {
       {Column::Number("direction_sd_deg"), [](S s) { return s.direction_sd_deg; }},
       {Column::Number("assumed_sigma_px"), [](S s) { return s.assumed_sigma_px; }},
       {Column::Number("sigma_px"), [](S s) { return s.sigma_px.value; }},
-      {MakeIntervalColumn("sigma_px"), [](S s) { return s.sigma_px.interval; }},
+      {Column::Bounds("sigma_px"), [](S s) { return s.sigma_px.interval; }},
       {Column::Text("sigma_verdict"), [](S s) { return VerdictName(s.sigma_verdict); }},
       {Column::Count("calibration_pairs"), [](S s) { return s.calibration.num_pairs; }},
       {Column::Number("calibration_p_value"), [](S s) { return s.calibration.p_value; }},
@@ -92,7 +79,7 @@ std::vector<ColumnOf<SetReport>> MakeSetColumns() {
       {Column::Text("calibration_verdict"), [](S s) { return FaultVerdict(s.calibration.verdict); }},
       {Column::Count("size_pairs"), [](S s) { return s.sizes.num_pairs; }},
       {Column::Number("size_slope"), [](S s) { return s.sizes.slope.value; }},
-      {MakeIntervalColumn("size_slope"), [](S s) { return s.sizes.slope.interval; }},
+      {Column::Bounds("size_slope"), [](S s) { return s.sizes.slope.interval; }},
       {Column::Number("size_slope_effective_pairs"), [](S s) { return s.sizes.slope.effective_n; }},
       {Column::Text("size_verdict"), [](S s) { return VerdictName(s.sizes.verdict); }}};
 }
@@ -110,11 +97,11 @@ PartColumns<TruthFreeTest> MakeTestColumns() {
       {Column::Key("test"), [](T t) { return t.part->name; }},
       {Column::Count("degrees_of_freedom"), [](T t) { return t.part->degrees_of_freedom; }},
       {Column::Count("n"), [](T t) { return t.part->num_values; }}};
-  AddCoverage("coverage", &TruthFreeTest::coverage, &columns);
-  AddCoverage("twin_coverage", &TruthFreeTest::twin_coverage, &columns);
-  AddRatio("ratio", &TruthFreeTest::ratio, &columns);
-  AddRatio("in_simulation", &TruthFreeTest::in_simulation, &columns);
-  AddRatio("against_twins", &TruthFreeTest::against_twins, &columns);
+  AddMeasured("coverage", &TruthFreeTest::coverage, &SharedMemberRate::rate, &columns);
+  AddMeasured("twin_coverage", &TruthFreeTest::twin_coverage, &SharedMemberRate::rate, &columns);
+  AddMeasured("ratio", &TruthFreeTest::ratio, &ComparedMedians::value, &columns);
+  AddMeasured("in_simulation", &TruthFreeTest::in_simulation, &ComparedMedians::value, &columns);
+  AddMeasured("against_twins", &TruthFreeTest::against_twins, &ComparedMedians::value, &columns);
   columns.push_back({Column::Text("verdict"), [](T t) { return VerdictName(t.part->verdict); }});
   columns.push_back({Column::Text("cause"), [](T t) { return CauseName(t.part->cause); }});
   columns.push_back({Column::Count("units"), [](T t) { return t.part->num_units; }});
@@ -129,7 +116,7 @@ PartColumns<DistanceCorrelation> MakeCorrelationColumns() {
           {Column::Number("n"), [](C c) { return c.part->num_products; }},
           {Column::Number("correlation"), [](C c) { return c.part->correlation; }},
           {Column::Number("twin_correlation"), [](C c) { return c.part->twin_correlation; }},
-          {MakeIntervalColumn("difference"), [](C c) { return c.part->difference; }},
+          {Column::Bounds("difference"), [](C c) { return c.part->difference; }},
           {Column::Text("verdict"), [](C c) { return CorrelationVerdict(*c.part); }}};
 }
 

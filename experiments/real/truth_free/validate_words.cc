@@ -123,8 +123,7 @@ std::string CorrelationVerdict(const DistanceCorrelation& c) {
 }
 
 std::string FaultVerdict(TruthFreeVerdict verdict) {
-  const bool is_fault = verdict == TruthFreeVerdict::kTooSmall || verdict == TruthFreeVerdict::kTooLarge;
-  return is_fault ? "wrong" : VerdictName(verdict);
+  return IsFault(verdict) ? "wrong" : VerdictName(verdict);
 }
 
 std::string DescribeSet(const SetReport& report) {
