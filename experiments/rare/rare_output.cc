@@ -221,8 +221,7 @@ RareRow MakeRareRow(const StratifiedCell& cell) {
 }
 
 std::string RareAsTable(const StudyPlan& plan, const RareEvent& event, const std::vector<RareCell>& cells) {
-  std::vector<RareRow> rows;
-  for (const RareCell& cell : cells) rows.push_back(MakeRareRow(cell));
+  const std::vector<RareRow> rows = MakeRareRows(cells);
   Table table = MakeRateTable(plan, event, rows);
   table.columns.push_back(Column::Number("spread", {1.0, "", ".2f"}));
   std::string doubts;
@@ -247,9 +246,7 @@ std::string RareAsTable(const StudyPlan& plan, const RareEvent& event, const std
 }
 
 std::string StratifiedAsTable(const StudyPlan& plan, const std::vector<StratifiedCell>& cells) {
-  std::vector<RareRow> rows;
-  for (const StratifiedCell& cell : cells) rows.push_back(MakeRareRow(cell));
-  Table table = MakeRateTable(plan, {}, rows);
+  Table table = MakeRateTable(plan, {}, MakeRareRows(cells));
   for (size_t k = 0; k < kNumStrata; ++k) {
     table.columns.push_back({fmt::format("1 in {}", 1 << k)});
     for (size_t i = 0; i < cells.size(); ++i) {
