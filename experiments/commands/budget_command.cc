@@ -10,6 +10,7 @@
 #include "experiments/core/table/table.h"
 #include "experiments/core/text/json_output.h"
 #include "experiments/core/text/message.h"
+#include "experiments/core/text/pick_name.h"
 #include "experiments/core/text/shell_word.h"
 #include "experiments/core/work/progress.h"
 #include "experiments/core/work/stop_request.h"
@@ -27,19 +28,8 @@ struct BudgetArguments {
 };
 
 std::string DescribeEffortEnd(const FoundEffort& found) {
-  switch (found.end) {
-    case EffortEnd::kReached:
-      return "";
-    case EffortEnd::kNoEffort:
-      return "has no option for its effort";
-    case EffortEnd::kTooSlow:
-      return "takes longer even at its least effort";
-    case EffortEnd::kOwnRule:
-      return "stops earlier by its own rule";
-    case EffortEnd::kAtTheLimit:
-      return "reached the greatest effort allowed";
-  }
-  return "";
+  return PickName(found.end, {"", "has no option for its effort", "takes longer even at its least effort",
+                              "stops earlier by its own rule", "reached the greatest effort allowed"});
 }
 
 // The effort found for an estimator, with its times on trials that were not used in the search.

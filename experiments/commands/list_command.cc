@@ -31,23 +31,6 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-Rows ListEstimators() {
-  Rows rows = {{"estimator", "what it is"}};
-  for (const EstimatorEntry& entry : EstimatorRegistry()) rows.push_back({entry.name, entry.doc});
-  return rows;
-}
-
-Rows ListOptions() {
-  Rows rows = {{"estimator", "option", "default", "unit", "allowed", "what it is"}};
-  for (const EstimatorEntry& entry : EstimatorRegistry()) {
-    const std::unique_ptr<EstimatorModel> model = entry.make();
-    for (const Parameter& p : model->Parameters()) {
-      rows.push_back({entry.name, p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
-    }
-  }
-  return rows;
-}
-
 template <typename Entry>
 Rows ListRegistry(const std::string& heading, const std::vector<Entry>& registry) {
   Rows rows = {{heading, "what it is"}};
@@ -68,34 +51,41 @@ Rows ListCameras() {
   rows.push_back({kCamerasFromFile, "two cameras of the file `calibration`"});
   return rows;
 }
+Rows ListEstimators() { return ListRegistry("estimator", EstimatorRegistry()); }
 Rows ListMotions() { return ListRegistry("motion", MotionRegistry()); }
 Rows ListNoise() { return ListRegistry("noise", NoiseRegistry()); }
 Rows ListOutliers() { return ListRegistry("outliers", OutlierRegistry()); }
 
-// The keys that a choice brings, beside those that every simulation has.
+// The parameters of each entry; its name follows `prefix`.
 template <typename Entry>
-void AddSettings(const std::string& key, const std::vector<Entry>& registry, Rows* rows) {
+void AddParameters(const std::string& prefix, const std::vector<Entry>& registry, Rows* rows) {
   for (const Entry& entry : registry) {
     const auto model = entry.make();
-    for (const Parameter& p : model->Parameters()) {
-      rows->push_back({key + ": " + entry.name, p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
-    }
+    for (const Parameter& p : model->Parameters())
+      rows->push_back({prefix + entry.name, p.name(), p.Value(), p.unit(), p.allowed(), p.doc()});
   }
 }
 
+Rows ListOptions() {
+  Rows rows = {{"estimator", "option", "default", "unit", "allowed", "what it is"}};
+  AddParameters("", EstimatorRegistry(), &rows);
+  return rows;
+}
+
+// The keys that a choice brings, beside those that every simulation has.
 Rows ListSettings() {
   Rows rows = {{"with", "data key", "default", "unit", "allowed", "what it is"}};
-  AddSettings("scene", SceneRegistry(), &rows);
+  AddParameters("scene: ", SceneRegistry(), &rows);
   for (const SettingHelp& s : DescribeSettings({{"scene", kMatchFilesScene}})) {
     rows.push_back({std::string("scene: ") + kMatchFilesScene, s.name, s.value, s.unit, s.allowed, s.doc});
   }
-  AddSettings("cameras", CameraRegistry(), &rows);
+  AddParameters("cameras: ", CameraRegistry(), &rows);
   const SettingHelp file = CalibrationHelp();
   rows.push_back({std::string("cameras: ") + kCamerasFromFile, file.name, file.value, file.unit, file.allowed,
                   file.doc});
-  AddSettings("motion", MotionRegistry(), &rows);
-  AddSettings("noise", NoiseRegistry(), &rows);
-  AddSettings("outliers", OutlierRegistry(), &rows);
+  AddParameters("motion: ", MotionRegistry(), &rows);
+  AddParameters("noise: ", NoiseRegistry(), &rows);
+  AddParameters("outliers: ", OutlierRegistry(), &rows);
   std::set<std::string> listed;
   for (const std::vector<std::string>& row : rows) listed.insert(row[1]);
   for (const SettingHelp& s : DescribeSettings({{"scene", SceneRegistry().front().name}})) {

@@ -8,21 +8,9 @@
 namespace rcme {
 
 const char* Name(ClaimVerdict verdict) {
-  switch (verdict) {
-    case ClaimVerdict::kHolds:
-      return Name(Verdict::kHolds);
-    case ClaimVerdict::kSmallNoiseOnly:
-      return "holds in the small-noise limit only";
-    case ClaimVerdict::kDoesNotHold:
-      return Name(Verdict::kDoesNotHold);
-    case ClaimVerdict::kMeasured:
-      return "measured";
-    case ClaimVerdict::kNotPossible:
-      return "not possible";
-    case ClaimVerdict::kUndecided:
-      break;
-  }
-  return Name(Verdict::kUndecided);
+  return PickName(verdict,
+                  {Name(Verdict::kHolds), "holds in the small-noise limit only", Name(Verdict::kDoesNotHold),
+                   Name(Verdict::kUndecided), "measured", "not possible"});
 }
 
 const char* Name(Side side) { return PickName(side, {"too narrow", "too wide", "too narrow and too wide"}); }

@@ -128,7 +128,7 @@ std::unique_ptr<ResultFile> OpenFileForRun(const std::string& path, const StudyP
   // A file without trials (its run failed at once) accepts any study and any shard.
   if (file->description.identity != wanted.identity || file->description.lock != wanted.lock ||
       DescribeHeld(file->description) != DescribeHeld(wanted)) {
-    file->CreateAnew(wanted);
+    file->Create(wanted);
   } else {
     CheckFits(file->description, plan);
     const RunDescription run = Continued(file->description, plan);

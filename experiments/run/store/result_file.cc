@@ -30,20 +30,11 @@ bool ResultFile::IsNew() {
 
 void ResultFile::Create(const RunDescription& run) {
   SQLite::Transaction creation(database);
+  if (!IsNew()) DropTables(database);
   CreateTables(database);
   WriteDescription(database, run);
   totals = TrialTotals::Write(database, run.conditions.size());
   creation.commit();
-  description = run;
-}
-
-void ResultFile::CreateAnew(const RunDescription& run) {
-  SQLite::Transaction replacement(database);
-  DropTables(database);
-  CreateTables(database);
-  WriteDescription(database, run);
-  totals = TrialTotals::Write(database, run.conditions.size());
-  replacement.commit();
   description = run;
 }
 

@@ -23,9 +23,8 @@ class ResultFile {
   // Returns whether nothing was ever written to the file, or its first run ended before it had made the
   // tables.
   bool IsNew();
-  void Create(const RunDescription& run);
   // Replaces all content of the file.
-  void CreateAnew(const RunDescription& run);
+  void Create(const RunDescription& run);
   // Reads and checks everything except the trials.
   void LoadDescription();
   // Checks all trials by reading them. Shows progress.
