@@ -120,6 +120,29 @@ TEST(MotionPriorUse, ARightRotationIsKeptThoughTheCalibrationIsWrong) {
   EXPECT_LE(num_counting, 1);
 }
 
+// 20 to 100 standard deviations off, with a right calibration. Errors of it are hardly probable by the
+// matches; where they are not quite impossible, the covariance counts them as the prior makes them probable.
+TEST(MotionPriorUse, AWrongDirectionIsNotMadeRightByErrorsOfTheCalibration) {
+  constexpr int kTrials = 12;
+  int num_noticed = 0;
+  for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
+    Measured made = MakeMeasured(300, 0.3, 1.0, trial);
+    RandomStream rng({.seed = 1, .trial = trial, .purpose = 2854});
+    const double bias_deg = trial % 2 == 0 ? 1.0 : 5.0;
+    const Eigen::Vector3d axis = made.pose_true.t.cross(RandomDirection(rng)).normalized();
+    made.problem.prior = MotionPrior{};
+    made.problem.prior->direction = {RotationFromVector(kRadPerDeg * bias_deg * axis) * made.pose_true.t,
+                                     kRadPerDeg * 0.05};
+    const MotionEstimate e = EstimateFrom(made.problem, trial);
+    ASSERT_EQ(e.status, MotionStatus::kOk);
+    num_noticed += e.prior == PriorUse::kContradicted;
+    const Vector5d error = LocalCoordinates(e.cam2_from_cam1, made.pose_true);
+    EXPECT_LT(error.dot(e.pose_cov.llt().solve(error)), 30.0)
+        << trial << ", errors with probability " << e.calibration_error_probability;
+  }
+  EXPECT_GE(num_noticed, 9);
+}
+
 // A prior that says next to nothing leaves the answer where it is: of standard deviations of a million
 // radians the information is 1e-12 of theirs.
 TEST(MotionPriorUse, AWidePriorChangesNothing) {

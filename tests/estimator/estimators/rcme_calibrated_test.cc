@@ -122,6 +122,37 @@ TEST_F(RcmeCalibratedOf, CovarianceCountsErrorsOfTheCalibrationThatTheMatchesSho
   EXPECT_LE(num_doubted, 3);
 }
 
+// Draws, regions and protection levels follow the law with errors and that without them, whatever makes the
+// covariance.
+TEST_F(RcmeCalibratedOf, PosteriorHasTheLawsWithAndWithoutErrorsOfTheCalibration) {
+  for (const CovarianceKind kind : {CovarianceKind::kSandwich, CovarianceKind::kRobust}) {
+    int num_mixtures = 0;
+    for (std::uint32_t trial = 0; trial < 4; ++trial) {
+      CalibratedOptions options;
+      options.covariance = kind;
+      options.unstated_errors = 0.3;
+      const auto estimator = MakeRcmeCalibrated(options);
+      const Scene scene = TwoCameraScene(300, trial);
+      const MotionProblem problem{ObserveTwoCameraScene(scene, 0.3, 0.2, trial).matches, scene.camera1,
+                                  scene.camera2, 0.3};
+      std::optional<MotionPosterior> posterior;
+      RandomStream rng({1, 0, trial, 4});
+      const MotionEstimate e =
+          FindWeightInspection(*estimator)->EstimateWithPosterior(problem, rng, &posterior);
+      ASSERT_TRUE(posterior);
+      if (posterior->narrowed < 1.0 || posterior->components.size() != 2) continue;
+      ++num_mixtures;
+      const MotionComponent &exact = posterior->components[0], &with_errors = posterior->components[1];
+      EXPECT_TRUE(exact.covariance.isApprox(e.pose_cov_without_errors, 1e-9));
+      EXPECT_TRUE(with_errors.covariance.isApprox(e.pose_cov_with_errors, 1e-9));
+      EXPECT_NEAR(with_errors.weight / (exact.weight + with_errors.weight), e.calibration_error_probability,
+                  1e-9);
+      EXPECT_TRUE(Covariance(*posterior).of_answer.isApprox(e.pose_cov, 1e-9));
+    }
+    EXPECT_GE(num_mixtures, 2);
+  }
+}
+
 TEST_F(RcmeCalibratedOf, FindsTheMotionAndItsMatches) {
   for (std::uint32_t trial = 0; trial < 20; ++trial) {
     const Scene scene = TwoCameraScene(200, trial);

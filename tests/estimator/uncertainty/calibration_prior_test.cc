@@ -49,6 +49,21 @@ Vector5d ComputeGradient(const MotionProblem& problem, const RelativePose& pose,
   return sums.gradient;
 }
 
+// Each image of a reconstruction has a K of its own, rounded in its last digit.
+TEST(IsOfOneCamera, TakesRoundedIntrinsicsForEqualOnes) {
+  MotionProblem problem;
+  problem.camera1 = problem.camera2 = kFisheye.camera;
+  problem.camera2.fx *= 1.0 + 1e-8;
+  EXPECT_TRUE(IsOfOneCamera(problem));
+  problem.undistortion = {kFisheye, kFisheye};
+  EXPECT_TRUE(IsOfOneCamera(problem));
+  problem.undistortion->lens2.k[0] += 1e-3;
+  EXPECT_FALSE(IsOfOneCamera(problem));
+  problem.undistortion.reset();
+  problem.camera2.fx *= 1.001;
+  EXPECT_FALSE(IsOfOneCamera(problem));
+}
+
 // An error of one standard deviation in both images, which one camera took: the motion fitted to the matches
 // as a lens with this error undistorts them.
 TEST(CalibrationCovariance, OfALensIsThatOfFitsToMatchesUndistortedByAnother) {
