@@ -161,7 +161,9 @@ class Fisheyes {
             ? distorted
             : UndistortProblem(scene.camera1.AsLens(), scene.camera2.AsLens(), distorted).problem;
     if (given == Given::kWithoutScales) problem.noise_scale.clear();
-    return MakeRcmeCalibrated({})->Estimate(problem, sampling_rng);
+    CalibratedOptions options;
+    options.unstated_errors = 0.0;  // would widen regions where the noise is wrong
+    return MakeRcmeCalibrated(options)->Estimate(problem, sampling_rng);
   }
 
  private:
