@@ -380,6 +380,7 @@ TEST(WidenCovariance, NeverNarrowsARobustCovariance) {
   RandomStream rng({.seed = 1, .purpose = 124});
   const MotionEstimate given = MakeEstimator("rcme_calibrated")->Estimate(problem, rng);
   MotionEstimate robust = given;
+  robust.calibration_error_probability = 0.0;
   MakeCovarianceRobust(problem, {}, std::nullopt, &robust);
   robust.pose_cov *= 1.1;
   CameraNoise noise;
